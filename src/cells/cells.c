@@ -109,11 +109,18 @@ static void lay_out(struct cells *cells)
     add_field(&cells->shift, RECORD_ACCELERATION, dim);
 }
 
+/* Can forces have half loops? Only force, energy and signal speed have a place for reactions. */
+static bool method_halves(const struct cells_method *method)
+{
+    return !method->div_v && !(method->conductivity > 0);
+}
+
 double cells_bytes(const struct cells_method *method, double n, double neighbours)
 {
     struct cells cells = {.method = *method};
     lay_out(&cells);
-    return n * lanes_longest_record(&cells) * (double)sizeof(double) +
+    return n * (lanes_longest_record(&cells) * (double)sizeof(double) +
+                (method_halves(method) ? reactions_bytes(method->box.dim) : 0)) +
            grid_bytes(method->box.dim, n, neighbours);
 }
 
@@ -128,7 +135,10 @@ static bool reserve_records(struct cells *cells, size_t n)
     cells->records = aligned_alloc(64, (cells->capacity * size * sizeof(double) + 63) / 64 * 64);
     cells->kinds = cells->method.local ? malloc(cells->capacity) : NULL;
     cells->paces = cells->method.local ? malloc(cells->capacity * sizeof(double)) : NULL;
-    if (!cells->records || (cells->method.local && (!cells->kinds || !cells->paces)))
+    const bool reactions =
+        !cells->halves ||
+        reactions_reserve(&cells->reactions, cells->method.box.dim, cells->capacity);
+    if (!cells->records || (cells->method.local && (!cells->kinds || !cells->paces)) || !reactions)
         cells->capacity = 0;
     return cells->capacity > 0;
 }
@@ -142,6 +152,7 @@ struct cells *cells_create(const struct cells_method *method, size_t n)
     cells->team = method->threads;
     cells->shapes = shapes_of(method->kernel, method->box.dim, method->specialised);
     cells->own_w = method->kernel->w(method->kernel, 0, method->box.dim);
+    cells->halves = method_halves(method);
     lay_out(cells);
     struct lanes_layout *const layouts[] = {&cells->density, &cells->matrix, &cells->force,
                                             &cells->shift};
@@ -169,6 +180,7 @@ void cells_destroy(struct cells *cells)
     free(cells->images.mirrored);
     free(cells->images.radius);
     for (int a = 0; a < 3; a++) free(cells->images.x[a]);
+    reactions_free(&cells->reactions);
     grid_destroy(cells->grid);
     free(cells);
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The particle sums in 2D and 3D: density, moment matrix and velocity gradient, pair forces, over
  * the neighbour lists of a grid. Every particle gathers its own sums in the order of its list, in
- * eight lanes that are added in a fixed order: results depend neither on threads nor on instruction
- * sets, and what two particles do to each other is opposite to the last bit. Each sum runs in short
- * stages over arrays that stay in the first-level cache: neighbours gathered, geometry, kernel,
- * physics. */
+ * eight lanes that are added in a fixed order; most pairs have their forces worked out once
+ * (reactions.h). Results depend neither on threads nor on instruction sets, and what two particles
+ * do to each other is opposite to the last bit. Each sum runs in short stages over arrays that stay
+ * in the first-level cache: neighbours gathered, geometry, kernel, physics. */
 #ifndef SPHPROOF_CELLS_H
 #define SPHPROOF_CELLS_H
 

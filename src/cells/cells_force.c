@@ -145,12 +145,15 @@ struct signals {
     double top[GRID_LANES], inside[GRID_LANES];
 };
 
-ALWAYS_INLINE void add_signal(struct signals *signals, int l, double r, double own_h_inverse,
-                              double h_inverse, double own_c, double c, double closing)
+ALWAYS_INLINE double add_signal(struct signals *signals, int l, double weight, double r,
+                                double own_h_inverse, double h_inverse, double own_c, double c,
+                                double closing)
 {
-    const double near = pair_within(r, own_h_inverse, h_inverse) ? 1 : 0;
-    signals->top[l] = largest(signals->top[l], near * pair_signal_speed(own_c, c, closing));
-    signals->inside[l] += near;
+    const double near = pair_within(r, own_h_inverse, h_inverse) ? 1 : 0,
+                 signal = near * pair_signal_speed(own_c, c, closing);
+    signals->top[l] = largest(signals->top[l], signal);
+    signals->inside[l] += weight * near;
+    return signal;
 }
 
 static double largest_signal(const struct signals *signals, double own_c, int64_t *pairs)
@@ -214,9 +217,11 @@ ALWAYS_INLINE void add_body(enum formulation formulation, int dim, enum energy e
                            *restrict v = pairs_theirs(pairs, RECORD_VELOCITY),
                            *restrict c = pairs_theirs(pairs, RECORD_SOUND),
                            *restrict h_inverse = pairs_theirs(pairs, RECORD_H_INVERSE);
+    double *restrict reaction = lane(lanes, LANE_REACTION);
     const double *own_v = pairs_own(pairs, RECORD_VELOCITY);
     const double own_c = *pairs_own(pairs, RECORD_SOUND),
                  own_h_inverse = *pairs_own(pairs, RECORD_H_INVERSE);
+    const double reacting = pairs->reacting, *restrict number = lane(lanes, LANE_NUMBER);
     double f[3][GRID_LANES] = {{0}}, e[GRID_LANES] = {0};
     struct signals signals = {{0}, {0}};
     for (int k = 0; k < pairs->count; k += GRID_LANES)
@@ -228,20 +233,27 @@ ALWAYS_INLINE void add_body(enum formulation formulation, int dim, enum energy e
                         : (struct pair_side){.m = m[n], .Z = Z[n], .b = b[n], .grad_h = grad_h[n]};
             const struct pair_terms p = vanilla ? pair_pressure_vanilla_ice(&own, &j, 1)
                                                 : pair_pressure_lagrangian(&own, &j, 1, 1);
-            double moved = 0;
+            double moved = 0, moved_j = 0;
             for (int axis = 0; axis < dim; axis++) {
                 const double g = G[axis * stride + n], v_j = v[axis * stride + n];
                 const struct pair_terms a =
                     vanilla ? (struct pair_terms){p.i + K[n], p.j + K[n]}
                             : (struct pair_terms){p.i * G_i[axis * stride + n] + K[n] * g,
                                                   p.j * G_j[axis * stride + n] + K[n] * g};
-                const double flux = energy == ENERGY_TOTAL ? pair_energy_flux(a, own_v[axis], v_j)
-                                                           : pair_heating(a, v_j - own_v[axis]).i;
-                f[axis][l] += vanilla ? (a.i + a.j) * g : a.i + a.j;
+                const bool total = energy == ENERGY_TOTAL;
+                const struct pair_terms heating = pair_heating(a, v_j - own_v[axis]);
+                const double flux = total ? pair_energy_flux(a, own_v[axis], v_j) : heating.i;
+                const double force = vanilla ? (a.i + a.j) * g : a.i + a.j;
+                f[axis][l] += force;
+                reaction[axis * stride + n] = -force;
                 moved += vanilla ? flux * g : flux;
+                if (!total) moved_j += vanilla ? heating.j * g : heating.j;
             }
             e[l] += moved;
-            add_signal(&signals, l, r[n], own_h_inverse, h_inverse[n], own_c, c[n], closing[n]);
+            reaction[dim * stride + n] = energy == ENERGY_TOTAL ? -moved : moved_j;
+            reaction[(dim + 1) * stride + n] =
+                add_signal(&signals, l, number[n] < reacting ? 2 : 1, r[n], own_h_inverse,
+                           h_inverse[n], own_c, c[n], closing[n]);
         }
     for (int axis = 0; axis < dim; axis++) totals->F[axis] += TREE(f[axis]);
     totals->de += TREE(e);
@@ -266,11 +278,31 @@ ADD(add_vanilla_ice, FORMULATION_VANILLA_ICE)
 ADD(add_lagrangian, FORMULATION_LAGRANGIAN)
 
 /* The largest pace among the particles of a list. */
-static double find_pace(const struct cells *cells, const struct lanes_list *list)
+static double find_pace(const struct cells *cells, const int32_t *slots, int count)
 {
     double most = 0;
-    for (int k = 0; k < list->count; k++) most = largest(most, cells->paces[list->slots[k]]);
+    for (int k = 0; k < count; k++) most = largest(most, cells->paces[slots[k]]);
     return most;
+}
+
+/* Gives the neighbours their part of what has been worked out. */
+ALWAYS_INLINE void react_body(int dim, const struct pairs *pairs, double *restrict of)
+{
+    const ptrdiff_t stride = pairs->lanes->stride;
+    const double *restrict reaction = lane(pairs->lanes, LANE_REACTION);
+    for (int k = 0; k < pairs->reacting; k++) {
+        double *to = of + (ptrdiff_t)pairs->slots[k] * (dim + 2);
+        for (int a = 0; a < dim + 1; a++) to[a] += reaction[a * stride + k];
+        to[dim + 1] = largest(to[dim + 1], reaction[(dim + 1) * stride + k]);
+    }
+}
+
+static void react(int dim, const struct pairs *pairs, double *of)
+{
+    if (dim == 2)
+        react_body(2, pairs, of);
+    else
+        react_body(3, pairs, of);
 }
 
 /* What the neighbours in the lanes do to a particle. Returns whether there was viscosity. */
@@ -299,6 +331,30 @@ static void receive(const struct cells *cells, const struct cells_fields *fields
     fields->near_pace[i] = largest(fields->near_pace[i], totals->pace);
 }
 
+static void add_received(int dim, const double *received, struct totals *totals)
+{
+    for (int a = 0; a < dim; a++) totals->F[a] += received[a];
+    totals->de += received[dim];
+    totals->signal = largest(totals->signal, received[dim + 1]);
+}
+
+/* What slots have received from the chunk before theirs. */
+static void add_spilled(const struct cells *cells, const struct cells_fields *fields)
+{
+    const struct reactions *reactions = &cells->reactions;
+    const int dim = cells->method.box.dim;
+#pragma omp parallel for num_threads(cells->team) if (cells->team > 1)
+    for (size_t c = 1; c < reactions->chunks; c++)
+        for (size_t slot = reactions->begin[c]; slot < reactions->begin[c + 1]; slot++) {
+            const double *spilled = reactions_spilled(reactions, c, slot);
+            const size_t i = cells->order[slot];
+            if (!spilled) continue;
+            for (int a = 0; a < dim; a++) fields->F[a][i] += spilled[a];
+            fields->de[i] += spilled[dim];
+            fields->signal[i] = largest(fields->signal[i], spilled[dim + 1]);
+        }
+}
+
 static void force_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
                        struct lanes *lanes)
 {
@@ -312,10 +368,22 @@ static void force_pass(struct cells *cells, const struct cells_fields *fields, s
     for (int from = 0; from < list.count; from += pairs.count) {
         pairs.count = lanes_gather_part(cells, layout, slot, &list, from, lanes);
         pairs.neighbours = list.count - from < pairs.count ? list.count - from : pairs.count;
+        pairs.reacting = list.reacting - from < pairs.count ? list.reacting - from : pairs.count;
+        pairs.slots = list.slots + from;
         viscous |= add_part(cells, &pairs, &lanes->pairs, &totals);
+        react(cells->method.box.dim, &pairs, lanes->chunk.of);
     }
     const size_t i = cells->order[slot];
-    if (fields->local) totals.pace = find_pace(cells, &list);
+    const bool halves = lanes->chunk.of != NULL;
+    if (halves)
+        add_received(cells->method.box.dim,
+                     reactions_received(&cells->reactions, &lanes->chunk, slot), &totals);
+    if (fields->local && halves) /* of all neighbours */
+        totals.pace =
+            find_pace(cells, grid_neighbours(cells->grid, &lanes->reader, cells->lists, slot),
+                      cells->lists[slot].count);
+    else if (fields->local)
+        totals.pace = find_pace(cells, list.slots, list.count);
     if (lanes_part(cells, i) != CELLS_ACTIVE) {
         if (list.count > 0) receive(cells, fields, i, &totals);
         return;
@@ -332,7 +400,13 @@ uint64_t cells_forces(struct cells *cells, const struct cells_fields *fields)
 {
     fill_records(cells, fields);
     for (int t = 0; t < cells->method.threads; t++) cells->lanes[t].pairs = 0;
-    lanes_all(cells, fields, force_pass);
+    /* with local steps particles have forces with some of their neighbours alone */
+    if (cells->halves && !(fields->local && cells->parts)) {
+        reactions_all(cells, fields, force_pass);
+        add_spilled(cells, fields);
+    } else {
+        lanes_all(cells, fields, force_pass);
+    }
     int64_t directed = 0;
     for (int t = 0; t < cells->method.threads; t++) directed += cells->lanes[t].pairs;
     return (uint64_t)directed / 2;
@@ -395,7 +469,7 @@ CLONES static double find_signal(const struct pairs *pairs)
     for (int k = 0; k < pairs->count; k += GRID_LANES)
 #pragma omp simd
         for (int l = 0; l < GRID_LANES; l++)
-            add_signal(&signals, l, r[k + l], own_h_inverse, h_inverse[k + l], own_c, c[k + l],
+            add_signal(&signals, l, 1, r[k + l], own_h_inverse, h_inverse[k + l], own_c, c[k + l],
                        closing[k + l]);
     return largest_signal(&signals, own_c, &inside);
 }

@@ -26,9 +26,9 @@ bool lanes_reserve(struct cells *cells)
     for (int t = 0; t < cells->method.threads; t++) {
         struct lanes *lanes = &cells->lanes[t];
         if (!grid_reader_reserve(cells->grid, &lanes->reader)) return false;
-        if (cells->parts && lanes->room < stride) {
+        if ((cells->parts || cells->halves) && lanes->room < 2 * (stride + 16)) {
             free(lanes->slots);
-            lanes->room = stride + stride / 2;
+            lanes->room = 3 * (stride + 16);
             lanes->slots = malloc((size_t)lanes->room * sizeof *lanes->slots);
             if (!lanes->slots) return false;
         }
@@ -39,7 +39,10 @@ bool lanes_reserve(struct cells *cells)
         lanes->block = aligned_alloc(64, (size_t)(LANES_OWN + lanes_longest_record(cells)) *
                                              (size_t)lanes->stride * sizeof(double));
         if (!lanes->block) return false;
-        for (ptrdiff_t k = 0; k < lanes->stride; k++) lane(lanes, LANE_ONE)[k] = 1;
+        for (ptrdiff_t k = 0; k < lanes->stride; k++) {
+            lane(lanes, LANE_ONE)[k] = 1;
+            lane(lanes, LANE_NUMBER)[k] = (double)k;
+        }
     }
     return true;
 }
@@ -159,7 +162,8 @@ struct lanes_list lanes_partners(const struct cells *cells, size_t slot, struct 
 {
     const int32_t *slots = grid_neighbours(cells->grid, &lanes->reader, cells->lists, slot);
     const int32_t count = cells->lists[slot].count;
-    if (!cells->parts) return (struct lanes_list){slots, count};
+    if (lanes->chunk.of) return reactions_partners(cells, slot, slots, count, lanes);
+    if (!cells->parts) return (struct lanes_list){slots, count, 0};
     const unsigned char *kinds = cells->kinds;
     const bool active = kinds[slot] == CELLS_ACTIVE;
     int kept = 0;
@@ -178,7 +182,7 @@ struct lanes_list lanes_partners(const struct cells *cells, size_t slot, struct 
             kept += active ? kind != CELLS_SUMMED : kind == CELLS_ACTIVE;
         }
     for (int k = kept; k < whole_vectors(kept); k++) lanes->slots[k] = (int32_t)cells->points;
-    return (struct lanes_list){lanes->slots, kept};
+    return (struct lanes_list){lanes->slots, kept, 0};
 }
 
 /* Bytes of lanes that the first-level cache holds beside records. */

@@ -6,6 +6,7 @@
 
 #include "cells.h"
 #include "gather.h"
+#include "reactions.h"
 #include "shapes.h"
 #include "width.h"
 
@@ -51,7 +52,8 @@ struct lanes_layout {
 
 /* Arrays of the lanes that loops make. */
 enum lanes_array {
-    LANE_ONE, /* 1 everywhere */
+    LANE_ONE,    /* 1 everywhere */
+    LANE_NUMBER, /* 0, 1, 2 ... */
     LANE_DX,  /* r_j - r_i */
     LANE_DY,
     LANE_DZ,
@@ -75,7 +77,9 @@ enum lanes_array {
     LANE_GX_J,
     LANE_GY_J,
     LANE_GZ_J,
-    LANES_OWN
+    LANES_OWN,
+    LANE_REACTION = LANE_SLOPE_I /* what neighbours get: force, energy, signal speed; once slopes, q
+                                    and what is spare are not needed any more */
 };
 
 struct lanes {
@@ -85,7 +89,8 @@ struct lanes {
     struct cells_left_out left_out;
     struct grid_reader reader;
     int32_t *slots; /* a list without inactive particles, used instead of the grid's */
-    ptrdiff_t room; /* entries */
+    ptrdiff_t room; /* entries, of two such lists */
+    struct reactions_chunk chunk;
 };
 
 /* A search for widths: what each thread reads of it. */
@@ -108,6 +113,7 @@ struct cells {
         *kinds;     /* by slot: the part; while pairs are corrected, levels before and after */
     double *paces;  /* by slot */
     int pair_level; /* of the pairs that are corrected; -1: none are */
+    bool halves;    /* forces by half loops */
     size_t points;  /* particles and their mirror images: slots run over both */
     /* of the grid's last search */
     const struct grid_list *lists;
@@ -125,6 +131,7 @@ struct cells {
     struct lanes_layout density, matrix, force, shift; /* shift: of the switch */
     struct lanes *lanes;                               /* of each thread */
     struct lanes_newton newton;
+    struct reactions reactions;
 };
 
 /* An array of the thread's own, or a value of the gathered records. */
@@ -184,6 +191,7 @@ int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, s
 struct lanes_list {
     const int32_t *slots;
     int count;
+    int reacting; /* the first ones, which get a reaction; with half loops alone */
 };
 
 /* Those of a slot's list that it has forces with. */

@@ -12,6 +12,8 @@ struct pairs {
     const struct lanes *lanes;
     const struct lanes_layout *layout;
     const double *record; /* of the particle itself */
+    int reacting;         /* the first lanes, whose neighbours get a reaction */
+    const int32_t *slots; /* of the lanes */
 };
 
 /* The particle's own value or values of a field that its records have. */

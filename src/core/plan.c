@@ -147,7 +147,7 @@ size_t plan_explain(const struct setup *setup, struct plan_line *lines, size_t m
          "no viscosity needs it");
     line(&writer, "pair forces", true,
          setup->dim == 1 ? "half loop, antisymmetric fluxes"
-                         : "each pair from both sides, opposite to the last bit",
+                         : "most pairs once, for both particles, opposite to the last bit",
          "");
     line(&writer, "artificial viscosity", plan.viscosity, "inside the pair loop", "viscosity=none");
     line(&writer, "evolution of alpha", plan.alpha || plan.jump,

@@ -56,7 +56,11 @@ static void draw_pairs(int unsound, int steep)
     for (int k = 0; k < (LANES_OWN + RECORD_MAX) * STRIDE; k++)
         drawn.block[k] = untouched(k / STRIDE);
     drawn.lanes = (struct lanes){.block = drawn.block, .stride = STRIDE};
-    drawn.pairs = (struct pairs){COUNT, COUNT, &drawn.lanes, &drawn.cells->force, drawn.record};
+    drawn.pairs = (struct pairs){.count = COUNT,
+                                 .neighbours = COUNT,
+                                 .lanes = &drawn.lanes,
+                                 .layout = &drawn.cells->force,
+                                 .record = drawn.record};
     *own(RECORD_H_INVERSE) = draw(0.8, 1.5);
     for (int k = 0; k < COUNT; k++) {
         real r2 = 0;

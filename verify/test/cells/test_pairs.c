@@ -67,7 +67,11 @@ static void make(struct drawn *drawn, const struct cells_method *method)
     assert_true(drawn->cells->force.size <= 64);
     assert_non_null(drawn->lanes.block = malloc(n * sizeof(double)));
     drawn->lanes.stride = ROOM;
-    drawn->pairs = (struct pairs){COUNT, COUNT, &drawn->lanes, &drawn->cells->force, drawn->record};
+    drawn->pairs = (struct pairs){.count = COUNT,
+                                  .neighbours = COUNT,
+                                  .lanes = &drawn->lanes,
+                                  .layout = &drawn->cells->force,
+                                  .record = drawn->record};
     for (size_t i = 0; i < n; i++) drawn->lanes.block[i] = draw(-1, 1);
     for (int i = 0; i < 64; i++) drawn->record[i] = draw(-1, 1);
     fill(drawn, RECORD_WEIGHT, 1, 0.5, 2);

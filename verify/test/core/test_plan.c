@@ -84,9 +84,10 @@ static void is_true(const struct run *run, const struct plan_line *line)
                                            ? "inside the Newton iteration"
                                            : "one a step");
     if (strcmp(line->pass, "pair forces") == 0)
-        assert_string_equal(line->why, run->asked.file.dimension == 1
-                                           ? "half loop, antisymmetric fluxes"
-                                           : "each pair from both sides, opposite to the last bit");
+        assert_string_equal(line->why,
+                            run->asked.file.dimension == 1
+                                ? "half loop, antisymmetric fluxes"
+                                : "most pairs once, for both particles, opposite to the last bit");
     if (strstr(line->why, "alpha_u > 0")) assert_true(run->scheme.alpha_u > 0);
     if (strstr(line->why, "alpha is constant"))
         assert_true(run->scheme.viscosity != VISCOSITY_TIME_DEPENDENT &&
