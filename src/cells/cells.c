@@ -301,14 +301,15 @@ enum status cells_arrange(struct cells *cells, const struct cells_fields *fields
     return STATUS_OK;
 }
 
-/* From slot a to slot b, the nearest image. */
-static double separate(const struct cells *cells, size_t a, size_t b, double x[3])
+/* From slot a to slot b, the nearest image where images matter. */
+ALWAYS_INLINE double separate(int dim, bool wrapped, const struct cells *cells, size_t a, size_t b,
+                              double x[3])
 {
     double r2 = 0;
-    for (int k = 0; k < cells->method.box.dim; k++) {
+    for (int k = 0; k < dim; k++) {
         const double side = cells->side[k];
         x[k] = cells->place[b][k] - cells->place[a][k];
-        if (side < HUGE_VAL) x[k] -= side * round(x[k] / side);
+        if (wrapped && side < HUGE_VAL) x[k] -= side * round(x[k] / side);
         r2 += x[k] * x[k];
     }
     return r2;
@@ -325,30 +326,41 @@ static double condition_of(const struct cells *cells, const struct cells_fields 
     return matrix_condition(dim, C); /* that of the matrix, too */
 }
 
-static struct description describe(const struct cells *cells, const struct cells_fields *fields,
-                                   size_t slot, size_t i)
+ALWAYS_INLINE void describe_neighbours(int dim, const struct cells *cells, size_t slot,
+                                       double h_inverse, const double C[CELLS_SQUARE], bool used,
+                                       struct description *of)
 {
-    const int dim = cells->method.box.dim;
     const struct grid_list *list = &cells->lists[slot];
     const int32_t *slots = /* who sleeps has no list */
         list->kept ? grid_neighbours(cells->grid, &cells->lanes[0].reader, cells->lists, slot)
                    : NULL;
-    double C[CELLS_SQUARE], cotangent = HUGE_VAL;
-    struct description of = {.neighbours = 1, .condition = condition_of(cells, fields, i, C)};
-    const bool used = of.condition <= cells->method.worst_condition;
+    const bool wrapped = list->wrapped;
+    double cotangent = HUGE_VAL;
     for (int32_t k = 0; k < list->count; k++) {
         double x[3], Cx[3];
-        const double r2 = separate(cells, slot, (size_t)slots[k], x);
-        if (!(sqrt(r2) * fields->h_inverse[i] < 1)) continue;
-        of.neighbours++;
+        const double r2 = separate(dim, wrapped, cells, slot, (size_t)slots[k], x);
+        if (!(sqrt(r2) * h_inverse < 1)) continue;
+        of->neighbours++;
         if (!used) continue;
         for (int a = 0; a < dim; a++) {
             Cx[a] = 0;
             for (int b = 0; b < dim; b++) Cx[a] += C[a * dim + b] * x[b];
         }
-        cotangent = fmin(cotangent, description_cotangent(dim, Cx, x));
+        cotangent = description_cotangent(dim, Cx, x, cotangent);
     }
-    of.angle = used && of.neighbours > 1 ? description_angle(cotangent) : nan("");
+    of->angle = used && of->neighbours > 1 ? description_angle(cotangent) : nan("");
+}
+
+static struct description describe(const struct cells *cells, const struct cells_fields *fields,
+                                   size_t slot, size_t i)
+{
+    double C[CELLS_SQUARE];
+    struct description of = {.neighbours = 1, .condition = condition_of(cells, fields, i, C)};
+    const bool used = of.condition <= cells->method.worst_condition;
+    if (cells->method.box.dim == 2)
+        describe_neighbours(2, cells, slot, fields->h_inverse[i], C, used, &of);
+    else
+        describe_neighbours(3, cells, slot, fields->h_inverse[i], C, used, &of);
     return of;
 }
 

@@ -39,8 +39,9 @@ struct description_sums {
 struct description_sums description_sum(struct simulation *simulation);
 
 /* For the sums: the angle between a and b, as its cotangent, which falls from infinity to minus
- * infinity; infinity where one of them is 0. */
-static inline double description_cotangent(int dim, const double *a, const double *b)
+ * infinity; infinity where one of them is 0. The least of it and of what others have: mostly that
+ * is seen without a root. */
+static inline double description_cotangent(int dim, const double *a, const double *b, double others)
 {
     double dot = 0, cross2 = 0;
     for (int i = 0; i < dim; i++) {
@@ -50,8 +51,10 @@ static inline double description_cotangent(int dim, const double *a, const doubl
             cross2 += turn * turn;
         }
     }
-    if (cross2 > 0) return dot / sqrt(cross2);
-    return dot < 0 ? -HUGE_VAL : HUGE_VAL;
+    if (dot > 0 && (others <= 0 || dot * dot > others * others * cross2 * (1 + 1e-9)))
+        return others;
+    const double cotangent = cross2 > 0 ? dot / sqrt(cross2) : dot < 0 ? -HUGE_VAL : HUGE_VAL;
+    return cotangent < others ? cotangent : others;
 }
 
 /* Of that, the angle in degrees. */

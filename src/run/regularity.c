@@ -38,11 +38,11 @@ static void see(const struct regularity_cloud *cloud, struct place *place, size_
     double square = 0;
     for (int d = 0; d < dim; d++) square += delta[d] * delta[d];
     const double r = sqrt(square);
-    place->nearest = fmin(place->nearest, r);
+    if (r < place->nearest) place->nearest = r;
     if (!(r < h)) return;
     place->sum += V * kernel_value(cloud->kernel, r, h, dim);
-    for (int d = 0; d < dim && r > 0; d++)
-        place->to[d] += V * h * kernel_dr(cloud->kernel, r, h, dim) * delta[d] / r;
+    const double slope = r > 0 ? V * h * kernel_dr(cloud->kernel, r, h, dim) : 0;
+    for (int d = 0; d < dim && r > 0; d++) place->to[d] += slope * delta[d] / r;
 }
 
 static bool is_whole(const struct regularity_cloud *cloud, size_t i)
@@ -78,16 +78,18 @@ static void add_slot(struct sums *sums, const struct grid *grid, struct grid_rea
     const struct grid_list *lists = grid_lists(grid);
     const int32_t count = lists[slot].count, *slots = grid_neighbours(grid, reader, lists, slot);
     const double(*position)[3] = grid_positions(grid);
+    const uint32_t *order = grid_order(grid);
+    double side[3];
+    for (int d = 0; d < cloud->box.dim; d++) side[d] = lists[slot].wrapped ? grid_side(grid, d) : 0;
     struct place place = place_of(cloud, grid_order(grid)[slot], widest);
     for (int32_t k = 0; k < count; k++) {
         const size_t other = (size_t)slots[k];
         double delta[3];
         for (int d = 0; d < cloud->box.dim; d++) {
-            const double side = grid_side(grid, d);
             delta[d] = position[slot][d] - position[other][d];
-            if (side > 0) delta[d] -= side * round(delta[d] / side);
+            if (side[d] > 0) delta[d] -= side[d] * round(delta[d] / side[d]);
         }
-        see(cloud, &place, grid_order(grid)[other], delta);
+        see(cloud, &place, order[other], delta);
     }
     add(sums, &place);
 }
