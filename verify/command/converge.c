@@ -51,16 +51,16 @@ static void print_ladder(const struct study *study, const struct study_result *r
 static void print_gate(const struct study_result *result, const struct study_order *order,
                        const struct table_style *style)
 {
-    const bool good = order->status == GATE_PASS, known = order->status == GATE_KNOWN;
-    if (order->status == GATE_NONE) return;
+    const bool good = order->status == FINDING_PASS, known = order->status == FINDING_KNOWN;
+    if (order->status == FINDING_NONE) return;
     printf("    gate: ");
     if (isfinite(order->gate.low)) printf("order in [%g, %g], ", order->gate.low, order->gate.high);
     printf("error at n = %zu ", result->levels[result->level_count - 1].n);
     if (order->least > 0) printf("at least %.3g, ", order->least);
-    const char *color = good                          ? style->good
-                        : order->status >= GATE_SMOKE ? style->faint
-                                                      : style->bad;
-    printf("at most %.3g: %s%s%s%s%s\n", order->gate.bound, color, gate_names[order->status],
+    const char *color = good                             ? style->good
+                        : order->status >= FINDING_SMOKE ? style->faint
+                                                         : style->bad;
+    printf("at most %.3g: %s%s%s%s%s\n", order->gate.bound, color, finding_words[order->status],
            style->end, good ? "" : ": ", order->why);
     if (known) printf("    known: %s\n", order->known);
 }
@@ -73,7 +73,7 @@ static void print_orders(const struct case_file *file, const struct study_result
     for (int field = 0; field < FIELDS; field++)
         for (int norm = 0; norm < NORMS; norm++) {
             const struct study_order *order = &result->orders[field][norm];
-            if (order->status == GATE_NONE && (norm != NORM_L1 || !measured(file, result, field)))
+            if (order->status == FINDING_NONE && (norm != NORM_L1 || !measured(file, result, field)))
                 continue;
             char name[40];
             snprintf(name, sizeof name, "%s_%s", field_family.members[field]->name,
@@ -140,13 +140,13 @@ static void print_budget(const struct study_result *result, const struct table_s
         printf("\n");
     }
     if (isnan(result->still)) return;
-    const bool good = result->still_status != GATE_FAIL;
+    const bool good = result->still_status != FINDING_FAIL;
     printf("still gas stays still: |v - v0| <= %.2g c far ahead of every wave (allowed: %g): "
            "%s%s%s\n",
            result->still, STUDY_STILL_BOUND, good ? style->good : style->bad,
-           result->still_status == GATE_NONE ? "not judged, the start is random"
-           : good                            ? "pass"
-                                             : "FAIL",
+           result->still_status == FINDING_NONE ? "not judged, the start is random"
+           : good                               ? "pass"
+                                                : "FAIL",
            style->end);
 }
 

@@ -189,16 +189,16 @@ static void print_together(const json_t *document, const struct table_style *sty
     }
     json_array_foreach(gates, k, gate) {
         const char *status = value_text(gate, "status"), *why = value_text(gate, "why");
-        const char *color = !strcmp(status, gate_names[GATE_PASS])   ? style->good
-                            : !strcmp(status, gate_names[GATE_FAIL]) ? style->bad
-                                                                     : style->faint;
+        const char *color = !strcmp(status, finding_words[FINDING_PASS])   ? style->good
+                            : !strcmp(status, finding_words[FINDING_FAIL]) ? style->bad
+                                                                           : style->faint;
         printf("gate %-28s %.6g %s %.6g: %s%s%s%s%s  %s%s%s\n", value_text(gate, "name"),
                value_member(gate, "value"), value_text(gate, "relation"),
                value_member(gate, "bound"), color, status, style->end, *why ? ", " : "", why,
                style->faint, value_text(gate, "source"), style->end);
     }
     if (json_array_size(gates)) {
-        const bool well = !strcmp(value_text(document, "status"), gate_names[GATE_PASS]);
+        const bool well = !strcmp(value_text(document, "status"), finding_words[FINDING_PASS]);
         printf("%s%s%s\n", well ? style->good : style->bad, value_text(document, "headline"),
                style->end);
     }
@@ -262,7 +262,7 @@ static enum status tell(const struct options *options, const struct judged *judg
         json_decref(document);
     }
     if (!status && plot) status = run_plot(&main->run.asked, &main->result, plot, NULL, error);
-    if (!status && strcmp(value_text(content, "status"), gate_names[GATE_PASS]) != 0)
+    if (!status && strcmp(value_text(content, "status"), finding_words[FINDING_PASS]) != 0)
         status = STATUS_CHECK_FAILED;
     json_decref(content);
     return status;

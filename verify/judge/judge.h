@@ -97,7 +97,7 @@ json_t *judge_orders(const struct judged *judged, size_t n);
  * case's own bounds at this many particles, its orders where there are enough of them, and
  * conservation. [{"name", "relation": "<=" or ">=", "value", "bound", "status", "source"}], of
  * orders also "low" and "high", of what does not simply pass or fail "why". status: one of
- * gate_names; an order whose interval reaches across its bound is undetermined. New reference.
+ * finding_words; an order whose interval reaches across its bound is undetermined. New reference.
  * STATUS_BAD_INPUT: nothing is called so, or the case's gates do not hold for this snapshot. */
 #define JUDGE_ASKED "--gate" /* the source of what is asked */
 enum status judge_gates(const char *asked, bool of_case, const struct judged *judged, size_t n,

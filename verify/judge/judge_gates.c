@@ -79,10 +79,10 @@ static json_t *figures_of(const struct judged *judged, size_t n)
 
 /* ---- one gate ---- */
 
-static enum study_gate compare(double low, double high, bool least, double bound)
+static enum finding_status compare(double low, double high, bool least, double bound)
 {
-    if (least ? low >= bound : high <= bound) return GATE_PASS;
-    return (least ? high >= bound : low <= bound) ? GATE_UNDETERMINED : GATE_FAIL;
+    if (least ? low >= bound : high <= bound) return FINDING_PASS;
+    return (least ? high >= bound : low <= bound) ? FINDING_UNDETERMINED : FINDING_FAIL;
 }
 
 static json_t *gate_json(const char *name, const json_t *figure, bool least, double bound,
@@ -92,21 +92,22 @@ static json_t *gate_json(const char *name, const json_t *figure, bool least, dou
     const double value = order ? value_member(figure, "order") : value_real(figure),
                  low = order ? value_member(figure, "low") : value,
                  high = order ? value_member(figure, "high") : value;
-    enum study_gate status = compare(low, high, least, bound);
+    enum finding_status status = compare(low, high, least, bound);
     char why[GATE_WHY] = "";
     if (order && isnan(low)) {
-        status = GATE_UNDETERMINED;
+        status = FINDING_UNDETERMINED;
         snprintf(why, sizeof why, "an interval needs %d numbers of particles, there are %zu",
                  ORDER_LEVELS_MIN, json_array_size(json_object_get(figure, "pairwise")) + 1);
         if (json_is_number(json_object_get(figure, "order")))
             snprintf(why, sizeof why, "errors that have no order");
-    } else if (status == GATE_UNDETERMINED) {
+    } else if (status == FINDING_UNDETERMINED) {
         snprintf(why, sizeof why, "the order is %.3f, its 95 %% interval %.3f to %.3f", value, low,
                  high);
     }
-    json_t *gate = json_pack("{s:s, s:s, s:o, s:o, s:s, s:s}", "name", name, "relation",
-                             least ? ">=" : "<=", "value", result_number(value), "bound",
-                             result_number(bound), "status", gate_names[status], "source", source);
+    json_t *gate =
+        json_pack("{s:s, s:s, s:o, s:o, s:s, s:s}", "name", name, "relation",
+                  least ? ">=" : "<=", "value", result_number(value), "bound", result_number(bound),
+                  "status", finding_words[status], "source", source);
     if (order) {
         json_object_set_new(gate, "low", result_number(low));
         json_object_set_new(gate, "high", result_number(high));
@@ -243,8 +244,8 @@ static void add_case(const struct judged *main, const json_t *figures, json_t *g
             continue;
         snprintf(text, sizeof text, "case %s: its ladder's order", file->name);
         json_t *found = gate_json(name, order, true, gate->gate.low, text);
-        if (*gate->known.why && strcmp(value_text(found, "status"), gate_names[GATE_PASS])) {
-            json_object_set_new(found, "status", json_string(gate_names[GATE_KNOWN]));
+        if (*gate->known.why && strcmp(value_text(found, "status"), finding_words[FINDING_PASS])) {
+            json_object_set_new(found, "status", json_string(finding_words[FINDING_KNOWN]));
             json_object_set_new(found, "why", json_string(gate->known.why));
         }
         json_array_append_new(gates, found);

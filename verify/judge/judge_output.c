@@ -77,7 +77,7 @@ static void add_gate(json_t *findings, const json_t *gate)
 {
     const char *name = value_text(gate, "name"), *why = value_text(gate, "why"),
                *relation = value_text(gate, "relation"), *status = value_text(gate, "status");
-    const bool untold = !strcmp(status, gate_names[GATE_UNDETERMINED]),
+    const bool untold = !strcmp(status, finding_words[FINDING_UNDETERMINED]),
                asked = !strcmp(value_text(gate, "source"), JUDGE_ASKED);
     char text[400];
     if (untold)
@@ -85,9 +85,9 @@ static void add_gate(json_t *findings, const json_t *gate)
                  why);
     else
         snprintf(text, sizeof text, "%s %.3g is %s%s %.3g%s%s", name, value_member(gate, "value"),
-                 strcmp(status, gate_names[GATE_FAIL]) ? "" : "not ", relation,
+                 strcmp(status, finding_words[FINDING_FAIL]) ? "" : "not ", relation,
                  value_member(gate, "bound"), *why ? "; " : "", why);
-    add_finding(findings, name, untold && asked ? gate_names[GATE_FAIL] : status, text);
+    add_finding(findings, name, untold && asked ? finding_words[FINDING_FAIL] : status, text);
 }
 
 /* One of each snapshot and of each gate; and a judgement that compared nothing is not well. */
@@ -99,15 +99,16 @@ static json_t *findings_json(const struct judged *judged, size_t n, const json_t
     size_t i;
     for (i = 0; i < n; i++)
         add_finding(findings, judged[i].path,
-                    gate_names[!judged[i].passes  ? GATE_FAIL
-                               : judged[i].silent ? GATE_UNDETERMINED
-                                                  : GATE_PASS],
+                    finding_words[!judged[i].passes  ? FINDING_FAIL
+                                  : judged[i].silent ? FINDING_UNDETERMINED
+                                                     : FINDING_PASS],
                     judged[i].verdict);
     json_array_foreach(gates, i, gate) add_gate(findings, gate);
     json_array_foreach(findings, i, finding)
-        told |= strcmp(value_text(finding, "status"), gate_names[GATE_UNDETERMINED]) != 0;
+        told |= strcmp(value_text(finding, "status"), finding_words[FINDING_UNDETERMINED]) != 0;
     if (!told)
-        add_finding(findings, "comparison", gate_names[GATE_FAIL], "nothing could be compared");
+        add_finding(findings, "comparison", finding_words[FINDING_FAIL],
+                    "nothing could be compared");
     return findings;
 }
 
@@ -122,9 +123,9 @@ static void add_conclusion(json_t *document, const json_t *findings, size_t snap
     json_array_foreach(findings, i, finding) {
         const char *status = value_text(finding, "status");
         const bool gate = i >= snapshots && i < snapshots + gates,
-                   fails = !strcmp(status, gate_names[GATE_FAIL]);
+                   fails = !strcmp(status, finding_words[FINDING_FAIL]);
         good &= !fails;
-        silent += gate && !fails && strcmp(status, gate_names[GATE_PASS]) != 0;
+        silent += gate && !fails && strcmp(status, finding_words[FINDING_PASS]) != 0;
         if (gate && fails && used < sizeof failing)
             used += (size_t)snprintf(failing + used, sizeof failing - used, "%s%s",
                                      failed ? ", " : "", value_text(finding, "message"));
@@ -138,7 +139,8 @@ static void add_conclusion(json_t *document, const json_t *findings, size_t snap
         used = (size_t)snprintf(text, sizeof text, "%zu of %zu gates pass, %zu cannot tell; ",
                                 gates - silent, gates, silent);
     snprintf(text + used, sizeof text - used, "%s", main->verdict);
-    json_object_set_new(document, "status", json_string(gate_names[good ? GATE_PASS : GATE_FAIL]));
+    json_object_set_new(document, "status",
+                        json_string(finding_words[good ? FINDING_PASS : FINDING_FAIL]));
     json_object_set_new(document, "headline", json_string(text));
 }
 

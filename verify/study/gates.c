@@ -16,8 +16,6 @@ static const double coarse_part = 0.25;
 /* An order that is known to no more than this does not tell convergence from none. */
 static const double open_width = 1;
 
-const char *const gate_names[] = {"none", "pass", "fail", "known", "smoke", "undetermined"};
-
 double gates_raise(const struct case_file *file, const struct case_gate *gate, size_t n)
 {
     if (!file->ladder_count) return 1;
@@ -33,8 +31,9 @@ bool gates_know(const struct case_weakness *known, double raise, double error)
     return isnan(known->bound) ? isnan(error) : error <= known->bound * raise;
 }
 
-enum study_gate gates_weigh(const struct case_file *file, const struct case_gate *gate, size_t n,
-                            double bound, double exact, const struct order_fit *fit, char *why)
+enum finding_status gates_weigh(const struct case_file *file, const struct case_gate *gate,
+                                size_t n, double bound, double exact, const struct order_fit *fit,
+                                char *why)
 {
     const double asked = gate->gate.low;
     const bool ordered = isfinite(gate->gate.high);
@@ -42,18 +41,18 @@ enum study_gate gates_weigh(const struct case_file *file, const struct case_gate
     if (file->ladder_count && n <= file->ladder[0] && (ordered || asked > 0)) {
         snprintf(why, GATE_WHY, "too coarse to say: n = %zu, and the case's ladder begins at %zu",
                  n, file->ladder[0]);
-        return GATE_SMOKE;
+        return FINDING_SMOKE;
     }
     if (fabs(exact) > 0 && bound > coarse_part * fabs(exact)) {
         snprintf(why, GATE_WHY, "too coarse to say: an error of %.2g of the exact value is allowed",
                  bound / fabs(exact));
-        return GATE_SMOKE;
+        return FINDING_SMOKE;
     }
     const double allowed = ordered ? gate->gate.high - asked : open_width;
-    if (!fit || !(ordered || asked > 0) || fit->high - fit->low <= allowed) return GATE_PASS;
+    if (!fit || !(ordered || asked > 0) || fit->high - fit->low <= allowed) return FINDING_PASS;
     snprintf(why, GATE_WHY, "the order is known to +-%.2g only, the gate is +-%.2g wide",
              (fit->high - fit->low) / 2, allowed / 2);
-    return GATE_UNDETERMINED;
+    return FINDING_UNDETERMINED;
 }
 
 void gates_compare(struct case_file *file)
@@ -73,16 +72,16 @@ void gates_compare(struct case_file *file)
 
 /* Takes the name over. weighed: what is said of an error that passes, with its reason. */
 static json_t *weighed_json(json_t *name, double value, double bound,
-                            const struct case_weakness *known, enum study_gate weighed,
+                            const struct case_weakness *known, enum finding_status weighed,
                             const char *why)
 {
-    const enum study_gate status = value <= bound                ? weighed
-                                   : gates_know(known, 1, value) ? GATE_KNOWN
-                                                                 : GATE_FAIL;
+    const enum finding_status status = value <= bound                ? weighed
+                                       : gates_know(known, 1, value) ? FINDING_KNOWN
+                                                                     : FINDING_FAIL;
     json_t *gate = json_pack("{s:o, s:o, s:o, s:s}", "name", name, "value", result_number(value),
-                             "bound", result_number(bound), "status", gate_names[status]);
-    if (status == GATE_KNOWN) json_object_set_new(gate, "known", json_string(known->why));
-    if (status == GATE_SMOKE) json_object_set_new(gate, "why", json_string(why));
+                             "bound", result_number(bound), "status", finding_words[status]);
+    if (status == FINDING_KNOWN) json_object_set_new(gate, "known", json_string(known->why));
+    if (status == FINDING_SMOKE) json_object_set_new(gate, "why", json_string(why));
     return gate;
 }
 
@@ -115,7 +114,7 @@ json_t *gates_error(const struct case_file *file, const struct case_gate *gate, 
     char why[GATE_WHY];
     json_t *name = read_error(gate, run, &value, &exact);
     known.bound *= raise;
-    const enum study_gate weighed = gates_weigh(file, gate, n, bound, exact, NULL, why);
+    const enum finding_status weighed = gates_weigh(file, gate, n, bound, exact, NULL, why);
     return name ? weighed_json(name, value, bound, &known, weighed, why) : NULL;
 }
 
@@ -154,7 +153,7 @@ static void add_conserved(const char *name, const json_t *run, json_t *list)
     const struct case_weakness none = {.bound = 0};
     const double value = value_member(json_object_get(run, "conservation"), name);
     json_array_append_new(
-        list, weighed_json(json_string(name), value, conserved_bound, &none, GATE_PASS, ""));
+        list, weighed_json(json_string(name), value, conserved_bound, &none, FINDING_PASS, ""));
 }
 
 void gates_add_conserved(const json_t *run, json_t *list)

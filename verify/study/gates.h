@@ -7,23 +7,19 @@
 #include <jansson.h>
 
 #include "cases.h"
-
-/* What a gate says. NONE: there is no gate. KNOWN: fails, as the case says that it does. Of those
- * that pass, SMOKE ones have too coarse a run to say more than that nothing is broken, and
- * UNDETERMINED ones an order whose interval is wider than the gate: neither counts as judged. */
-enum study_gate { GATE_NONE, GATE_PASS, GATE_FAIL, GATE_KNOWN, GATE_SMOKE, GATE_UNDETERMINED };
-extern const char *const gate_names[]; /* as results write them */
+#include "finding.h"
 
 /* Of a gate that passes: PASS, SMOKE or UNDETERMINED. Too coarse is a bound that was raised for a
  * run no finer than the coarsest level of the case's own ladder, and one that allows more than a
  * quarter of the exact value. n: particles; bound: as raised; exact: the value, NaN of a field;
  * fit: NULL of one run alone. why: of GATE_WHY bytes, "" for PASS. */
 enum { GATE_WHY = ORDER_GATE_TEXT };
-enum study_gate gates_weigh(const struct case_file *file, const struct case_gate *gate, size_t n,
-                            double bound, double exact, const struct order_fit *fit, char *why);
+enum finding_status gates_weigh(const struct case_file *file, const struct case_gate *gate,
+                                size_t n, double bound, double exact, const struct order_fit *fit,
+                                char *why);
 
-/* What a gate's bound is multiplied by for a level of n particles: at the case's own finest level 1,
- * beyond it what [finer] says (else 1), below it as the least order allows. */
+/* What a gate's bound is multiplied by for a level of n particles: at the case's own finest level
+ * 1, beyond it what [finer] says (else 1), below it as the least order allows. */
 double gates_raise(const struct case_file *file, const struct case_gate *gate, size_t n);
 
 /* Is an error that fails a gate the weakness that is known? raise: of its bound, see gates_raise.

@@ -41,7 +41,7 @@ struct study_level {
 
 struct study_order {
     struct order_fit fit;
-    enum study_gate status;
+    enum finding_status status;
     struct order_gate gate;    /* bound: at the ladder's finest level; see study_judge */
     double least;              /* of the error there, see cases.h; 0: none */
     char why[ORDER_GATE_TEXT]; /* the condition that fails; why it says little */
@@ -68,7 +68,7 @@ struct study_result {
     double floor_density, floor_gradient; /* lattice sums of kernel and eta, relative */
     bool floor_explains;                  /* a failed order is of the size of the floor */
     double still;                         /* largest of the levels' budgets; NaN: none */
-    enum study_gate still_status;
+    enum finding_status still_status;
     char suspicion[SUSPICION_TEXT]; /* "" if nothing is too good to be true */
 };
 

@@ -159,11 +159,11 @@ static void judge_gates(struct study_result *result, const struct case_file *fil
         order->status = passes(gate, order)
                             ? gates_weigh(file, gate, finest->n, order->gate.bound,
                                           exact_of(result, gate), &order->fit, order->why)
-                            : GATE_FAIL;
+                            : FINDING_FAIL;
         order->known = gate->known.why;
-        if (order->status == GATE_FAIL && is_known(file, gate, finest->n, order))
-            order->status = GATE_KNOWN;
-        if (order->status != GATE_FAIL) continue;
+        if (order->status == FINDING_FAIL && is_known(file, gate, finest->n, order))
+            order->status = FINDING_KNOWN;
+        if (order->status != FINDING_FAIL) continue;
         result->status = STATUS_CHECK_FAILED;
         result->floor_explains |= of_ours && isfinite(gate->gate.high) &&
                                   !(order->fit.order >= order->gate.low) &&
@@ -179,8 +179,8 @@ static void judge_stillness(struct study_result *result)
         if (result->levels[l].budget.regions)
             result->still = fmax(result->still, result->levels[l].budget.still);
     if (isnan(result->still) || study_is_random(&result->settings)) return;
-    result->still_status = result->still <= STUDY_STILL_BOUND ? GATE_PASS : GATE_FAIL;
-    if (result->still_status == GATE_FAIL) result->status = STATUS_CHECK_FAILED;
+    result->still_status = result->still <= STUDY_STILL_BOUND ? FINDING_PASS : FINDING_FAIL;
+    if (result->still_status == FINDING_FAIL) result->status = STATUS_CHECK_FAILED;
 }
 
 static void suspect(struct study_result *result, const struct case_file *file)

@@ -58,20 +58,21 @@ static json_t *order_json(const struct study_order *order, const char *what, con
     json_t *pairwise = json_array(), *gate = json_null();
     for (size_t i = 0; i + 1 < order->fit.n; i++)
         json_array_append_new(pairwise, result_number(order->fit.pairwise[i]));
-    if (order->status != GATE_NONE)
+    if (order->status != FINDING_NONE)
         gate =
             json_pack("{s:o, s:o, s:o}", "low", result_number(order->gate.low), "high",
                       result_number(order->gate.high), "bound", result_number(order->gate.bound));
-    if (order->status != GATE_NONE && order->least > 0)
+    if (order->status != FINDING_NONE && order->least > 0)
         json_object_set_new(gate, "least", result_number(order->least));
     json_t *item = json_pack("{s:s, s:s, s:o, s:o, s:o, s:o, s:s, s:o, s:s}", "field", what, "norm",
                              norm, "order", result_number(order->fit.order), "low",
                              result_number(order->fit.low), "high", result_number(order->fit.high),
                              "pairwise", pairwise, "class", order_class_name(order->fit.class),
-                             "gate", gate, "status", gate_names[order->status]);
-    if (order->status != GATE_NONE && order->status != GATE_PASS)
+                             "gate", gate, "status", finding_words[order->status]);
+    if (order->status != FINDING_NONE && order->status != FINDING_PASS)
         json_object_set_new(item, "why", json_string(order->why));
-    if (order->status == GATE_KNOWN) json_object_set_new(item, "known", json_string(order->known));
+    if (order->status == FINDING_KNOWN)
+        json_object_set_new(item, "known", json_string(order->known));
     return item;
 }
 
@@ -119,7 +120,8 @@ static json_t *budget_orders_json(const struct study_result *result)
     }
     return json_pack("{s:o, s:{s:o, s:o, s:s}}", "regions", regions, "still_gas", "value",
                      isnan(result->still) ? json_null() : result_number(result->still), "bound",
-                     result_number(STUDY_STILL_BOUND), "status", gate_names[result->still_status]);
+                     result_number(STUDY_STILL_BOUND), "status",
+                     finding_words[result->still_status]);
 }
 
 static void add(json_t *document, const char *list, json_t *item, const json_t *varied)
@@ -134,7 +136,7 @@ static void add(json_t *document, const char *list, json_t *item, const json_t *
 static void add_fit(json_t *document, const struct order_fit *fit, const char *what,
                     const char *norm, const json_t *varied)
 {
-    const struct study_order order = {.fit = *fit, .status = GATE_NONE};
+    const struct study_order order = {.fit = *fit, .status = FINDING_NONE};
     if (fit->n) add(document, "orders", order_json(&order, what, norm), varied);
 }
 

@@ -291,7 +291,7 @@ static void budgets(const struct study *study, size_t c)
         assert_int_equal(order_fit(LEVELS, spacing, part, NULL, &want, NULL), STATUS_OK);
         same_fit(&result->regions[region], &want);
     }
-    if (regions) assert_true(result->still == still && result->still_status == GATE_PASS);
+    if (regions) assert_true(result->still == still && result->still_status == FINDING_PASS);
 }
 
 static void functionals(const struct study *study, size_t c)
@@ -325,7 +325,7 @@ static void gates(const struct study *study, size_t c)
         const struct study_order *order =
             scalar ? &result->functional_errors[0] : &result->orders[gate->field][gate->norm];
         if (scalar && strcmp(gate->functional, result->functional_names[0]) != 0) {
-            assert_int_equal(result->functional_errors[1].status, GATE_NONE); /* nothing exact */
+            assert_int_equal(result->functional_errors[1].status, FINDING_NONE); /* nothing exact */
             continue;
         }
         const double finest = (double)at(study, c, LEVELS - 1, 0).n,
@@ -337,14 +337,14 @@ static void gates(const struct study *study, size_t c)
         assert_true(order->gate.low == (scalar ? (double)-INFINITY : gate->gate.low) &&
                     order->gate.high == gate->gate.high);
         if (scalar)
-            assert_int_equal(order->fit.finest <= order->gate.bound, order->status != GATE_FAIL);
+            assert_int_equal(order->fit.finest <= order->gate.bound, order->status != FINDING_FAIL);
         else
             assert_int_equal(order_passes(&order->fit, &order->gate, NULL),
-                             order->status != GATE_FAIL);
+                             order->status != FINDING_FAIL);
     }
     for (int f = 0; f < FIELDS; f++)
         for (int m = 0; m < NORMS; m++)
-            assert_int_equal(!gated[f][m], study->results[c].orders[f][m].status == GATE_NONE);
+            assert_int_equal(!gated[f][m], study->results[c].orders[f][m].status == FINDING_NONE);
 }
 
 /* ---- the document ---- */
@@ -422,15 +422,15 @@ static void order_says(const json_t *json, const struct study_order *order, cons
     const json_t *gate = json_object_get(json, "gate"), *why = json_object_get(json, "why");
     fit_says(json, &order->fit, what, norm);
     assert_string_equal(value_text(json, "status"), names[order->status]);
-    assert_int_equal(json_is_null(gate), order->status == GATE_NONE);
-    if (order->status != GATE_NONE) {
+    assert_int_equal(json_is_null(gate), order->status == FINDING_NONE);
+    if (order->status != FINDING_NONE) {
         is(gate, "low", order->gate.low);
         is(gate, "high", order->gate.high);
         is(gate, "bound", order->gate.bound);
     }
-    assert_int_equal(!why, order->status == GATE_NONE || order->status == GATE_PASS);
+    assert_int_equal(!why, order->status == FINDING_NONE || order->status == FINDING_PASS);
     if (why) assert_string_equal(json_string_value(why), order->why);
-    assert_int_equal(!json_object_get(json, "known"), order->status != GATE_KNOWN);
+    assert_int_equal(!json_object_get(json, "known"), order->status != FINDING_KNOWN);
 }
 
 static void budget_says(const json_t *json, const struct study_result *result)
@@ -705,7 +705,7 @@ TEST(floors)
             const struct study_result *result = &study.results[0];
             near_relative(result->floor_density, density, 1e-14);
             near_relative(result->floor_gradient, gradient, 1e-14);
-            assert_int_equal(result->orders[FIELD_DENSITY][NORM_L1].status, GATE_FAIL);
+            assert_int_equal(result->orders[FIELD_DENSITY][NORM_L1].status, FINDING_FAIL);
             assert_int_equal(result->floor_explains, side < 0);
             study_free(&study);
         }

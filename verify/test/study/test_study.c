@@ -137,7 +137,7 @@ TEST(replicates)
     const struct order_fit *fit = &result->orders[FIELD_DENSITY][NORM_L1].fit;
     near_relative(fit->order, want.order, 1e-12);
     near_relative(fit->high - fit->low, want.high - want.low, 1e-12);
-    assert_int_equal(result->still_status, GATE_NONE); /* a random start is noisy */
+    assert_int_equal(result->still_status, FINDING_NONE); /* a random start is noisy */
     study_free(&study);
 }
 
@@ -246,12 +246,12 @@ TEST(budgets_add_up)
             }
             near_relative(sum, result->levels[l].errors[f][NORM_L1], 1e-12);
         }
-    assert_int_equal(result->still_status, GATE_PASS);
+    assert_int_equal(result->still_status, FINDING_PASS);
     study_free(&study);
 
     struct study wave = made("sound_wave", "t_end=0.1", NULL, 1, 2);
     assert_null(wave.results[0].levels[0].budget.regions);
-    assert_int_equal(wave.results[0].still_status, GATE_NONE);
+    assert_int_equal(wave.results[0].still_status, FINDING_NONE);
     study_free(&wave);
 }
 
@@ -389,25 +389,26 @@ TEST(judges_see)
         const char *what;
         tamper *tamper;
         enum status status;
-        enum study_gate gate, still;
+        enum finding_status gate, still;
         const char *suspicion;
     } cases[] = {
-        {"first order", of_first_order, STATUS_OK, GATE_SMOKE, GATE_PASS, ""},
-        {"half an order", of_half_order, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
-        {"half an order, known", of_half_order, STATUS_OK, GATE_KNOWN, GATE_PASS, ""},
-        {"half an order, known up to less", of_half_order, STATUS_CHECK_FAILED, GATE_FAIL,
-         GATE_PASS, ""},
-        {"first order, known to fail", of_first_order, STATUS_OK, GATE_SMOKE, GATE_PASS, ""},
-        {"too large", too_large, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
-        {"a NaN", nan_at_one_level, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
-        {"a NaN, known", nan_at_one_level, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
-        {"a NaN at last, known", nan_at_the_finest, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
-        {"an error of 0", zero_at_one_level, STATUS_CHECK_FAILED, GATE_SMOKE, GATE_PASS,
+        {"first order", of_first_order, STATUS_OK, FINDING_SMOKE, FINDING_PASS, ""},
+        {"half an order", of_half_order, STATUS_CHECK_FAILED, FINDING_FAIL, FINDING_PASS, ""},
+        {"half an order, known", of_half_order, STATUS_OK, FINDING_KNOWN, FINDING_PASS, ""},
+        {"half an order, known up to less", of_half_order, STATUS_CHECK_FAILED, FINDING_FAIL,
+         FINDING_PASS, ""},
+        {"first order, known to fail", of_first_order, STATUS_OK, FINDING_SMOKE, FINDING_PASS, ""},
+        {"too large", too_large, STATUS_CHECK_FAILED, FINDING_FAIL, FINDING_PASS, ""},
+        {"a NaN", nan_at_one_level, STATUS_CHECK_FAILED, FINDING_FAIL, FINDING_PASS, ""},
+        {"a NaN, known", nan_at_one_level, STATUS_CHECK_FAILED, FINDING_FAIL, FINDING_PASS, ""},
+        {"a NaN at last, known", nan_at_the_finest, STATUS_CHECK_FAILED, FINDING_FAIL, FINDING_PASS,
+         ""},
+        {"an error of 0", zero_at_one_level, STATUS_CHECK_FAILED, FINDING_SMOKE, FINDING_PASS,
          "velocity: the error at level 3 is exactly 0"},
-        {"twice the same", same_at_two_levels, STATUS_CHECK_FAILED, GATE_SMOKE, GATE_PASS,
+        {"twice the same", same_at_two_levels, STATUS_CHECK_FAILED, FINDING_SMOKE, FINDING_PASS,
          "pressure: levels 0 and 3"},
-        {"still gas", moved_gas, STATUS_CHECK_FAILED, GATE_SMOKE, GATE_FAIL, ""},
-        {"a suspected run", suspected_run, STATUS_CHECK_FAILED, GATE_SMOKE, GATE_PASS,
+        {"still gas", moved_gas, STATUS_CHECK_FAILED, FINDING_SMOKE, FINDING_FAIL, ""},
+        {"a suspected run", suspected_run, STATUS_CHECK_FAILED, FINDING_SMOKE, FINDING_PASS,
          "a run suspects itself"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -428,7 +429,7 @@ TEST(judges_see)
         /* the bound belongs to the case's own finest level, 1584: farther up it is wider */
         near_relative(order->gate.bound, 1.5e-3 * pow(1584. / 120, 0.85), 1e-12);
         assert_true(order->gate.low == 0.85 && order->gate.high == 1.1);
-        assert_int_equal(result->orders[FIELD_VELOCITY][NORM_L1].status, GATE_NONE);
+        assert_int_equal(result->orders[FIELD_VELOCITY][NORM_L1].status, FINDING_NONE);
         study_free(&study);
     }
     /* one bad combination of many is not lost */

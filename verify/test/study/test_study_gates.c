@@ -25,7 +25,7 @@ TEST(gates_are_judged)
         struct case_gate gate; /* a bound of 0: the finest error itself */
         double factor;
         size_t coarse; /* the case's own finest n */
-        enum study_gate outcome;
+        enum finding_status outcome;
         double bound;
         bool explains;
     } rows[] = {
@@ -33,56 +33,56 @@ TEST(gates_are_judged)
          {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 1}, {0, ""}, {0, ""}, 0, 0},
          0.01,
          0,
-         GATE_PASS,
+         FINDING_PASS,
          1,
          false},
         {"sod",
          {NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.8, 1}, {0, ""}, {0, ""}, 0, 0},
          0.01,
          0,
-         GATE_FAIL,
+         FINDING_FAIL,
          1,
          false},
         {"sod",
          {NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.8, 1}, {(double)INFINITY, "why"}, {0, ""}, 0, 0},
          0.01,
          0,
-         GATE_KNOWN,
+         FINDING_KNOWN,
          1,
          false},
         {"sod",
          {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}, 0, 0},
          0.01,
          0,
-         GATE_FAIL,
+         FINDING_FAIL,
          7e-4,
          false},
         {"sod",
          {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}, 0, 0},
          0.01,
          640,
-         GATE_PASS,
+         FINDING_PASS,
          7e-4 * 1.3195079107728942,
          false},
         {"sod",
          {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}, 0, 0},
          0.01,
          160,
-         GATE_FAIL,
+         FINDING_FAIL,
          7e-4,
          false},
         {"sod",
          {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 8e-4}, {0, ""}, {0, ""}, 0, 0},
          0.01,
          0,
-         GATE_PASS,
+         FINDING_PASS,
          8e-4,
          false},
         {"sod",
          {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 0}, {0, ""}, {0, ""}, 0, 0},
          0.01,
          0,
-         GATE_PASS,
+         FINDING_PASS,
          0,
          false},
         {"sod",
@@ -96,21 +96,21 @@ TEST(gates_are_judged)
           0},
          0.01,
          0,
-         GATE_NONE,
+         FINDING_NONE,
          0,
          false},
         {"gresho",
          {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1e-12}, {0, ""}, {0, ""}, 0, 0},
          1e-9,
          0,
-         GATE_FAIL,
+         FINDING_FAIL,
          1e-12,
          false},
         {"gresho",
          {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 1e-12}, {0, ""}, {0, ""}, 0, 0},
          1e-9,
          0,
-         GATE_FAIL,
+         FINDING_FAIL,
          1e-12,
          false},
         {"gresho",
@@ -124,7 +124,7 @@ TEST(gates_are_judged)
           0},
          0.01,
          0,
-         GATE_PASS,
+         FINDING_PASS,
          1.2e-5,
          false},
         {"gresho",
@@ -138,28 +138,28 @@ TEST(gates_are_judged)
           0},
          0.01,
          0,
-         GATE_FAIL,
+         FINDING_FAIL,
          1.1e-5,
          false},
         {"sod",
          {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 7.9e-4}, {0, ""}, {0, ""}, 0, 0},
          0.01,
          0,
-         GATE_FAIL,
+         FINDING_FAIL,
          7.9e-4,
          false},
         {"gresho",
          {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}, 0, 0},
          0.01,
          640,
-         GATE_PASS,
+         FINDING_PASS,
          7e-4 * 1.1486983549970351,
          false},
         {"gresho",
          {NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.8, 1}, {0, ""}, {0, ""}, 0, 0},
          1e-9,
          0,
-         GATE_FAIL,
+         FINDING_FAIL,
          1,
          true},
         {"gresho",
@@ -173,7 +173,7 @@ TEST(gates_are_judged)
           0},
          0.01,
          0,
-         GATE_PASS,
+         FINDING_PASS,
          1.2e-5,
          false},
         {"gresho",
@@ -187,7 +187,7 @@ TEST(gates_are_judged)
           0},
          0.01,
          0,
-         GATE_FAIL,
+         FINDING_FAIL,
          1.1e-5,
          false},
     };
@@ -220,8 +220,8 @@ TEST(gates_are_judged)
         if (order->status != rows[k].outcome)
             fail_msg("row %zu: outcome %d, %s, bound %g, finest %g", k, order->status, order->why,
                      order->gate.bound, order->fit.finest);
-        assert_int_equal(result->orders[FIELD_VELOCITY][NORM_L2].status, GATE_PASS);
-        if (rows[k].outcome == GATE_NONE) {
+        assert_int_equal(result->orders[FIELD_VELOCITY][NORM_L2].status, FINDING_PASS);
+        if (rows[k].outcome == FINDING_NONE) {
             study_free(&study);
             pool_free(&pool);
             continue;
@@ -231,9 +231,9 @@ TEST(gates_are_judged)
         assert_string_equal(order->known, rows[k].gate.known.why);
         assert_true(result->floor_explains == rows[k].explains);
         assert_int_equal(result->status,
-                         rows[k].outcome == GATE_FAIL ? STATUS_CHECK_FAILED : STATUS_OK);
+                         rows[k].outcome == FINDING_FAIL ? STATUS_CHECK_FAILED : STATUS_OK);
         assert_int_equal(study.status, result->status);
-        assert_true(!order->why[0] == (rows[k].outcome == GATE_PASS));
+        assert_true(!order->why[0] == (rows[k].outcome == FINDING_PASS));
         study_free(&study);
         pool_free(&pool);
     }
@@ -263,7 +263,7 @@ TEST(beyond_what_is_known)
     const struct study_order *order = &study.results[0].orders[FIELD_DENSITY][NORM_L1];
     snprintf(text, sizeof text, "finest error %.3g exceeds 0.000152, up to which it is known",
              factor * pow(spacing_of(3, 0), 0.5)); /* 1e-4 times 2^0.6 */
-    assert_int_equal(order->status, GATE_FAIL);
+    assert_int_equal(order->status, FINDING_FAIL);
     assert_string_equal(order->why, text);
     study_free(&study);
     pool_free(&pool);
@@ -277,15 +277,15 @@ TEST(small_errors_are_strange)
         size_t coarse;
         enum setting key; /* that a user has set; n: always */
         bool known;
-        enum study_gate outcome;
-    } rows[] = {{0.99, 320, SETTING_n, false, GATE_PASS},
-                {1.01, 320, SETTING_n, false, GATE_FAIL},
-                {1.01, 320, SETTING_n, true, GATE_KNOWN},
-                {1.01, 320, SETTING_eta, false, GATE_PASS},
-                {1.01, 640, SETTING_n, false, GATE_PASS},
-                {1.01, 160, SETTING_n, false, GATE_PASS},
-                {1.01, 320, (enum setting)0, false, GATE_PASS},
-                {1.01, 320, (enum setting)(SETTINGS - 1), false, GATE_PASS}};
+        enum finding_status outcome;
+    } rows[] = {{0.99, 320, SETTING_n, false, FINDING_PASS},
+                {1.01, 320, SETTING_n, false, FINDING_FAIL},
+                {1.01, 320, SETTING_n, true, FINDING_KNOWN},
+                {1.01, 320, SETTING_eta, false, FINDING_PASS},
+                {1.01, 640, SETTING_n, false, FINDING_PASS},
+                {1.01, 160, SETTING_n, false, FINDING_PASS},
+                {1.01, 320, (enum setting)0, false, FINDING_PASS},
+                {1.01, 320, (enum setting)(SETTINGS - 1), false, FINDING_PASS}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct study study;
         struct pool pool;
@@ -318,7 +318,7 @@ TEST(small_errors_are_strange)
         assert_int_equal(order->status, rows[k].outcome);
         const bool own = rows[k].coarse == 320 && rows[k].key == SETTING_n;
         assert_true(order->least == (own ? rows[k].least * finest : 0));
-        assert_true(!strstr(order->why, "strangely below") == (rows[k].outcome == GATE_PASS));
+        assert_true(!strstr(order->why, "strangely below") == (rows[k].outcome == FINDING_PASS));
         study_free(&study);
         pool_free(&pool);
     }
@@ -366,7 +366,7 @@ TEST(floors_explain_up_to_a_point)
                     (struct order_gate){order, order + 0.1, exact_errors[3] / 2};
             study.settings.file.gate_count = 1;
             assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
-            assert_int_equal(result->orders[0][0].status, GATE_FAIL);
+            assert_int_equal(result->orders[0][0].status, FINDING_FAIL);
             assert_true(result->floor_explains == (side < 1));
             study_free(&study);
             pool_free(&pool);
@@ -391,7 +391,7 @@ TEST(no_floor)
         (struct case_gate){.field = FIELD_DENSITY, .norm = NORM_L1, .gate = {0.6, 0.7, 1}};
     study.settings.file.gate_count = 1;
     assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
-    assert_int_equal(result->orders[0][0].status, GATE_FAIL);
+    assert_int_equal(result->orders[0][0].status, FINDING_FAIL);
     assert_false(result->floor_explains);
     study_free(&study);
     pool_free(&pool);
@@ -406,30 +406,30 @@ TEST(what_passes_is_weighed)
     const struct {
         double low, high, bound, exact, half; /* half: of the order's interval; < 0: one run */
         size_t n;
-        enum study_gate outcome;
+        enum finding_status outcome;
     } rows[] = {
-        {0.9, 1.1, 1, none, 0.09, 101, GATE_PASS},
-        {0.9, 1.1, 1, none, 0.09, 100, GATE_SMOKE},
-        {0.9, 1.1, 1, none, 0.09, 50, GATE_SMOKE},
-        {0.9, 1.1, 1, none, 0.11, 101, GATE_UNDETERMINED},
-        {-0.1, 0.1, 1, none, 0.09, 101, GATE_PASS},
-        {-0.1, 0.1, 1, none, 0.09, 100, GATE_SMOKE},
-        {-0.1, 0.1, 1, none, 0.11, 101, GATE_UNDETERMINED},
-        {0.9, 1.1, 1, none, none, 101, GATE_UNDETERMINED},
-        {1, open, 1, none, 0.49, 101, GATE_PASS},
-        {1, open, 1, none, 0.51, 101, GATE_UNDETERMINED},
-        {1, open, 1, none, none, 101, GATE_UNDETERMINED},
-        {1, open, 1, none, 0.49, 100, GATE_SMOKE},
-        {1, open, 1, none, -1, 101, GATE_PASS},
-        {1, open, 1, none, -1, 100, GATE_SMOKE},
+        {0.9, 1.1, 1, none, 0.09, 101, FINDING_PASS},
+        {0.9, 1.1, 1, none, 0.09, 100, FINDING_SMOKE},
+        {0.9, 1.1, 1, none, 0.09, 50, FINDING_SMOKE},
+        {0.9, 1.1, 1, none, 0.11, 101, FINDING_UNDETERMINED},
+        {-0.1, 0.1, 1, none, 0.09, 101, FINDING_PASS},
+        {-0.1, 0.1, 1, none, 0.09, 100, FINDING_SMOKE},
+        {-0.1, 0.1, 1, none, 0.11, 101, FINDING_UNDETERMINED},
+        {0.9, 1.1, 1, none, none, 101, FINDING_UNDETERMINED},
+        {1, open, 1, none, 0.49, 101, FINDING_PASS},
+        {1, open, 1, none, 0.51, 101, FINDING_UNDETERMINED},
+        {1, open, 1, none, none, 101, FINDING_UNDETERMINED},
+        {1, open, 1, none, 0.49, 100, FINDING_SMOKE},
+        {1, open, 1, none, -1, 101, FINDING_PASS},
+        {1, open, 1, none, -1, 100, FINDING_SMOKE},
         /* a bound for all n, which asks for no order */
-        {0, open, 1, none, 3, 100, GATE_PASS},
+        {0, open, 1, none, 3, 100, FINDING_PASS},
         /* a bound and the exact value, of either sign; of 0 there is no part */
-        {1, open, 1, 4.01, 0.1, 101, GATE_PASS},
-        {1, open, 1, -4.01, 0.1, 101, GATE_PASS},
-        {1, open, 1, 3.99, 0.1, 101, GATE_SMOKE},
-        {0, open, 1, -3.99, -1, 101, GATE_SMOKE},
-        {1, open, 1, 0, 0.1, 101, GATE_PASS},
+        {1, open, 1, 4.01, 0.1, 101, FINDING_PASS},
+        {1, open, 1, -4.01, 0.1, 101, FINDING_PASS},
+        {1, open, 1, 3.99, 0.1, 101, FINDING_SMOKE},
+        {0, open, 1, -3.99, -1, 101, FINDING_SMOKE},
+        {1, open, 1, 0, 0.1, 101, FINDING_PASS},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct case_file file = {.ladder = {100, 200}, .ladder_count = 2};
@@ -438,16 +438,16 @@ TEST(what_passes_is_weighed)
         const struct order_fit fit = {.low = 1 - rows[k].half, .high = 1 + rows[k].half};
         const struct order_fit *of = rows[k].half < 0 ? NULL : &fit;
         char why[GATE_WHY] = "?";
-        const enum study_gate outcome =
+        const enum finding_status outcome =
             gates_weigh(&file, &gate, rows[k].n, rows[k].bound, rows[k].exact, of, why);
         if (outcome != rows[k].outcome) fail_msg("row %zu: outcome %d, %s", k, outcome, why);
-        assert_int_equal(!why[0], outcome == GATE_PASS);
-        if (outcome == GATE_SMOKE) assert_non_null(strstr(why, "too coarse to say"));
-        if (outcome == GATE_UNDETERMINED) assert_non_null(strstr(why, "is known to"));
+        assert_int_equal(!why[0], outcome == FINDING_PASS);
+        if (outcome == FINDING_SMOKE) assert_non_null(strstr(why, "too coarse to say"));
+        if (outcome == FINDING_UNDETERMINED) assert_non_null(strstr(why, "is known to"));
         /* a case without a ladder has no coarsest level */
         if (rows[k].n == 100 && rows[k].half < 0)
             assert_int_equal(gates_weigh(&alone, &gate, 100, rows[k].bound, rows[k].exact, of, why),
-                             GATE_PASS);
+                             FINDING_PASS);
     }
 }
 
@@ -473,7 +473,7 @@ TEST(coarse_runs_are_smoke)
         file->ladder[0] = 320; /* the finest of this study */
         assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
         const struct study_order *order = &result->orders[0][0];
-        assert_int_equal(order->status, beyond ? GATE_FAIL : GATE_SMOKE);
+        assert_int_equal(order->status, beyond ? FINDING_FAIL : FINDING_SMOKE);
         assert_int_equal(study.status, beyond ? STATUS_CHECK_FAILED : STATUS_OK);
         json_t *run = json_pack("{s:i, s:{s:{s:f}}}", "n", 320, "errors", "density", "l1", 0.5);
         json_t *list = json_array();

@@ -101,7 +101,7 @@ TEST(levels_are_means)
         assert_true(result->floor_density == floor_density &&
                     result->floor_gradient == floor_gradient);
         near_relative(result->still, 4e-6, 1e-15);
-        assert_int_equal(result->still_status, GATE_PASS);
+        assert_int_equal(result->still_status, FINDING_PASS);
         assert_int_equal(result->functional_count, 4);
         assert_true(isnan(result->functional_exact[2]) && result->functional_exact[1] == 1.5);
         assert_string_equal(result->functional_names[0], "mean_internal_energy");
@@ -142,7 +142,7 @@ TEST(clouds_have_more_orders)
             near_relative(result->functional_errors[i].fit.order, want.order, 1e-9);
             near_relative(result->functional_errors[i].fit.coarsest, errors[0], 1e-9);
         }
-        assert_true(isnan(result->still) && result->still_status == GATE_NONE);
+        assert_true(isnan(result->still) && result->still_status == FINDING_NONE);
         study_free(&study);
     }
     struct study line = made("sod", NULL, 1, NULL);
@@ -196,10 +196,10 @@ TEST(gas_that_does_not_stay)
 {
     static const struct {
         double still[LEVELS], most;
-        enum study_gate outcome;
-    } rows[] = {{{5e-4, 1e-6, 1e-6, 1e-6}, 5e-4, GATE_PASS},
-                {{1e-6, 1e-6, 1e-6, 1e-3}, 1e-3, GATE_PASS},
-                {{1e-6, 1.0000001e-3, 0, 0}, 1.0000001e-3, GATE_FAIL}};
+        enum finding_status outcome;
+    } rows[] = {{{5e-4, 1e-6, 1e-6, 1e-6}, 5e-4, FINDING_PASS},
+                {{1e-6, 1e-6, 1e-6, 1e-3}, 1e-3, FINDING_PASS},
+                {{1e-6, 1.0000001e-3, 0, 0}, 1.0000001e-3, FINDING_FAIL}};
     for (size_t k = 0; k < 3; k++) {
         memcpy(still_of, rows[k].still, sizeof still_of);
         struct study study = made("sod", "jitter=0", 1, set_still);
@@ -207,11 +207,11 @@ TEST(gas_that_does_not_stay)
         study = made("sod", NULL, 1, set_still);
         assert_true(study.results[0].still == rows[k].most);
         assert_int_equal(study.results[0].still_status, rows[k].outcome);
-        if (rows[k].outcome == GATE_FAIL)
+        if (rows[k].outcome == FINDING_FAIL)
             assert_int_equal(study.results[0].status, STATUS_CHECK_FAILED);
         study_free(&study);
         study = made("sod", "jitter=0.1", 1, set_still); /* noise that was put there */
-        assert_int_equal(study.results[0].still_status, GATE_NONE);
+        assert_int_equal(study.results[0].still_status, FINDING_NONE);
         study_free(&study);
     }
 }

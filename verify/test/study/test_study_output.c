@@ -49,7 +49,7 @@ static json_t *pack_order(const struct order_fit *fit, const char *what, const c
                           const struct study_order *judged)
 {
     static const char *const words[] = {"none", "pass", "fail", "known", "smoke", "undetermined"};
-    const enum study_gate status = judged ? judged->status : GATE_NONE;
+    const enum finding_status status = judged ? judged->status : FINDING_NONE;
     json_t *packed =
         json_pack("{s:s, s:s, s:o, s:o, s:o, s:[o, o, o], s:s, s:s}", "field", what, "norm", norm,
                   "order", result_number(fit->order), "low", result_number(fit->low), "high",
@@ -57,14 +57,14 @@ static json_t *pack_order(const struct order_fit *fit, const char *what, const c
                   result_number(fit->pairwise[1]), result_number(fit->pairwise[2]), "class",
                   order_class_name(fit->class), "status", words[status]);
     json_object_set_new(packed, "gate",
-                        status == GATE_NONE
+                        status == FINDING_NONE
                             ? json_null()
                             : json_pack("{s:o, s:o, s:o}", "low", result_number(judged->gate.low),
                                         "high", result_number(judged->gate.high), "bound",
                                         result_number(judged->gate.bound)));
-    if (status == GATE_FAIL || status == GATE_KNOWN)
+    if (status == FINDING_FAIL || status == FINDING_KNOWN)
         json_object_set_new(packed, "why", json_string(judged->why));
-    if (status == GATE_KNOWN) json_object_set_new(packed, "known", json_string(judged->known));
+    if (status == FINDING_KNOWN) json_object_set_new(packed, "known", json_string(judged->known));
     return packed;
 }
 
@@ -110,13 +110,13 @@ TEST(documents_have_it_all)
         json_t *document = json_object();
         for (int m = 0; m < 4; m++) { /* one gate of each outcome */
             struct study_order *of = &result->orders[0][m];
-            of->status = (enum study_gate)m;
+            of->status = (enum finding_status)m;
             of->gate = (struct order_gate){0.5 + m, 1.5 + m, 2.5 + m};
             strcpy(of->why, "too low");
             of->known = "it jumps";
         }
-        result->functional_errors[0].status = GATE_FAIL;
-        result->still_status = (enum study_gate)k;
+        result->functional_errors[0].status = FINDING_FAIL;
+        result->still_status = (enum finding_status)k;
         if (k == 2) result->still = (double)NAN;
         if (k == 2) strcpy(study.suspicion, "alpha changes nothing");
         study_add_json(&study, document);
