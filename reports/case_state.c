@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "html.h"
+#include "page_plot.h"
 #include "value.h"
 
 /* From well to worst. */
@@ -29,6 +31,21 @@ const json_t *case_state_find(const json_t *list, const char *case_name, const c
             return entry;
     }
     return NULL;
+}
+
+size_t case_state_labels(const json_t *list, int least, int most, const char **labels)
+{
+    size_t count = 0, i;
+    const json_t *entry;
+    json_array_foreach(list, i, entry) {
+        const double dimension = fmax(1, value_member(entry, "dimension"));
+        const char *label = value_text(entry, "label");
+        size_t k = 0;
+        if (dimension < least || dimension > most) continue;
+        while (k < count && strcmp(labels[k], label)) k++;
+        if (k == count && count < PAGE_SCHEMES) labels[count++] = label;
+    }
+    return count;
 }
 
 /* The worst of a document and of its gates; of a scheme that does not speak for the case failures
@@ -64,6 +81,15 @@ const char *case_state(const json_t *results, const char *case_name)
         }
     }
     return states[worst];
+}
+
+void case_state_cell(struct buffer *to, const char *case_name)
+{
+    buffer_add(to, "<td><a href=\"#case-");
+    buffer_escape(to, case_name);
+    buffer_add(to, "\">");
+    html_words(to, case_name);
+    buffer_add(to, "</a></td>");
 }
 
 double case_state_error(const json_t *run, const char **name)

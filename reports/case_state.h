@@ -6,13 +6,22 @@
 
 #include <jansson.h>
 
+#include "buffer.h"
+
 /* The document in a list of runs or studies for a case and a scheme; label NULL: the first one of
  * the case. NULL: there is none. */
 const json_t *case_state_find(const json_t *list, const char *case_name, const char *label);
 
+/* The labels of documents in so many dimensions (1 where they do not say), each once, in the order
+ * in which they come; at most PAGE_SCHEMES. */
+size_t case_state_labels(const json_t *list, int least, int most, const char **labels);
+
 /* "broke_down" or "fail" if anything of the case did, with any scheme; else what became of its
  * first scheme: smoke, undetermined or known if one of its gates is, else ok. */
 const char *case_state(const json_t *results, const char *case_name);
+
+/* A cell with the case's name, which leads to it. */
+void case_state_cell(struct buffer *to, const char *case_name);
 
 /* What a run is judged by: L1 of a field, or the distance of a scalar from its exact value. *name:
  * what it is. */

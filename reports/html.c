@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "value.h"
+
 void html_number(struct buffer *to, double value)
 {
     if (isnan(value)) {
@@ -62,12 +64,12 @@ void html_cell_number(struct buffer *to, double value)
     buffer_add(to, "</td>");
 }
 
-void html_cell_digits(struct buffer *to, double value)
+void html_digits(struct buffer *to, double value)
 {
     if (isfinite(value))
-        buffer_format(to, "<td class=\"n\">%.8g</td>", value);
+        buffer_format(to, "%.8g", value);
     else
-        html_cell_number(to, value);
+        html_number(to, value);
 }
 
 void html_cell_code(struct buffer *to, const char *string)
@@ -75,6 +77,109 @@ void html_cell_code(struct buffer *to, const char *string)
     buffer_add(to, "<td><code>");
     buffer_escape(to, string);
     buffer_add(to, "</code></td>");
+}
+
+/* "a/b/0" of an object, or the object. */
+static const json_t *member_of(const json_t *of, const char *path)
+{
+    char name[64];
+    while (path && *path && of) {
+        const size_t length = strcspn(path, "/");
+        snprintf(name, sizeof name, "%.*s", (int)length, path);
+        of = json_is_array(of) ? json_array_get(of, (size_t)atoi(name)) : json_object_get(of, name);
+        path += length + (path[length] == '/');
+    }
+    return of;
+}
+
+/* first: the first entry of the table. */
+static bool left_out(const struct html_column *column, const json_t *first)
+{
+    return column->optional && !isfinite(value_real(member_of(first, column->member)));
+}
+
+static void heads(struct buffer *to, const char *class, const struct html_column *columns,
+                  const json_t *first)
+{
+    struct buffer names = {0};
+    for (const struct html_column *column = columns; column->head; column++)
+        if (!left_out(column, first))
+            buffer_format(&names, "%s%s", column == columns ? "" : "|", column->head);
+    if (names.data) html_table(to, class, names.data);
+    buffer_free(&names);
+}
+
+static void show(struct buffer *to, const struct html_column *column, const json_t *value)
+{
+    const double number = value_real(value);
+    const char *string = json_string_value(value), *text = string ? string : "";
+    if (column->cell)
+        column->cell(to, value);
+    else if (column->kind == CELL_TEXT)
+        buffer_escape(to, text);
+    else if (column->kind == CELL_WORDS)
+        html_words(to, text);
+    else if (column->kind == CELL_STATUS)
+        html_status(to, text);
+    else if (column->kind == CELL_CODE)
+        buffer_add(to, "<code>"), buffer_escape(to, text), buffer_add(to, "</code>");
+    else if (column->otherwise && (!value || json_is_null(value)))
+        buffer_add(to, column->otherwise);
+    else if (column->format)
+        buffer_format(to, column->format, number);
+    else
+        (column->kind == CELL_DIGITS ? html_digits : html_number)(to, number);
+}
+
+static void row(struct buffer *to, const struct html_column *columns, const json_t *entry,
+                const json_t *around, const json_t *first)
+{
+    buffer_add(to, "<tr>");
+    for (const struct html_column *column = columns; column->head; column++) {
+        const bool outside = column->member && column->member[0] == '^';
+        if (left_out(column, first)) continue;
+        buffer_add(to, column->head[0] == '#' ? "<td class=\"n\">" : "<td>");
+        show(to, column,
+             outside ? member_of(around, column->member + 1) : member_of(entry, column->member));
+        buffer_add(to, "</td>");
+    }
+    buffer_add(to, "</tr>\n");
+}
+
+void html_heads(struct buffer *to, const char *class, const struct html_column *columns)
+{
+    heads(to, class, columns, NULL);
+}
+
+void html_row(struct buffer *to, const struct html_column *columns, const json_t *entry)
+{
+    row(to, columns, entry, NULL, NULL);
+}
+
+void html_list(struct buffer *to, const char *class, const struct html_column *columns,
+               const json_t *list, bool (*shown)(const json_t *entry))
+{
+    const json_t *entry;
+    size_t i;
+    html_heads(to, class, columns);
+    json_array_foreach(list, i, entry)
+        if (!shown || shown(entry)) html_row(to, columns, entry);
+    html_table_end(to);
+}
+
+void html_lists(struct buffer *to, const char *class, const struct html_column *columns,
+                const json_t *const *documents, size_t count, const char *list)
+{
+    const json_t *entry, *first = list ? NULL : documents[0];
+    size_t i;
+    heads(to, class, columns, first);
+    for (size_t k = 0; k < count; k++)
+        if (list)
+            json_array_foreach(json_object_get(documents[k], list), i, entry)
+                row(to, columns, entry, documents[k], first);
+        else
+            row(to, columns, documents[k], NULL, first);
+    html_table_end(to);
 }
 
 void html_command(struct buffer *to, const char *what, const char *command)

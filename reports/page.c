@@ -41,13 +41,10 @@ static void gates_tile(struct buffer *to, const json_t *verdict)
 static void head(struct buffer *to, const json_t *results, const json_t *verdict)
 {
     bool well = !strcmp(value_text(verdict, "status"), "pass");
-    buffer_add(to, "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
-                   "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
-                   "<meta name=\"color-scheme\" content=\"light dark\"/><title>sphproof: ");
-    buffer_escape(to, value_text(verdict, "headline"));
-    buffer_add(to, "</title><style>");
-    for (size_t k = 0; page_styles[k]; k++) buffer_add(to, page_styles[k]);
-    buffer_format(to, "%s</style></head><body>\n", style_css());
+    struct buffer title = {0};
+    buffer_format(&title, ": %s", value_text(verdict, "headline"));
+    page_head(to, title.data ? title.data : "");
+    buffer_free(&title);
     buffer_format(to, "<header class=\"%s\"><p class=\"kind\">sphproof %s report</p><h1>",
                   well ? "well" : "unwell", value_text(results, "mode"));
     buffer_escape(to, value_text(verdict, "headline"));
@@ -135,6 +132,25 @@ static void environment(struct buffer *to, const json_t *results)
             "plot's data and gnuplot script are in the folder <code>plots</code>.</p></section>\n");
 }
 
+void page_head(struct buffer *to, const char *title)
+{
+    buffer_add(to, "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
+                   "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
+                   "<meta name=\"color-scheme\" content=\"light dark\"/><title>sphproof");
+    buffer_escape(to, title);
+    buffer_add(to, "</title><style>");
+    for (size_t k = 0; page_styles[k]; k++) buffer_add(to, page_styles[k]);
+    buffer_format(to, "%s</style></head><body>\n", style_css());
+}
+
+bool page_end(struct page_writer *writer, struct page *page)
+{
+    buffer_add(&writer->to, "</main></body></html>\n");
+    *page = (struct page){.html = buffer_take(&writer->to), .plots = writer->plots};
+    if (!page->html) page_free(page);
+    return page->html;
+}
+
 bool page_make(struct page *page, const json_t *results)
 {
     struct page_writer writer = {.to = {0}};
@@ -190,11 +206,7 @@ bool page_make(struct page *page, const json_t *results)
     FOLDED(environment(to, results));
 #undef FOLDED
     buffer_add(to, fold_script);
-    buffer_add(to, "</main></body></html>\n");
-    *page = (struct page){.html = buffer_take(to), .plots = writer.plots};
-    if (page->html) return true;
-    page_free(page);
-    return false;
+    return page_end(&writer, page);
 }
 
 void page_free(struct page *page)

@@ -165,30 +165,20 @@ static void percent_cell(struct buffer *to, double part)
         buffer_add(to, "<td class=\"n\">—</td>");
 }
 
-static void run_table(struct buffer *to, const json_t *const *runs, size_t count)
-{
-    html_table(to, "runs",
-               "scheme|#n|#L1 density|#L1 velocity|#L1 pressure|#L1 internal "
-               "energy|#mass|#momentum|#energy|#steps|"
-               "#CPU s|");
-    for (size_t k = 0; k < count; k++) {
-        const json_t *errors = json_object_get(runs[k], "errors");
-        buffer_add(to, "<tr>");
-        html_cell(to, value_text(runs[k], "label"));
-        html_cell_number(to, value_member(runs[k], "n"));
-        for (int q = 0; q < QUANTITIES; q++)
-            html_cell_number(to, value_inner(errors, quantities[q], "l1"));
-        html_cell_number(to, value_inner(runs[k], "conservation", "mass"));
-        html_cell_number(to, value_inner(runs[k], "conservation", "momentum"));
-        html_cell_number(to, value_inner(runs[k], "conservation", "energy"));
-        html_cell_number(to, value_inner(runs[k], "cost", "steps"));
-        html_cell_number(to, value_inner(runs[k], "cost", "cpu_s"));
-        buffer_add(to, "<td>");
-        html_status(to, value_text(runs[k], "status"));
-        buffer_add(to, "</td></tr>\n");
-    }
-    html_table_end(to);
-}
+static const struct html_column run_columns[] = {
+    COLUMN("scheme", "label", .kind = CELL_TEXT),
+    COLUMN("#n", "n"),
+    COLUMN("#L1 density", "errors/density/l1"),
+    COLUMN("#L1 velocity", "errors/velocity/l1"),
+    COLUMN("#L1 pressure", "errors/pressure/l1"),
+    COLUMN("#L1 internal energy", "errors/internal_energy/l1"),
+    COLUMN("#mass", "conservation/mass"),
+    COLUMN("#momentum", "conservation/momentum"),
+    COLUMN("#energy", "conservation/energy"),
+    COLUMN("#steps", "cost/steps"),
+    COLUMN("#CPU s", "cost/cpu_s"),
+    COLUMN("", "status", .kind = CELL_STATUS),
+    {0}};
 
 /* ---- what a profile does that the exact solution does not ---- */
 
@@ -333,7 +323,7 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
         page_cloud_tables(to, runs, run_count);
     } else if (run_count) {
         buffer_add(to, "<h4>Errors, conservation and cost of the runs above</h4>\n");
-        run_table(to, runs, run_count);
+        html_lists(to, "runs", run_columns, runs, run_count, NULL);
     }
     if (!is_cloud(runs, run_count) && curves.runs && curves.runs == run_count) {
         buffer_add(to, "<h4>Overshoots</h4>\n");

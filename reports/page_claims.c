@@ -91,33 +91,27 @@ static void pairing_plot(struct page_writer *writer, const json_t *claim)
     free(curves);
 }
 
-static void ladder_row(struct buffer *to, const json_t *ladder)
+static void most_paired(struct buffer *to, const json_t *shares)
 {
     double paired[STEPS], greatest = (double)NAN;
-    const size_t n = value_reals(json_object_get(ladder, "paired"), paired, STEPS);
+    const size_t n = value_reals(shares, paired, STEPS);
     for (size_t i = 0; i < n; i++) greatest = fmax(greatest, paired[i]);
-    buffer_add(to, "<tr>");
-    html_cell(to, value_text(ladder, "kernel"));
-    buffer_format(to, "<td>%dD</td>", (int)value_member(ladder, "dim"));
-    static const char *const theory[] = {"first_negative_kh", "predicted"};
-    for (size_t t = 0; t < 2; t++) {
-        const json_t *value = json_object_get(ladder, theory[t]);
-        if (json_is_null(value))
-            buffer_add(to, t ? "<td class=\"n\">never</td>" : "<td class=\"n\">nowhere</td>");
-        else
-            html_cell_number(to, value_real(value));
-    }
-    buffer_format(to, "<td class=\"n\">%.1f %%</td>", 100 * greatest);
-    html_cell(to, value_text(ladder, "verdict"));
-    html_cell_code(to, value_text(ladder, "reproduce"));
-    buffer_add(to, "</tr>\n");
+    buffer_format(to, "%.1f %%", 100 * greatest);
 }
+
+static const struct html_column ladders[] = {
+    COLUMN("kernel", "kernel", .kind = CELL_TEXT),
+    COLUMN("in", "dim", .format = "%.0fD"),
+    COLUMN("#transform negative at kh", "first_negative_kh", .otherwise = "nowhere"),
+    COLUMN("#pairs by theory from", "predicted", .otherwise = "never"),
+    COLUMN("#most in pairs", "paired", .cell = most_paired),
+    COLUMN("runs", "verdict", .kind = CELL_TEXT),
+    COLUMN("see it again", "reproduce", .kind = CELL_CODE),
+    {0}};
 
 static void pairing_table(struct page_writer *writer, const json_t *claim)
 {
     struct buffer *to = &writer->to;
-    const json_t *ladder;
-    size_t i;
     claim_head(to, claim);
     buffer_format(
         to,
@@ -127,15 +121,18 @@ static void pairing_table(struct page_writer *writer, const json_t *claim)
         "of neighbours from which pairs have less energy than single particles.</p>\n",
         100 * value_member(claim, "bound"));
     pairing_plot(writer, claim);
-    html_table(
-        to, "runs",
-        "kernel|in|#transform negative at kh|#pairs by theory from|#most in pairs|runs|see it "
-        "again");
-    json_array_foreach(json_object_get(claim, "ladders"), i, ladder) ladder_row(to, ladder);
-    html_table_end(to);
+    html_list(to, "runs", ladders, json_object_get(claim, "ladders"), NULL);
 }
 
 /* ---- two schemes that differ in one key ---- */
+
+static const struct html_column sides[] = {COLUMN("both with", "label", .kind = CELL_CODE),
+                                           COLUMN("figure", "figure", .kind = CELL_TEXT),
+                                           COLUMN("#without", "without"),
+                                           COLUMN("#with", "with"),
+                                           COLUMN("verdict", "verdict", .kind = CELL_TEXT),
+                                           COLUMN("see it again", "reproduce", .kind = CELL_CODE),
+                                           {0}};
 
 static void claim_table(struct buffer *to, const json_t *claim)
 {
@@ -143,22 +140,13 @@ static void claim_table(struct buffer *to, const json_t *claim)
     size_t i;
     claim_head(to, claim);
     buffer_add(to, " Errors of the figure, relative where its exact value is not 0:</p>\n");
-    html_table(to, "runs", "both with|figure|#without|#with|verdict|see it again");
+    html_heads(to, "runs", sides);
     buffer_add(to, "<tr><td></td><td></td><td class=\"n\"><code>");
     buffer_escape(to, value_text(claim, "without"));
     buffer_add(to, "</code></td><td class=\"n\"><code>");
     buffer_escape(to, value_text(claim, "with"));
     buffer_add(to, "</code></td><td></td><td></td></tr>\n");
-    json_array_foreach(json_object_get(claim, "rows"), i, row) {
-        buffer_add(to, "<tr>");
-        html_cell_code(to, value_text(row, "label"));
-        html_cell(to, value_text(row, "figure"));
-        html_cell_number(to, value_member(row, "without"));
-        html_cell_number(to, value_member(row, "with"));
-        html_cell(to, value_text(row, "verdict"));
-        html_cell_code(to, value_text(row, "reproduce"));
-        buffer_add(to, "</tr>\n");
-    }
+    json_array_foreach(json_object_get(claim, "rows"), i, row) html_row(to, sides, row);
     html_table_end(to);
 }
 

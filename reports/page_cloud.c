@@ -278,107 +278,68 @@ void page_cloud_plots(struct page_writer *writer, const char *case_name, const j
 
 /* ---- tables ---- */
 
-static void error_columns(struct buffer *columns, const json_t *errors, const char *const *names,
-                          size_t count, bool *there)
-{
-    for (size_t q = 0; q < count; q++) {
-        there[q] = isfinite(value_inner(errors, names[q], "l1"));
-        if (!there[q]) continue;
-        buffer_add(columns, "|#L1 ");
-        html_words(columns, names[q]);
-    }
-}
+static const struct html_column run_columns[] = {
+    COLUMN("scheme", "label", .kind = CELL_TEXT),
+    COLUMN("#n", "n"),
+    COLUMN("#L1 density", "errors/density/l1", .optional = true),
+    COLUMN("#L1 velocity", "errors/velocity/l1", .optional = true),
+    COLUMN("#L1 azimuthal", "errors/azimuthal/l1", .optional = true),
+    COLUMN("#L1 radial", "errors/radial/l1", .optional = true),
+    COLUMN("#L1 pressure", "errors/pressure/l1", .optional = true),
+    COLUMN("#L1 internal energy", "errors/internal_energy/l1", .optional = true),
+    COLUMN("#momentum", "conservation/momentum"),
+    COLUMN("#angular momentum", "conservation/angular_momentum"),
+    COLUMN("#energy", "conservation/energy"),
+    COLUMN("#steps", "cost/steps"),
+    COLUMN("#CPU s", "cost/cpu_s"),
+    COLUMN("", "status", .kind = CELL_STATUS),
+    {0}};
 
 static void run_table(struct buffer *to, const json_t *const *runs, size_t count)
 {
-    static const char *const names[] = {"density", "velocity", "azimuthal",
-                                        "radial",  "pressure", "internal_energy"};
-    enum { NAMES = sizeof names / sizeof *names };
-    bool there[NAMES];
-    struct buffer columns = {0};
-    buffer_add(&columns, "scheme|#n");
-    error_columns(&columns, json_object_get(runs[0], "errors"), names, NAMES, there);
-    buffer_add(&columns, "|#momentum|#angular momentum|#energy|#steps|#CPU s|");
-    if (columns.data) html_table(to, "runs", columns.data);
-    buffer_free(&columns);
-    for (size_t k = 0; k < count; k++) {
-        buffer_add(to, "<tr>");
-        html_cell(to, value_text(runs[k], "label"));
-        html_cell_number(to, value_member(runs[k], "n"));
-        for (size_t q = 0; q < NAMES; q++)
-            if (there[q])
-                html_cell_number(to,
-                                 value_inner(json_object_get(runs[k], "errors"), names[q], "l1"));
-        html_cell_number(to, value_inner(runs[k], "conservation", "momentum"));
-        html_cell_number(to, value_inner(runs[k], "conservation", "angular_momentum"));
-        html_cell_number(to, value_inner(runs[k], "conservation", "energy"));
-        html_cell_number(to, value_inner(runs[k], "cost", "steps"));
-        html_cell_number(to, value_inner(runs[k], "cost", "cpu_s"));
-        buffer_add(to, "<td>");
-        html_status(to, value_text(runs[k], "status"));
-        buffer_add(to, "</td></tr>\n");
-    }
-    html_table_end(to);
+    html_lists(to, "runs", run_columns, runs, count, NULL);
     buffer_add(to, "<p class=\"note\">L1 of the velocity: of the vector's difference. Momentum, "
                    "angular momentum, energy: what has changed since the start, relative (angular "
                    "momentum is not conserved where the box is periodic, nor by the gradients ia "
                    "and corrected).</p>\n");
 }
 
-static void functional_table(struct buffer *to, const json_t *const *runs, size_t count)
+static const struct html_column functionals[] = {COLUMN("scheme", "^label", .kind = CELL_TEXT),
+                                                 COLUMN("scalar", "name", .kind = CELL_WORDS),
+                                                 COLUMN("#value", "value"),
+                                                 COLUMN("#exact or reference", "reference"),
+                                                 {0}};
+
+static void gate_status(struct buffer *to, const json_t *gate)
 {
-    size_t i;
-    const json_t *entry;
-    if (!json_array_size(json_object_get(runs[0], "functionals"))) return;
-    html_table(to, "functionals", "scheme|scalar|#value|#exact or reference");
-    for (size_t k = 0; k < count; k++)
-        json_array_foreach(json_object_get(runs[k], "functionals"), i, entry) {
-            buffer_add(to, "<tr>");
-            html_cell(to, value_text(runs[k], "label"));
-            buffer_add(to, "<td>");
-            html_words(to, value_text(entry, "name"));
-            buffer_add(to, "</td>");
-            html_cell_number(to, value_member(entry, "value"));
-            html_cell_number(to, value_member(entry, "reference"));
-            buffer_add(to, "</tr>\n");
-        }
-    html_table_end(to);
+    const char *why = value_text_or(gate, "known", value_text(gate, "why"));
+    html_status(to, value_text(gate, "status"));
+    if (*why) buffer_add(to, ": ");
+    buffer_escape(to, why);
 }
+
+static const struct html_column gates[] = {COLUMN("scheme", "^label", .kind = CELL_TEXT),
+                                           COLUMN("error", "name", .kind = CELL_WORDS),
+                                           COLUMN("#of this run", "value"),
+                                           COLUMN("#allowed", "bound"),
+                                           COLUMN("", NULL, .cell = gate_status),
+                                           {0}};
 
 /* What these runs have to keep; open where one does not. */
 static void gate_table(struct buffer *to, const json_t *const *runs, size_t count)
 {
-    size_t i, gates = 0;
+    size_t i, all = 0;
     const json_t *gate;
     bool failed = false;
     for (size_t k = 0; k < count; k++)
         json_array_foreach(json_object_get(runs[k], "gates"), i, gate) {
             failed = failed || !strcmp(value_text(gate, "status"), "fail");
-            gates++;
+            all++;
         }
-    if (!gates) return;
+    if (!all) return;
     buffer_format(to, "<details%s><summary>What these runs have to keep</summary>\n",
                   failed ? " open=\"open\"" : "");
-    html_table(to, "gates", "scheme|error|#of this run|#allowed|");
-    for (size_t k = 0; k < count; k++)
-        json_array_foreach(json_object_get(runs[k], "gates"), i, gate) {
-            buffer_add(to, "<tr>");
-            html_cell(to, value_text(runs[k], "label"));
-            buffer_add(to, "<td>");
-            html_words(to, value_text(gate, "name"));
-            buffer_add(to, "</td>");
-            html_cell_number(to, value_member(gate, "value"));
-            html_cell_number(to, value_member(gate, "bound"));
-            buffer_add(to, "<td>");
-            html_status(to, value_text(gate, "status"));
-            const char *why = value_text_or(gate, "known", value_text(gate, "why"));
-            if (*why) {
-                buffer_add(to, ": ");
-                buffer_escape(to, why);
-            }
-            buffer_add(to, "</td></tr>\n");
-        }
-    html_table_end(to);
+    html_lists(to, "gates", gates, runs, count, "gates");
     buffer_add(to, "</details>\n");
 }
 
@@ -386,6 +347,7 @@ void page_cloud_tables(struct buffer *to, const json_t *const *runs, size_t coun
 {
     buffer_add(to, "<h4>Errors, conservation and cost of the runs above</h4>\n");
     run_table(to, runs, count);
-    functional_table(to, runs, count);
+    if (json_array_size(json_object_get(runs[0], "functionals")))
+        html_lists(to, "functionals", functionals, runs, count, "functionals");
     gate_table(to, runs, count);
 }

@@ -10,20 +10,6 @@
 #include "page_study.h"
 #include "value.h"
 
-/* Labels in the order in which they appear. */
-static size_t find_labels(const json_t *list, const char **labels, size_t n)
-{
-    const json_t *entry;
-    size_t i;
-    json_array_foreach(list, i, entry) {
-        const char *label = value_text(entry, "label");
-        size_t k = 0;
-        while (k < n && strcmp(labels[k], label)) k++;
-        if (k == n && n < PAGE_SCHEMES) labels[n++] = label;
-    }
-    return n;
-}
-
 static bool is_code(const json_t *document)
 {
     return json_is_object(json_object_get(document, "code"));
@@ -108,15 +94,6 @@ static bool begins_case(const json_t *runs, size_t i)
     return case_state_find(runs, name, NULL) == json_array_get(runs, i);
 }
 
-static void name_cell(struct buffer *to, const char *name)
-{
-    buffer_add(to, "<tr><td><a href=\"#case-");
-    buffer_escape(to, name);
-    buffer_add(to, "\">");
-    html_words(to, name);
-    buffer_add(to, "</a></td>");
-}
-
 static void matrix(struct buffer *to, const json_t *results, const char *const *labels,
                    size_t count)
 {
@@ -126,7 +103,8 @@ static void matrix(struct buffer *to, const json_t *results, const char *const *
     json_array_foreach(runs, i, run) {
         const char *name = value_text(run, "case");
         if (!begins_case(runs, i)) continue;
-        name_cell(to, name);
+        buffer_add(to, "<tr>");
+        case_state_cell(to, name);
         for (size_t k = 0; k < count; k++)
             cell(to, case_state_find(json_object_get(results, "studies"), name, labels[k]),
                  case_state_find(runs, name, labels[k]));
@@ -138,66 +116,45 @@ static void matrix(struct buffer *to, const json_t *results, const char *const *
                    "schemes run on the same ladder, without gates.</p>\n");
 }
 
-static void conservation(struct buffer *to, const json_t *runs)
+static bool is_sound(const json_t *run)
 {
-    static const char *const kept[] = {"mass", "momentum", "angular_momentum", "energy"};
-    const json_t *run;
-    size_t i;
-    buffer_add(to, "<h3>Conservation</h3>\n");
-    html_table(to, "runs", "case|code|#n|#mass|#momentum|#angular momentum|#energy");
-    json_array_foreach(runs, i, run) {
-        if (strcmp(value_text(run, "status"), "ok")) continue;
-        buffer_add(to, "<tr>");
-        html_cell(to, value_text(run, "case"));
-        html_cell(to, value_text(run, "label"));
-        html_cell_number(to, value_member(run, "n"));
-        for (size_t k = 0; k < sizeof kept / sizeof *kept; k++)
-            html_cell_number(to, value_inner(run, "conservation", kept[k]));
-        buffer_add(to, "</tr>\n");
-    }
-    html_table_end(to);
+    return !strcmp(value_text(run, "status"), "ok");
 }
+
+static const struct html_column conserved[] = {
+    COLUMN("case", "case", .kind = CELL_TEXT),
+    COLUMN("code", "label", .kind = CELL_TEXT),
+    COLUMN("#n", "n"),
+    COLUMN("#mass", "conservation/mass"),
+    COLUMN("#momentum", "conservation/momentum"),
+    COLUMN("#angular momentum", "conservation/angular_momentum"),
+    COLUMN("#energy", "conservation/energy"),
+    {0}};
+
+static const struct html_column assumed[] = {COLUMN("what", "what", .kind = CELL_TEXT),
+                                             COLUMN("value", "value", .kind = CELL_TEXT),
+                                             COLUMN("evidence", "evidence", .kind = CELL_TEXT),
+                                             {0}};
+
+static const struct html_column programs[] = {
+    COLUMN("code", "code/title", .kind = CELL_TEXT),
+    COLUMN("case", "case", .kind = CELL_TEXT),
+    COLUMN("command", "code/command", .kind = CELL_CODE),
+    COLUMN("SHA-256 of the program", "code/sha256", .kind = CELL_CODE),
+    COLUMN("initial state", "code/ic", .kind = CELL_TEXT),
+    {0}};
 
 static void assumptions(struct buffer *to, const json_t *run)
 {
-    const json_t *list = json_object_get(json_object_get(run, "judged"), "assumptions"), *note;
-    size_t i;
+    const json_t *list = json_object_get(json_object_get(run, "judged"), "assumptions");
     if (!json_array_size(list)) return;
     buffer_add(to, "<details><summary>What was assumed of ");
     buffer_escape(to, value_text(run, "label"));
     buffer_add(to, ", ");
     buffer_escape(to, value_text(run, "case"));
     buffer_add(to, "</summary>\n");
-    html_table(to, "facts", "what|value|evidence");
-    json_array_foreach(list, i, note) {
-        buffer_add(to, "<tr>");
-        html_cell(to, value_text(note, "what"));
-        html_cell(to, value_text(note, "value"));
-        html_cell(to, value_text(note, "evidence"));
-        buffer_add(to, "</tr>\n");
-    }
-    html_table_end(to);
+    html_list(to, "facts", assumed, list, NULL);
     buffer_add(to, "</details>\n");
-}
-
-static void programs(struct buffer *to, const json_t *runs)
-{
-    const json_t *run;
-    size_t i;
-    buffer_add(to, "<h3>The codes</h3>\n");
-    html_table(to, "facts", "code|case|command|SHA-256 of the program|initial state");
-    json_array_foreach(runs, i, run) {
-        const json_t *code = json_object_get(run, "code");
-        if (!is_code(run)) continue;
-        buffer_add(to, "<tr>");
-        html_cell(to, value_text(code, "title"));
-        html_cell(to, value_text(run, "case"));
-        html_cell_code(to, value_text(code, "command"));
-        html_cell_code(to, value_text(code, "sha256"));
-        html_cell(to, value_text(code, "ic"));
-        buffer_add(to, "</tr>\n");
-    }
-    html_table_end(to);
 }
 
 void page_codes(struct page_writer *writer, const json_t *results)
@@ -205,12 +162,14 @@ void page_codes(struct page_writer *writer, const json_t *results)
     struct buffer *to = &writer->to;
     const json_t *runs = json_object_get(results, "runs"), *run;
     const char *labels[PAGE_SCHEMES];
-    const size_t count = find_labels(runs, labels, 0);
+    const size_t count = case_state_labels(runs, 1, 3, labels);
     size_t i;
     buffer_add(to, "<section id=\"overview\"><h2>All cases at a glance</h2>\n");
     matrix(to, results, labels, count);
-    conservation(to, runs);
-    programs(to, runs);
+    buffer_add(to, "<h3>Conservation</h3>\n");
+    html_list(to, "runs", conserved, runs, is_sound);
+    buffer_add(to, "<h3>The codes</h3>\n");
+    html_list(to, "facts", programs, runs, is_code);
     json_array_foreach(runs, i, run) assumptions(to, run);
     buffer_add(to, "</section>\n");
 }

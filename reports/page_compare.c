@@ -99,7 +99,7 @@ bool page_make_compare(struct page *page, const json_t *document)
     const json_t *sides = json_object_get(document, "sides"), *side;
     const json_t *runs[SIDES] = {0};
     size_t k;
-    page_head(to, "sphproof compare");
+    page_head(to, " compare");
     buffer_add(to, "<header><p class=\"kind\">sphproof compare, case ");
     buffer_escape(to, value_text(document, "case"));
     buffer_add(to, "</p><h1>");
@@ -121,10 +121,6 @@ bool page_make_compare(struct page *page, const json_t *document)
     } else {
         lines(&writer, runs);
     }
-    buffer_add(to, "</section></main></body></html>\n");
-    page->html = buffer_take(to);
-    page->plots = writer.plots;
-    if (page->html) return true;
-    page_plots_free(&page->plots);
-    return false;
+    buffer_add(to, "</section>");
+    return page_end(&writer, page);
 }

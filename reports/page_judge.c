@@ -10,7 +10,6 @@
 #include "page.h"
 #include "page_cloud.h"
 #include "page_part.h"
-#include "style.h"
 #include "value.h"
 
 static const char *const fields[] = {"density", "velocity", "pressure"};
@@ -110,36 +109,16 @@ static void errors(struct buffer *to, const json_t *judged)
     html_table_end(to);
 }
 
-static void assumptions(struct buffer *to, const json_t *judged)
-{
-    const json_t *note;
-    size_t k;
-    html_table(to, "assumptions", "what|taken for|because");
-    json_array_foreach(json_object_get(judged, "assumptions"), k, note) {
-        buffer_add(to, "<tr>");
-        html_cell(to, value_text(note, "what"));
-        html_cell(to, value_text(note, "value"));
-        html_cell(to, value_text(note, "evidence"));
-        buffer_add(to, "</tr>\n");
-    }
-    html_table_end(to);
-}
-
-static void candidates(struct buffer *to, const json_t *judged)
-{
-    const json_t *kernel = json_object_get(judged, "kernel"), *one;
-    size_t k;
-    html_table(to, "candidates", "kernel|density as sum of|#support radius/h|#density misses by");
-    json_array_foreach(json_object_get(kernel, "candidates"), k, one) {
-        buffer_add(to, "<tr>");
-        html_cell(to, value_text(one, "name"));
-        html_cell(to, value_text(one, "density"));
-        html_cell_digits(to, value_member(one, "ratio"));
-        html_cell_number(to, value_member(one, "residual"));
-        buffer_add(to, "</tr>\n");
-    }
-    html_table_end(to);
-}
+static const struct html_column assumptions[] = {COLUMN("what", "what", .kind = CELL_TEXT),
+                                                 COLUMN("taken for", "value", .kind = CELL_TEXT),
+                                                 COLUMN("because", "evidence", .kind = CELL_TEXT),
+                                                 {0}},
+                                candidates[] = {
+                                    COLUMN("kernel", "name", .kind = CELL_TEXT),
+                                    COLUMN("density as sum of", "density", .kind = CELL_TEXT),
+                                    COLUMN("#support radius/h", "ratio", .kind = CELL_DIGITS),
+                                    COLUMN("#density misses by", "residual"),
+                                    {0}};
 
 static void snapshot(struct page_writer *writer, const json_t *judged, size_t number)
 {
@@ -155,38 +134,32 @@ static void snapshot(struct page_writer *writer, const json_t *judged, size_t nu
         profiles(writer, judged, number);
     errors(to, judged);
     buffer_add(to, "<h3>What was assumed</h3>\n");
-    assumptions(to, judged);
+    html_list(to, "assumptions", assumptions, json_object_get(judged, "assumptions"), NULL);
     buffer_add(to, "<h3>Kernel and meaning of h: the density summed again</h3><p>");
     buffer_escape(to, value_text(json_object_get(judged, "kernel"), "why"));
     buffer_add(to, "</p>\n");
-    candidates(to, judged);
+    html_list(to, "candidates", candidates,
+              json_object_get(json_object_get(judged, "kernel"), "candidates"), NULL);
     buffer_add(to, "</section>\n");
 }
 
-/* What must hold, of the snapshot with most particles. */
-static void gates(struct buffer *to, const json_t *list)
+static void allowed(struct buffer *to, const json_t *gate)
 {
-    const json_t *gate;
-    size_t k;
-    if (!json_array_size(list)) return;
-    buffer_add(to, "<section id=\"gates\"><h2>Gates</h2>\n");
-    html_table(to, "gates", "gate|#found|#allowed||why|");
-    json_array_foreach(list, k, gate) {
-        const char *relation = value_text(gate, "relation"), *why = value_text(gate, "why");
-        buffer_add(to, "<tr>");
-        html_cell_code(to, value_text(gate, "name"));
-        html_cell_number(to, value_member(gate, "value"));
-        buffer_format(to, "<td class=\"n\">%s ", strcmp(relation, ">=") ? "≤" : "≥");
-        html_number(to, value_member(gate, "bound"));
-        buffer_add(to, "</td><td>");
-        html_status(to, value_text(gate, "status"));
-        buffer_add(to, "</td><td>");
-        buffer_escape(to, *why ? why : value_text(gate, "source"));
-        buffer_add(to, "</td></tr>\n");
-    }
-    html_table_end(to);
-    buffer_add(to, "</section>\n");
+    buffer_add(to, strcmp(value_text(gate, "relation"), ">=") ? "≤ " : "≥ ");
+    html_number(to, value_member(gate, "bound"));
 }
+
+static void why(struct buffer *to, const json_t *gate)
+{
+    const char *why = value_text(gate, "why");
+    buffer_escape(to, *why ? why : value_text(gate, "source"));
+}
+
+/* What must hold, of the snapshot with most particles. */
+static const struct html_column gates[] = {
+    COLUMN("gate", "name", .kind = CELL_CODE), COLUMN("#found", "value"),
+    COLUMN("#allowed", NULL, .cell = allowed), COLUMN("", "status", .kind = CELL_STATUS),
+    COLUMN("why", NULL, .cell = why),          {0}};
 
 /* Of several snapshots: orders where numbers of particles differ, what is conserved where times
  * do. */
@@ -234,41 +207,28 @@ static void together(struct buffer *to, const json_t *document)
     buffer_add(to, " have changed.</p></section>\n");
 }
 
-void page_head(struct buffer *to, const char *title)
-{
-    buffer_format(to,
-                  "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
-                  "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
-                  "<meta name=\"color-scheme\" content=\"light dark\"/><title>%s</title>"
-                  "<style>",
-                  title);
-    for (size_t k = 0; page_styles[k]; k++) buffer_add(to, page_styles[k]);
-    buffer_format(to, "%s</style></head><body>\n", style_css());
-}
-
 bool page_make_judge(struct page *page, const json_t *document)
 {
     struct page_writer writer = {.alone = true};
     struct buffer *to = &writer.to;
     const json_t *snapshots = json_object_get(document, "snapshots"), *one;
     size_t k;
-    page_head(to, "sphproof judge");
+    page_head(to, " judge");
     buffer_format(to, "<header class=\"%s\"><p class=\"kind\">sphproof judge, case ",
                   strcmp(value_text(document, "status"), "pass") ? "unwell" : "well");
     buffer_escape(to, value_text(document, "case"));
     buffer_add(to, "</p><h1>");
     buffer_escape(to, value_text(document, "headline"));
     buffer_add(to, "</h1></header>\n<main>\n");
-    gates(to, json_object_get(document, "gates"));
+    if (json_array_size(json_object_get(document, "gates"))) {
+        buffer_add(to, "<section id=\"gates\"><h2>Gates</h2>\n");
+        html_list(to, "gates", gates, json_object_get(document, "gates"), NULL);
+        buffer_add(to, "</section>\n");
+    }
     together(to, document);
     if (json_array_size(snapshots))
         json_array_foreach(snapshots, k, one) snapshot(&writer, one, k);
     else
         snapshot(&writer, document, 0);
-    buffer_add(to, "</main></body></html>\n");
-    page->html = buffer_take(to);
-    page->plots = writer.plots;
-    if (page->html) return true;
-    page_plots_free(&page->plots);
-    return false;
+    return page_end(&writer, page);
 }

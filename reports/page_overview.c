@@ -14,28 +14,10 @@ static bool is_cloud(const json_t *document)
     return value_member(document, "dimension") > 1;
 }
 
-/* Labels of the schemes of 1D, or of 2D and 3D, in the order in which they appear. */
-static size_t schemes(const json_t *list, bool clouds, const char **labels)
-{
-    size_t n = 0, i;
-    const json_t *entry;
-    json_array_foreach(list, i, entry) {
-        const char *label = value_text(entry, "label");
-        size_t k = 0;
-        if (is_cloud(entry) != clouds) continue;
-        while (k < n && strcmp(labels[k], label)) k++;
-        if (k == n && n < PAGE_SCHEMES) labels[n++] = label;
-    }
-    return n;
-}
-
 static void case_cells(struct buffer *to, const char *name, double n)
 {
-    buffer_add(to, "<tr><td><a href=\"#case-");
-    buffer_escape(to, name);
-    buffer_add(to, "\">");
-    html_words(to, name);
-    buffer_add(to, "</a></td>");
+    buffer_add(to, "<tr>");
+    case_state_cell(to, name);
     html_cell_number(to, n);
 }
 
@@ -105,7 +87,7 @@ static void clouds(struct buffer *to, const json_t *results)
     const json_t *runs = json_object_get(results, "runs"), *entry;
     const char *labels[PAGE_SCHEMES];
     struct buffer columns = {0};
-    size_t count = schemes(runs, true, labels), i;
+    size_t count = case_state_labels(runs, 2, 3, labels), i;
     if (!count) return;
     buffer_add(&columns, "case|#n|error of");
     for (size_t k = 0; k < count; k++) {
@@ -132,7 +114,7 @@ static void lines(struct buffer *to, const json_t *results)
     struct buffer columns = {0};
     const json_t *studies = json_object_get(results, "studies"), *entry;
     const char *labels[PAGE_SCHEMES];
-    size_t count = schemes(studies, false, labels), i;
+    size_t count = case_state_labels(studies, 1, 1, labels), i;
     if (!count) return;
     buffer_add(&columns, "case|#n");
     for (size_t k = 0; k < count; k++) {
@@ -156,8 +138,8 @@ void page_overview(struct page_writer *writer, const json_t *results)
     struct buffer *to = &writer->to;
     const char *labels[PAGE_SCHEMES];
     if (!json_array_size(json_object_get(results, "studies"))) return;
-    const bool both = schemes(json_object_get(results, "studies"), false, labels) &&
-                      schemes(json_object_get(results, "runs"), true, labels);
+    const bool both = case_state_labels(json_object_get(results, "studies"), 1, 1, labels) &&
+                      case_state_labels(json_object_get(results, "runs"), 2, 3, labels);
     buffer_add(to, "<section id=\"overview\"><h2>All cases at a glance</h2>\n");
     if (both) buffer_add(to, "<h3>In 1D</h3>\n");
     lines(to, results);

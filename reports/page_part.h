@@ -9,8 +9,12 @@
 
 extern const char *const page_styles[]; /* parts of the style sheet; ends with NULL */
 
-/* Of a page of its own: all up to <body>. */
+struct page;
+
+/* All up to <body>, title: behind "sphproof"; and all from </main> on, which takes the writer.
+ * False: no memory. */
 void page_head(struct buffer *to, const char *title);
+bool page_end(struct page_writer *writer, struct page *page);
 
 /* One line for the head, and the section: what changed since last night and over the nights. */
 void page_since(struct buffer *to, const json_t *results);

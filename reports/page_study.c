@@ -366,16 +366,9 @@ static void order_table(struct buffer *to, const struct study *studies, size_t c
     buffer_add(to, "</details>\n");
 }
 
-static void percent_cell(struct buffer *to, double part)
-{
-    buffer_add(to, "<td class=\"n\">");
-    if (isfinite(part)) html_number(to, 100 * part);
-    buffer_add(to, isfinite(part) ? " %</td>" : "—</td>");
-}
-
 /* The class of a scalar is of its differences from level to level, which may grow where its error
  * falls: then that is said. */
-static const char *class_words(const json_t *entry)
+static void class_words(struct buffer *to, const json_t *entry)
 {
     const char *class = value_text(entry, "class");
     const json_t *values = json_object_get(entry, "values");
@@ -384,41 +377,44 @@ static const char *class_words(const json_t *entry)
     for (size_t i = 1; i < json_array_size(values); i++)
         nearer = nearer && fabs(value_real(json_array_get(values, i)) - exact) <
                                fabs(value_real(json_array_get(values, i - 1)) - exact);
-    if (strcmp(class, "diverging") != 0) return class;
-    return nearer ? "its error falls, by irregular steps" : "its steps do not get smaller";
+    buffer_escape(to, strcmp(class, "diverging") ? class
+                      : nearer                   ? "its error falls, by irregular steps"
+                                                 : "its steps do not get smaller");
 }
 
-/* Scalars of the final state: what they tend to, and how sure that is. */
-static void functional_table(struct buffer *to, const struct study *studies, size_t count)
+static void finest_value(struct buffer *to, const json_t *values)
 {
-    size_t k, i, all = 0;
-    const json_t *entry;
-    for (k = 0; k < count; k++)
-        all += json_array_size(json_object_get(studies[k].document, "functionals"));
+    html_digits(to, value_real(json_array_get(values, json_array_size(values) - 1)));
+}
+
+static void percent(struct buffer *to, const json_t *part)
+{
+    if (isfinite(value_real(part))) html_number(to, 100 * value_real(part));
+    buffer_add(to, isfinite(value_real(part)) ? " %" : "—");
+}
+
+static const struct html_column functionals[] = {
+    COLUMN("scheme", "^label", .kind = CELL_TEXT),
+    COLUMN("scalar", "name", .kind = CELL_WORDS),
+    COLUMN("#finest level", "values", .cell = finest_value),
+    COLUMN("#extrapolated", "extrapolated", .kind = CELL_DIGITS),
+    COLUMN("#exact", "exact", .kind = CELL_DIGITS),
+    COLUMN("#order", "order"),
+    COLUMN("#GCI, finest", "gci", .cell = percent),
+    COLUMN("#GCI, next", "gci_coarse", .cell = percent),
+    COLUMN("convergence", NULL, .cell = class_words),
+    {0}};
+
+/* Scalars of the final state: what they tend to, and how sure that is. */
+static void functional_table(struct buffer *to, const json_t *const *studies, size_t count)
+{
+    size_t all = 0;
+    for (size_t k = 0; k < count; k++)
+        all += json_array_size(json_object_get(studies[k], "functionals"));
     if (!all) return;
     buffer_add(to, "<details><summary>Scalars extrapolated, with their grid convergence index"
                    "</summary>\n");
-    html_table(to, "functionals",
-               "scheme|scalar|#finest level|#extrapolated|#exact|#order|#GCI, finest|#GCI, "
-               "next|convergence");
-    for (k = 0; k < count; k++)
-        json_array_foreach(json_object_get(studies[k].document, "functionals"), i, entry) {
-            const json_t *values = json_object_get(entry, "values");
-            buffer_add(to, "<tr>");
-            html_cell(to, value_text(studies[k].document, "label"));
-            buffer_add(to, "<td>");
-            html_words(to, value_text(entry, "name"));
-            buffer_add(to, "</td>");
-            html_cell_digits(to, value_real(json_array_get(values, json_array_size(values) - 1)));
-            html_cell_digits(to, value_member(entry, "extrapolated"));
-            html_cell_digits(to, value_member(entry, "exact"));
-            html_cell_number(to, value_member(entry, "order"));
-            percent_cell(to, value_member(entry, "gci"));
-            percent_cell(to, value_member(entry, "gci_coarse"));
-            html_cell(to, class_words(entry));
-            buffer_add(to, "</tr>\n");
-        }
-    html_table_end(to);
+    html_lists(to, "functionals", functionals, studies, count, "functionals");
     buffer_add(to, "<p class=\"note\">Richardson's extrapolation and Roache's grid convergence "
                    "index (GCI: 1.25 times the estimated relative error) of the finest levels; "
                    "only where convergence is asymptotic.</p></details>\n");
@@ -440,7 +436,7 @@ void page_study(struct page_writer *writer, const char *case_name, const json_t 
     error_table(to, studies, count);
     buffer_add(to, "</div></div>\n");
     order_table(to, studies, count);
-    functional_table(to, studies, count);
+    functional_table(to, documents, count);
     page_budget(writer, documents, count);
     free(studies);
 }

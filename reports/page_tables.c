@@ -136,53 +136,55 @@ void page_gradients(struct page_writer *writer, const json_t *gradients)
     buffer_add(to, "</section>\n");
 }
 
-static void cell_or_never(struct buffer *to, const json_t *number)
+static size_t failed_checks(const json_t *kernel)
 {
-    if (json_is_number(number))
-        html_cell_number(to, value_real(number));
-    else
-        buffer_add(to, "<td class=\"n\">never</td>");
+    const json_t *check;
+    size_t i, failed = 0;
+    json_array_foreach(json_object_get(kernel, "checks"), i, check)
+        failed += !strcmp(value_text(check, "status"), "fail");
+    return failed;
 }
 
-static void kernel_row(struct buffer *to, const json_t *kernel)
+static void kernel_name(struct buffer *to, const json_t *kernel)
 {
-    const json_t *checks = json_object_get(kernel, "checks"), *check;
-    size_t i, failed = 0;
-    json_array_foreach(checks, i, check) failed += !strcmp(value_text(check, "status"), "fail");
-    buffer_add(to, "<tr><td>");
-    html_status(to, failed ? "fail" : "pass");
+    html_status(to, failed_checks(kernel) ? "fail" : "pass");
     buffer_add(to, " <code>");
     buffer_escape(to, value_text(kernel, "kernel"));
-    buffer_add(to, "</code></td>");
-    html_cell_number(to, value_member(kernel, "dim"));
-    buffer_format(to, "<td>C%.0f</td>", value_member(kernel, "class"));
-    html_cell_number(to, fabs(1 - value_member(kernel, "normalisation")));
-    html_cell_number(to, value_inner(kernel, "moments", "sigma"));
-    const json_t *fourier = json_object_get(kernel, "fourier");
-    html_cell_number(to, value_member(fourier, "min"));
-    cell_or_never(to, json_object_get(fourier, "first_negative_k"));
-    cell_or_never(to, json_object_get(kernel, "pairing_neighbours"));
-    buffer_format(to, "<td class=\"n\">%zu of %zu</td>", json_array_size(checks) - failed,
-                  json_array_size(checks));
-    html_cell_code(to, value_text(kernel, "reproduce"));
-    buffer_add(to, "</tr>\n");
+    buffer_add(to, "</code>");
 }
+
+static void off_one(struct buffer *to, const json_t *normalisation)
+{
+    html_number(to, fabs(1 - value_real(normalisation)));
+}
+
+static void hold(struct buffer *to, const json_t *kernel)
+{
+    const size_t all = json_array_size(json_object_get(kernel, "checks"));
+    buffer_format(to, "%zu of %zu", all - failed_checks(kernel), all);
+}
+
+static const struct html_column certificates[] = {
+    COLUMN("kernel", NULL, .cell = kernel_name),
+    COLUMN("#dim", "dim"),
+    COLUMN("class", "class", .format = "C%.0f"),
+    COLUMN("#1 − ∫W dV", "normalisation", .cell = off_one),
+    COLUMN("#sigma/h", "moments/sigma"),
+    COLUMN("#least of transform Ŵ", "fourier/min"),
+    COLUMN("#Ŵ &lt; 0 from kh", "fourier/first_negative_k", .otherwise = "never"),
+    COLUMN("#pairs from N", "pairing_neighbours", .otherwise = "never"),
+    COLUMN("#hold", NULL, .cell = hold),
+    COLUMN("certificate", "reproduce", .kind = CELL_CODE),
+    {0}};
 
 void page_kernels(struct page_writer *writer, const json_t *kernels)
 {
     struct buffer *to = &writer->to;
-    const json_t *kernel;
-    size_t i;
     buffer_add(to,
                "<section id=\"kernels\"><h2>Kernel certificates</h2>\n<p>Particles pair "
                "from the number of neighbours N on at which coincident pairs have less energy than "
                "single particles on the densest lattice; with a Fourier transform that is nowhere "
                "negative they never do.</p>\n");
-    html_table(to, "kernels",
-               "kernel|#dim|class|#1 − ∫W dV|#sigma/h|#least of transform Ŵ|#Ŵ &lt; 0 from "
-               "kh|#pairs from N|#hold|"
-               "certificate");
-    json_array_foreach(kernels, i, kernel) kernel_row(to, kernel);
-    html_table_end(to);
+    html_list(to, "kernels", certificates, kernels, NULL);
     buffer_add(to, "</section>\n");
 }

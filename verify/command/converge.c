@@ -73,7 +73,8 @@ static void print_orders(const struct case_file *file, const struct study_result
     for (int field = 0; field < FIELDS; field++)
         for (int norm = 0; norm < NORMS; norm++) {
             const struct study_order *order = &result->orders[field][norm];
-            if (order->status == FINDING_NONE && (norm != NORM_L1 || !measured(file, result, field)))
+            if (order->status == FINDING_NONE &&
+                (norm != NORM_L1 || !measured(file, result, field)))
                 continue;
             char name[40];
             snprintf(name, sizeof name, "%s_%s", field_family.members[field]->name,
