@@ -39,8 +39,7 @@ struct check_sink {
     bool failed;
 };
 
-static void take(struct property_sink *sink, double value, double bound, double floor,
-                 const char *where, bool skipped)
+static void take(struct property_sink *sink, const struct finding *figure)
 {
     struct check_sink *context = (struct check_sink *)sink;
     const struct kernel *kernel = context->pieces->kernel;
@@ -49,12 +48,12 @@ static void take(struct property_sink *sink, double value, double bound, double 
         snprintf(name, sizeof name, "%.40s %d", kernel->member.name, kernel->order);
     else
         snprintf(name, sizeof name, "%.60s", kernel->member.name);
-    if (skipped)
-        check_skip(context->run, "%s, dim %d: %s", name, context->pieces->dim, where);
+    if (figure->status == FINDING_SKIP)
+        check_skip(context->run, "%s, dim %d: %s", name, context->pieces->dim, figure->subject);
     else
-        check_measure(context->run, value, bound, floor, "%s, dim %d, %s", name,
-                      context->pieces->dim, where);
-    context->failed = context->failed || !(skipped || value <= bound);
+        check_measure(context->run, figure->value, figure->bound, figure->floor, "%s, dim %d, %s",
+                      name, context->pieces->dim, figure->subject);
+    context->failed = context->failed || figure->status == FINDING_FAIL;
 }
 
 /* For the plot of a failure: w, dw, and what dw should be. */
@@ -78,22 +77,19 @@ static void show_shape(struct check_run *run, const struct kernel *kernel, int d
 }
 
 /* The user's kernel has been measured elsewhere. */
-static void pass_on(struct check_run *run, const struct user_figures *figures, const char *property)
+static void pass_on(struct check_run *run, const struct user_figures *user, const char *property)
 {
-    int n = 0;
-    for (int i = 0; i < figures->n; i++) {
-        const struct user_figure *figure = &figures->list[i];
-        char name[96];
-        if (strcmp(figure->property, property) != 0) continue;
-        snprintf(name, sizeof name, figure->dim ? "%s, dim %d" : "%s", figures->name, figure->dim);
-        if (figure->skipped)
-            check_skip(run, "%s: %s", name, figure->where);
+    size_t n = 0;
+    for (size_t i = 0; i < user->figures.count; i++) {
+        const struct finding *figure = &user->figures.list[i];
+        if (strcmp(figure->what, property) != 0) continue;
+        if (figure->status == FINDING_SKIP)
+            check_skip(run, "%s", figure->subject);
         else
-            check_measure(run, figure->value, figure->bound, figure->floor, "%s, %s", name,
-                          figure->where);
+            check_measure(run, figure->value, figure->bound, figure->floor, "%s", figure->subject);
         n++;
     }
-    if (n == 0) check_skip(run, "%s: not measured, it does not run", figures->name);
+    if (n == 0) check_skip(run, "%s: not measured, it does not run", user->name);
 }
 
 static void measure(struct check_run *run, const void *subject_, const char *name,

@@ -7,36 +7,22 @@
 
 #include <gsl/gsl_errno.h>
 
-#include "list.h"
 #include "places.h"
 
 struct certificate_sink {
     struct property_sink sink;
     struct certificate *certificate;
     const struct property *property;
-    bool no_memory;
 };
 
-static void take(struct property_sink *sink, double value, double bound, double floor,
-                 const char *where, bool skipped)
+static void take(struct property_sink *sink, const struct finding *given)
 {
     struct certificate_sink *context = (struct certificate_sink *)sink;
     struct certificate *certificate = context->certificate;
-    if (!list_grow(&certificate->figures, certificate->figure_count,
-                   sizeof *certificate->figures)) {
-        context->no_memory = true;
-        return;
-    }
-    if (certificate->terms.single && bound > 0) bound = fmax(bound, TERMS_SINGLE_BOUND);
-    struct certificate_figure *figure = &certificate->figures[certificate->figure_count++];
-    *figure = (struct certificate_figure){.property = context->property,
-                                          .value = value,
-                                          .bound = bound,
-                                          .floor = floor,
-                                          .skipped = skipped,
-                                          .passed = skipped || (value <= bound && floor <= bound)};
-    snprintf(figure->where, sizeof figure->where, "%s", where);
-    certificate->failed += !figure->passed;
+    struct finding figure = certificate->terms.single ? property_single(given) : *given;
+    figure.what = context->property->name;
+    findings_add(&certificate->figures, figure);
+    certificate->failed += figure.status == FINDING_FAIL;
 }
 
 /* The widths people use: the kernel's own, the seed program's, and what lies between. */
@@ -77,7 +63,7 @@ enum status certificate_measure(struct certificate *certificate, const struct ke
         property_list[i].measure(&certificate->pieces, &context.sink);
     }
     gsl_set_error_handler(handler);
-    if (!context.no_memory) return STATUS_OK;
+    if (!certificate->figures.failed) return STATUS_OK;
     certificate_free(certificate);
     return error_set(error, STATUS_ENVIRONMENT, "no memory for the figures of a kernel");
 }
@@ -86,8 +72,7 @@ void certificate_free(struct certificate *certificate)
 {
     pieces_free(&certificate->pieces);
     measure_spectrum_free(&certificate->spectrum);
-    free(certificate->figures);
-    certificate->figures = NULL;
+    findings_free(&certificate->figures);
 }
 
 enum status certificate_failing(const struct kernel *kernel, int dim, const struct terms *terms,
@@ -97,9 +82,9 @@ enum status certificate_failing(const struct kernel *kernel, int dim, const stru
     if (!certificate) return error_set(error, STATUS_ENVIRONMENT, "no memory for a certificate");
     const enum status status = certificate_measure(certificate, kernel, dim, terms, error);
     *failing = json_array();
-    for (size_t k = 0; k < certificate->figure_count && !status; k++)
-        if (!certificate->figures[k].passed)
-            json_array_append_new(*failing, json_string(certificate->figures[k].property->name));
+    for (size_t k = 0; k < certificate->figures.count && !status; k++)
+        if (certificate->figures.list[k].status == FINDING_FAIL)
+            json_array_append_new(*failing, json_string(certificate->figures.list[k].what));
     if (!status) certificate_free(certificate);
     free(certificate);
     return status;

@@ -8,17 +8,11 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "findings.h"
 #include "measure.h"
 #include "property.h"
 
 enum { CERTIFICATE_WIDTHS = 8 };
-
-struct certificate_figure {
-    const struct property *property;
-    double value, bound, floor;
-    bool skipped, passed;
-    char where[128]; /* of a skipped figure: why */
-};
 
 struct certificate {
     const struct kernel *kernel; /* not owned */
@@ -35,8 +29,8 @@ struct certificate {
     struct {        /* lattice sums against width: multiples of the mean spacing */
         double eta, density, gradient;
     } lattice[CERTIFICATE_WIDTHS];
-    size_t figure_count, failed;
-    struct certificate_figure *figures;
+    struct findings figures; /* what: the property's name */
+    size_t failed;
 };
 
 /* How hard a single kernel is looked at. */
@@ -58,6 +52,9 @@ void certificate_print(const struct certificate *certificate, double h, FILE *st
 
 /* Adds "normalisation", "moments", "class", "fourier" ... and "checks" to document. */
 void certificate_json(const struct certificate *certificate, double h, json_t *document);
+
+/* The figures as a list of checks, see `sphproof verify`; new reference. */
+json_t *certificate_checks(const struct certificate *certificate);
 
 /* The curves of W, W', W'' and the transform, for certificate_plot; new reference. */
 json_t *certificate_curves(const struct certificate *certificate);

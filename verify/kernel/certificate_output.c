@@ -71,26 +71,26 @@ static void print_lattice(const struct certificate *c, FILE *stream)
     fprintf(stream, "\n");
 }
 
-static double nearness(const struct certificate_figure *figure)
+static double nearness(const struct finding *figure)
 {
-    if (figure->skipped) return -1;
+    if (figure->status == FINDING_SKIP) return -1;
     if (!(figure->value <= figure->bound)) return (double)INFINITY;
     return figure->bound > 0 ? figure->value / figure->bound : 0;
 }
 
-static void print_figure(const struct certificate_figure *figure, FILE *stream, bool color)
+static void print_figure(const struct finding *figure, FILE *stream, bool color)
 {
-    const bool failed = !figure->passed;
+    const bool failed = figure->status == FINDING_FAIL, skipped = figure->status == FINDING_SKIP;
     fprintf(stream, "  %s%-4s%s %-18s", color ? failed ? "\033[31m" : "\033[32m" : "",
-            failed            ? "FAIL"
-            : figure->skipped ? "-"
-                              : "ok",
-            color ? "\033[0m" : "", figure->property->name);
-    if (figure->skipped)
-        fprintf(stream, " %9s %9s %9s  %s\n", "", "", "", figure->where);
+            failed    ? "FAIL"
+            : skipped ? "-"
+                      : "ok",
+            color ? "\033[0m" : "", figure->what);
+    if (skipped)
+        fprintf(stream, " %9s %9s %9s  %s\n", "", "", "", figure->subject);
     else
         fprintf(stream, " %9.2e %9.1e %9.1e  %s\n", figure->value, figure->bound, figure->floor,
-                figure->where);
+                figure->subject);
 }
 
 /* One line a property (the figure nearest to its bound), and every figure that fails. */
@@ -98,14 +98,14 @@ static void print_properties(const struct certificate *c, FILE *stream, bool col
 {
     fprintf(stream, "\n  %-4s %-18s %9s %9s %9s\n", "", "property", "value", "bound", "floor");
     for (size_t p = 0; p < property_count; p++) {
-        const struct certificate_figure *nearest = NULL;
-        for (size_t i = 0; i < c->figure_count; i++) {
-            const struct certificate_figure *figure = &c->figures[i];
-            if (figure->property != &property_list[p]) continue;
-            if (!figure->passed) print_figure(figure, stream, color);
+        const struct finding *nearest = NULL;
+        for (size_t i = 0; i < c->figures.count; i++) {
+            const struct finding *figure = &c->figures.list[i];
+            if (strcmp(figure->what, property_list[p].name) != 0) continue;
+            if (figure->status == FINDING_FAIL) print_figure(figure, stream, color);
             if (!nearest || nearness(figure) > nearness(nearest)) nearest = figure;
         }
-        if (nearest && nearest->passed) print_figure(nearest, stream, color);
+        if (nearest && nearest->status != FINDING_FAIL) print_figure(nearest, stream, color);
     }
 }
 
@@ -135,38 +135,42 @@ void certificate_print(const struct certificate *c, double h, FILE *stream, bool
     print_resolution(c, stream);
     fprintf(stream, "\n%s: ", c->failed ? "REJECTED" : "accepted");
     if (c->failed) {
-        fprintf(stream, "%zu of %zu figures beyond their bound, in", c->failed, c->figure_count);
-        const struct property *last = NULL;
-        for (size_t i = 0; i < c->figure_count; i++) {
-            const struct certificate_figure *figure = &c->figures[i];
-            if (figure->passed || figure->property == last) continue;
-            fprintf(stream, "%s %s", last ? "," : "", figure->property->name);
-            last = figure->property;
+        fprintf(stream, "%zu of %zu figures beyond their bound, in", c->failed, c->figures.count);
+        const char *last = "";
+        for (size_t i = 0; i < c->figures.count; i++) {
+            const struct finding *figure = &c->figures.list[i];
+            if (figure->status != FINDING_FAIL || strcmp(figure->what, last) == 0) continue;
+            fprintf(stream, "%s %s", *last ? "," : "", figure->what);
+            last = figure->what;
         }
         fprintf(stream, "\n");
     } else
-        fprintf(stream, "%zu figures within their bounds\n", c->figure_count);
+        fprintf(stream, "%zu figures within their bounds\n", c->figures.count);
 }
 
 /* ---- JSON ---- */
 
-static json_t *figures_json(const struct certificate *c)
+static const char *formula_of(const char *property)
+{
+    size_t p = 0;
+    while (p + 1 < property_count && strcmp(property_list[p].name, property) != 0) p++;
+    return property_list[p].formula;
+}
+
+json_t *certificate_checks(const struct certificate *c)
 {
     json_t *list = json_array();
     char subject[256];
-    for (size_t i = 0; i < c->figure_count; i++) {
-        const struct certificate_figure *figure = &c->figures[i];
+    for (size_t i = 0; i < c->figures.count; i++) {
+        const struct finding *figure = &c->figures.list[i];
         snprintf(subject, sizeof subject, "%s, dim %d, %s", c->kernel->member.name, c->dim,
-                 figure->where);
-        json_array_append_new(list, json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:s}", "group",
-                                              "kernels", "name", figure->property->name, "subject",
-                                              subject, "property", figure->property->formula,
-                                              "value", result_number(figure->value), "bound",
-                                              result_number(figure->bound), "floor",
-                                              result_number(figure->floor), "status",
-                                              figure->skipped  ? "skip"
-                                              : figure->passed ? "pass"
-                                                               : "fail"));
+                 figure->subject);
+        json_array_append_new(
+            list, json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:s}", "group", "kernels", "name",
+                            figure->what, "subject", subject, "property", formula_of(figure->what),
+                            "value", result_number(figure->value), "bound",
+                            result_number(figure->bound), "floor", result_number(figure->floor),
+                            "status", finding_words[figure->status]));
     }
     return list;
 }
@@ -231,7 +235,7 @@ void certificate_json(const struct certificate *c, double h, json_t *document)
                                   "judged", c->terms.single ? "single" : "double"));
     json_object_set_new(document, "negative", json_boolean(c->terms.negative));
     json_object_set_new(document, "resolution", resolution_json(c));
-    json_object_set_new(document, "checks", figures_json(c));
+    json_object_set_new(document, "checks", certificate_checks(c));
 }
 
 /* ---- plot ---- */

@@ -8,6 +8,25 @@
 /* Powers of h are exact at 1 only: a wrong power hides there. */
 const double property_width[PROPERTY_WIDTHS] = {1, 0.0371, 2.385, 41.7};
 
+static void pass_on(struct property_sink *sink, double value, double bound, double floor,
+                    const char *where)
+{
+    sink->take(sink, &(struct finding){.subject = where,
+                                       .value = value,
+                                       .bound = bound,
+                                       .floor = floor,
+                                       .status = finding_judge(value, bound, floor)});
+}
+
+struct finding property_single(const struct finding *figure)
+{
+    struct finding single = *figure;
+    if (single.bound > 0) single.bound = fmax(single.bound, TERMS_SINGLE_BOUND);
+    if (single.status != FINDING_SKIP)
+        single.status = finding_judge(single.value, single.bound, single.floor);
+    return single;
+}
+
 void property_take(struct property_sink *sink, double value, double bound, double floor,
                    const char *where, ...)
 {
@@ -16,7 +35,7 @@ void property_take(struct property_sink *sink, double value, double bound, doubl
     va_start(arguments, where);
     vsnprintf(text, sizeof text, where, arguments);
     va_end(arguments);
-    sink->take(sink, value, bound, floor, text, false);
+    pass_on(sink, value, bound, floor, text);
 }
 
 void property_skip(struct property_sink *sink, const char *why, ...)
@@ -26,7 +45,11 @@ void property_skip(struct property_sink *sink, const char *why, ...)
     va_start(arguments, why);
     vsnprintf(text, sizeof text, why, arguments);
     va_end(arguments);
-    sink->take(sink, (double)NAN, (double)NAN, (double)NAN, text, true);
+    const double nan = (double)NAN;
+    sink->take(
+        sink,
+        &(struct finding){
+            .subject = text, .value = nan, .bound = nan, .floor = nan, .status = FINDING_SKIP});
 }
 
 /* How near to failing; infinite if it does and the bound is 0. */
@@ -54,8 +77,8 @@ void property_keep(struct property_worst *worst, double value, double bound, dou
 void property_take_worst(struct property_sink *sink, const struct property_worst *worst)
 {
     const bool compared = worst->where[0];
-    sink->take(sink, compared ? worst->value : (double)NAN, worst->bound, worst->floor,
-               compared ? worst->where : "nothing was compared", false);
+    pass_on(sink, compared ? worst->value : (double)NAN, worst->bound, worst->floor,
+            compared ? worst->where : "nothing was compared");
 }
 
 double property_bound(double base, double floor)

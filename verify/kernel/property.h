@@ -7,13 +7,13 @@
 
 #include <stddef.h>
 
+#include "finding.h"
 #include "pieces.h"
 
-/* Receives the figures of a property: its bound and floor as in check.h; or why there is none
- * (value NaN, skipped true). */
+/* Receives the figures of a property: of a finding subject (where, or why there is none), value,
+ * bound and floor as in check.h, and whether it passes, fails or was skipped. */
 struct property_sink {
-    void (*take)(struct property_sink *sink, double value, double bound, double floor,
-                 const char *where, bool skipped);
+    void (*take)(struct property_sink *sink, const struct finding *figure);
 };
 
 struct property {
@@ -35,6 +35,9 @@ void property_take(struct property_sink *sink, double value, double bound, doubl
                    const char *where, ...) __attribute__((format(printf, 5, 6)));
 void property_skip(struct property_sink *sink, const char *why, ...)
     __attribute__((format(printf, 2, 3)));
+
+/* The same figure judged as of a kernel that computes in float. */
+struct finding property_single(const struct finding *figure);
 
 /* The worst of many figures: the one with the largest value/bound (a NaN is worst of all). */
 struct property_worst {

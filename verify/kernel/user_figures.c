@@ -20,16 +20,12 @@ static enum status add_certificate(const struct user_kernel *user, int dim, json
     const struct terms terms = user_kernel_terms(user, dim);
     if (!c) return error_set(error, STATUS_ENVIRONMENT, "no memory for a kernel");
     const enum status status = certificate_measure(c, &user->kernel, dim, &terms, error);
-    for (size_t i = 0; i < c->figure_count && !status; i++) {
-        const struct certificate_figure *figure = &c->figures[i];
-        json_array_append_new(list, json_pack("{s:s, s:i, s:o, s:o, s:o, s:b, s:s}", "property",
-                                              figure->property->name, "dim", dim, "value",
-                                              result_number(figure->value), "bound",
-                                              result_number(figure->bound), "floor",
-                                              result_number(figure->floor), "skipped",
-                                              (int)figure->skipped, "where", figure->where));
+    if (!status) {
+        json_t *checks = certificate_checks(c);
+        json_array_extend(list, checks);
+        json_decref(checks);
+        certificate_free(c);
     }
-    if (!status) certificate_free(c);
     free(c);
     return status;
 }
@@ -42,48 +38,28 @@ static enum status work(const void *path, json_t **reply, struct error *error)
     enum status status = user_kernel_load(&user, path, 0, &terms, error);
     for (int dim = 1; dim <= KERNEL_DIM_MAX && !status; dim++)
         status = add_certificate(&user, dim, list, error);
-    *reply = json_pack("{s:s, s:o}", "name", status ? "" : user.name, "figures", list);
+    *reply = json_pack("{s:s, s:o}", "name", status ? "" : user.name, "checks", list);
     if (!status) user_kernel_unload(&user);
     return status;
 }
 
 /* ---- in this one ---- */
 
-static const char *property_called(const char *name)
-{
-    for (size_t i = 0; i < property_count; i++)
-        if (strcmp(property_list[i].name, name) == 0) return property_list[i].name;
-    return NULL;
-}
-
-static void take_figure(struct user_figures *figures, const json_t *json)
-{
-    struct user_figure figure = {
-        .property = property_called(value_text(json, "property")),
-        .dim = (int)value_member(json, "dim"),
-        .value = value_member(json, "value"),
-        .bound = value_member(json, "bound"),
-        .floor = value_member(json, "floor"),
-        .skipped = json_is_true(json_object_get(json, "skipped")),
-    };
-    snprintf(figure.where, sizeof figure.where, "%s", value_text(json, "where"));
-    if (figure.property) figures->list[figures->n++] = figure;
-}
-
 static enum status take(struct user_figures *figures, const struct guard_verdict *verdict,
                         struct error *error)
 {
-    const json_t *list = json_object_get(verdict->reply, "figures");
-    const size_t n = json_array_size(list);
-    figures->list = calloc(n + 1, sizeof *figures->list);
-    if (!figures->list) return error_set(error, STATUS_ENVIRONMENT, "no memory for figures");
-    if (n) snprintf(figures->name, sizeof figures->name, "%s", value_text(verdict->reply, "name"));
-    for (size_t i = 0; i < n; i++) take_figure(figures, json_array_get(list, i));
-    if (verdict->ended) return STATUS_OK;
-    struct user_figure *figure = &figures->list[figures->n++];
-    *figure = (struct user_figure){.property = property_called("runs"), .value = 1};
-    snprintf(figure->where, sizeof figure->where, "%s", verdict->reason);
-    return STATUS_OK;
+    const char *name = value_text(verdict->reply, "name");
+    if (*name) snprintf(figures->name, sizeof figures->name, "%s", name);
+    findings_of_verify(&figures->figures, verdict->reply);
+    if (!verdict->ended) {
+        char subject[500];
+        snprintf(subject, sizeof subject, "%s, %.400s", figures->name, verdict->reason);
+        findings_add(&figures->figures,
+                     (struct finding){
+                         .what = "runs", .subject = subject, .value = 1, .status = FINDING_FAIL});
+    }
+    return figures->figures.failed ? error_set(error, STATUS_ENVIRONMENT, "no memory for figures")
+                                   : STATUS_OK;
 }
 
 enum status user_figures_measure(struct user_figures *figures, const char *path,
@@ -103,6 +79,6 @@ enum status user_figures_measure(struct user_figures *figures, const char *path,
 
 void user_figures_free(struct user_figures *figures)
 {
-    free(figures->list);
+    findings_free(&figures->figures);
     *figures = (struct user_figures){0};
 }

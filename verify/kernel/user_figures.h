@@ -4,22 +4,12 @@
 #ifndef SPHPROOF_USER_FIGURES_H
 #define SPHPROOF_USER_FIGURES_H
 
-#include <stdbool.h>
-
+#include "findings.h"
 #include "status.h"
-
-struct user_figure {
-    const char *property; /* its name; not owned */
-    int dim;              /* 0: of the kernel as such */
-    double value, bound, floor;
-    bool skipped;
-    char where[400]; /* of a skipped figure: why */
-};
 
 struct user_figures {
     char name[64];
-    int n;
-    struct user_figure *list;
+    struct findings figures; /* what: a property's name; subject: kernel, dimension and where */
 };
 
 /* A kernel that crashes, never returns ... has one failing figure of property `runs`.

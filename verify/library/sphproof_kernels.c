@@ -167,19 +167,18 @@ struct certify_sink {
     bool single;
 };
 
-static void take(struct property_sink *sink, double value, double bound, double floor,
-                 const char *where, bool skipped)
+static void take(struct property_sink *sink, const struct finding *given)
 {
     const struct certify_sink *context = (const struct certify_sink *)sink;
-    if (context->single && bound > 0) bound = fmax(bound, TERMS_SINGLE_BOUND);
+    const struct finding found = context->single ? property_single(given) : *given;
     const struct sphproof_figure figure = {.property = context->property->name,
                                            .formula = context->property->formula,
-                                           .where = where,
-                                           .value = value,
-                                           .bound = bound,
-                                           .floor = floor,
-                                           .skipped = skipped,
-                                           .passed = skipped || (value <= bound && floor <= bound)};
+                                           .where = found.subject,
+                                           .value = found.value,
+                                           .bound = found.bound,
+                                           .floor = found.floor,
+                                           .skipped = found.status == FINDING_SKIP,
+                                           .passed = found.status != FINDING_FAIL};
     library_figure(context->figures, &figure);
 }
 

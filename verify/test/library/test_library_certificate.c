@@ -31,15 +31,24 @@ static void plant(const struct pieces *pieces, struct property_sink *sink)
 {
     assert_non_null(pieces);
     measured[0]++;
-    sink->take(sink, planted.value, planted.bound, planted.floor, "here", planted.skipped);
+    sink->take(sink, &(struct finding){.subject = "here",
+                                       .value = planted.value,
+                                       .bound = planted.bound,
+                                       .floor = planted.floor,
+                                       .status = planted.skipped
+                                                     ? FINDING_SKIP
+                                                     : finding_judge(planted.value, planted.bound,
+                                                                     planted.floor)});
 }
 
 static void plant_good(const struct pieces *pieces, struct property_sink *sink)
 {
     assert_non_null(pieces);
     measured[1]++;
-    sink->take(sink, 0, 1, 0, "there", false);
-    sink->take(sink, 0.25, 1, 0, "elsewhere", false);
+    sink->take(sink, &(struct finding){.subject = "there", .bound = 1, .status = FINDING_PASS});
+    sink->take(sink,
+               &(struct finding){
+                   .subject = "elsewhere", .value = 0.25, .bound = 1, .status = FINDING_PASS});
 }
 
 const struct property planted_list[] = {{"good", "0 = 0", plant_good}, {"bad", "a = b", plant}};

@@ -36,14 +36,14 @@ static int rejected(const char *name, int dim, const char *by)
     if (user_kernel_load(&user, path_of(name), dim, NULL, &error)) fail_msg("%s", error.message);
     const struct terms terms = user_kernel_terms(&user, dim);
     assert_int_equal(certificate_measure(&certificate, &user.kernel, dim, &terms, NULL), STATUS_OK);
-    assert_true(certificate.figure_count > 40);
-    for (size_t i = 0; i < certificate.figure_count; i++) {
-        const struct certificate_figure *figure = &certificate.figures[i];
-        if (!figure->passed && !by)
-            print_error("%s, dim %d: %s: %g > %g, floor %g, %s\n", name, dim,
-                        figure->property->name, figure->value, figure->bound, figure->floor,
-                        figure->where);
-        by_that |= by && !figure->passed && strcmp(figure->property->name, by) == 0;
+    assert_true(certificate.figures.count > 40);
+    for (size_t i = 0; i < certificate.figures.count; i++) {
+        const struct finding *figure = &certificate.figures.list[i];
+        const bool fails = figure->status == FINDING_FAIL;
+        if (fails && !by)
+            print_error("%s, dim %d: %s: %g > %g, floor %g, %s\n", name, dim, figure->what,
+                        figure->value, figure->bound, figure->floor, figure->subject);
+        by_that |= by && fails && strcmp(figure->what, by) == 0;
     }
     const int failed = (int)certificate.failed;
     certificate_free(&certificate);
