@@ -22,6 +22,7 @@ struct counting {
     double sound, time, t_end; /* of the setup; of the step before; of the run */
     double share;              /* what could be skipped, summed over steps */
     uint64_t steps;
+    int columns;
     double slept[BENCH_ROWS][BENCH_COLUMNS], gas[BENCH_ROWS][BENCH_COLUMNS];
 };
 
@@ -85,14 +86,45 @@ static size_t count_calm(struct counting *counting, const struct snapshot *s, do
     return calm;
 }
 
-static void map_sleepers(struct counting *counting, const struct snapshot *s, double time)
+/* Of the box along x, counted from 0. */
+static int column_at(const struct counting *counting, double x, int columns)
 {
     const struct domain *domain = &counting->problem->domain;
+    const double at = (x - domain->lo[0]) / domain_length(domain, 0);
+    return (int)fmax(0, fmin(at * columns, columns - 1));
+}
+
+/* Is there, of so many columns, an empty one between two with particles? */
+static bool has_gap(const struct counting *counting, int columns)
+{
+    const struct initial *initial = counting->initial;
+    bool met[BENCH_COLUMNS] = {false};
+    int first = columns, last = -1;
+    for (size_t i = 0; i < initial->n; i++) {
+        const int column = column_at(counting, initial->x[0][i], columns);
+        met[column] = true;
+        if (column < first) first = column;
+        if (column > last) last = column;
+    }
+    while (first < last && met[first]) first++;
+    return first < last;
+}
+
+/* As many as the map has room for, but none empty at the start where gas is on both sides of it:
+ * few particles along x would leave stripes. */
+static int count_columns(const struct counting *counting)
+{
+    int columns = BENCH_COLUMNS;
+    while (has_gap(counting, columns)) columns--;
+    return columns;
+}
+
+static void map_sleepers(struct counting *counting, const struct snapshot *s, double time)
+{
     const int row = (int)fmin(time / counting->t_end * BENCH_ROWS, BENCH_ROWS - 1);
     simulation_asleep(counting->simulation, counting->asleep);
     for (size_t i = 0; i < s->n; i++) {
-        const double at = (s->x[0][i] - domain->lo[0]) / domain_length(domain, 0);
-        const int column = (int)fmax(0, fmin(at * BENCH_COLUMNS, BENCH_COLUMNS - 1));
+        const int column = column_at(counting, s->x[0][i], counting->columns);
         counting->gas[row][column]++;
         counting->slept[row][column] += counting->asleep[i];
     }
@@ -116,7 +148,7 @@ static bool count(void *context, double time, uint64_t steps)
 static bool has_gas(const struct counting *counting, int row)
 {
     double gas = 0;
-    for (int c = 0; c < BENCH_COLUMNS; c++) gas += counting->gas[row][c];
+    for (int c = 0; c < counting->columns; c++) gas += counting->gas[row][c];
     return gas > 0;
 }
 
@@ -129,7 +161,7 @@ static void fill_map(const struct counting *counting, struct bench_shares *share
         if (from < 0 && has_gas(counting, row)) from = row;
     for (int row = 0; row < BENCH_ROWS; row++) {
         if (has_gas(counting, row)) from = row;
-        for (int c = 0; c < BENCH_COLUMNS; c++)
+        for (int c = 0; c < counting->columns; c++)
             shares->asleep[row][c] = counting->slept[from][c] / counting->gas[from][c];
     }
 }
@@ -145,6 +177,7 @@ static enum status run_counting(const struct run *run, struct counting *counting
     simulation_snapshot(counting->simulation, &start);
     counting->sound = setup_sound(counting->initial, setup.dim, setup.gamma);
     counting->t_end = setup.t_end;
+    counting->columns = count_columns(counting);
     for (size_t i = 0; i < start.n; i++) counting->h[start.id[i]] = start.h[i];
     count_calm(counting, &start, 0);
     status = simulation_run(counting->simulation, setup.t_end, count, counting, error);
@@ -154,6 +187,7 @@ static enum status run_counting(const struct run *run, struct counting *counting
     shares->skipped = skipped / (skipped + (double)cost.particle_updates);
     shares->possible = counting->share / (double)counting->steps;
     shares->coarse = run->problem.problem->ahead == NULL;
+    shares->columns = counting->columns;
     fill_map(counting, shares);
     return status;
 }

@@ -15,7 +15,9 @@ struct bench_shares {
      * density change more slowly than a coarse threshold. */
     double possible;
     bool coarse; /* possible is found with the coarse threshold */
-    /* Share of the gas that sleeps, by parts of t_end and parts of the box along x; NaN: no gas. */
+    /* Share of the gas that sleeps, by parts of t_end and parts of the box along x, of which there
+     * are so few that none between particles is empty at the start; NaN: no gas. */
+    int columns;
     double asleep[BENCH_ROWS][BENCH_COLUMNS];
 };
 

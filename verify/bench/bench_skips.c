@@ -121,7 +121,7 @@ static enum status work(void *context, uint64_t times, struct clock_taken *taken
 struct bench {
     struct bench_skips *result;
     size_t max;
-    bool sleep;
+    enum bench_part part;
     struct job *jobs; /* BENCH_SIDES a skip; then one whole step of each case */
     struct bench_subject *subjects;
 };
@@ -174,9 +174,9 @@ static struct bench_skip *new_skip(struct bench *bench, size_t c, const char *na
                                 .keys = keys,
                                 .promise = PROMISE_UNUSED,
                                 .difference = (double)NAN,
-                                .l1 = {(double)NAN, (double)NAN},
-                                 .without_viscosity = (double)NAN,
-                                 .without_slope = (double)NAN,
+                                .error = {(double)NAN, (double)NAN},
+                                .without_viscosity = (double)NAN,
+                                .without_slope = (double)NAN,
                                 .kept = true};
     return skip;
 }
@@ -202,8 +202,12 @@ static struct run *run_with(const struct run_settings *from, const char *keys,
 static enum status add_switches(struct bench *bench, size_t c, const struct scheme *scheme,
                                 struct error *error)
 {
-    for (size_t s = 0; s < (bench->sleep ? 1 : SWITCHES); s++) { /* which is the first */
+    for (size_t s = 0; s < SWITCHES; s++) {
         const int dim = bench->result->cases[c].file.dimension;
+        const enum bench_part part = s == 0                      ? BENCH_SLEEP
+                                     : switches[s].when == LOCAL ? BENCH_STEPS
+                                                                 : BENCH_WORK;
+        if (bench->part != BENCH_WORK && part != bench->part) continue;
         if (!applies(switches[s].when, scheme, dim)) continue;
         struct bench_skip *skip =
             new_skip(bench, c, switches[s].name, switches[s].keys[BENCH_WITH]);
@@ -309,7 +313,7 @@ static enum status add_case(struct bench *bench, size_t c, struct error *error)
     struct job *whole = &bench->jobs[bench->max * BENCH_SIDES + c];
     whole->run = run_with(settings, "skip=none", NULL, error);
     if (!whole->run || add_switches(bench, c, &whole->run->scheme, error) ||
-        (!bench->sleep && add_extras(bench, c, &whole->run->scheme, error)))
+        (bench->part == BENCH_WORK && add_extras(bench, c, &whole->run->scheme, error)))
         return error->status;
     return STATUS_OK;
 }
@@ -336,11 +340,29 @@ static double sensitivity(const struct job *job)
     return isfinite(difference) ? difference : 0;
 }
 
+/* Returns what it is of; NULL: nothing is exact, and the error is NaN. */
+static const char *error_of(const struct run_result *result, double *error)
+{
+    *error = result->errors[FIELD_DENSITY].l1;
+    if (isfinite(*error)) return "L1 of density";
+    *error = result->errors[FIELD_VELOCITY].l1;
+    if (isfinite(*error)) return "L1 of velocity";
+    for (size_t k = 0; k < result->functional_count; k++) {
+        const struct run_functional *functional = &result->functionals[k];
+        *error = fabs(functional->value - functional->exact);
+        if (isfinite(*error)) return functional->name;
+    }
+    *error = (double)NAN;
+    return NULL;
+}
+
 static void judge(struct bench_skip *skip, const struct job *job)
 {
     const struct run_result *a = &job[BENCH_WITHOUT].last, *b = &job[BENCH_WITH].last;
-    skip->l1[BENCH_WITHOUT] = a->errors[FIELD_DENSITY].l1;
-    skip->l1[BENCH_WITH] = b->errors[FIELD_DENSITY].l1;
+    skip->measured = error_of(a, &skip->error[BENCH_WITHOUT]);
+    error_of(b, &skip->error[BENCH_WITH]);
+    skip->momentum[BENCH_WITHOUT] = a->momentum, skip->momentum[BENCH_WITH] = b->momentum;
+    skip->energy[BENCH_WITHOUT] = a->energy, skip->energy[BENCH_WITH] = b->energy;
     struct error ignored;
     if (skip->name == switches[0].name && (skip->shares = calloc(1, sizeof *skip->shares)) &&
         bench_possible(job[BENCH_WITHOUT].run, skip->shares, &ignored)) {
@@ -354,13 +376,17 @@ static void judge(struct bench_skip *skip, const struct job *job)
         skip->without_viscosity = (double)a->cost.without_viscosity / sums;
         skip->without_slope = (double)a->cost.without_slope / sums;
     }
+    const double *error = skip->error;
     skip->difference = skip->promise == PROMISE_ERROR
-                           ? skip->l1[BENCH_WITHOUT] / skip->l1[BENCH_WITH] - 1
+                           ? (error[BENCH_WITHOUT] == error[BENCH_WITH]
+                                  ? 0
+                                  : error[BENCH_WITHOUT] / error[BENCH_WITH] - 1)
                            : bench_skips_difference(&a->snapshot, &b->snapshot,
                                                     domain_length(&a->problem.domain, 0));
     if (skip->promise == PROMISE_ROUND_OFF && skip->difference > skip->bound)
         skip->bound = fmax(skip->bound, 10 * sensitivity(&job[BENCH_WITH]));
-    skip->kept = skip->difference <= skip->bound;
+    skip->kept = skip->difference <= skip->bound ||
+                 (skip->promise == PROMISE_ERROR && !skip->measured); /* nothing tells */
 }
 
 static void finish(struct bench *bench, const struct bench_subject *of_job[])
@@ -422,10 +448,10 @@ end:
 }
 
 enum status bench_skips_measure(const struct run_settings *cases, size_t count,
-                                const struct bench_rules *rules, bool sleep,
+                                const struct bench_rules *rules, enum bench_part part,
                                 struct bench_skips *result, struct error *error)
 {
-    struct bench bench = {.result = result, .sleep = sleep, .max = count * (SWITCHES + EXTRAS)};
+    struct bench bench = {.result = result, .part = part, .max = count * (SWITCHES + EXTRAS)};
     *result = (struct bench_skips){.case_count = count,
                                    .cases = malloc(count * sizeof *cases),
                                    .n = calloc(count, sizeof(size_t)),

@@ -19,12 +19,27 @@ static json_t *map_json(const struct bench_shares *shares)
     json_t *map = json_array();
     for (int row = 0; row < BENCH_ROWS; row++) {
         json_t *values = json_array();
-        for (int c = 0; c < BENCH_COLUMNS; c++)
+        for (int c = 0; c < shares->columns; c++)
             json_array_append_new(
                 values, result_number_or_null(round(1000 * shares->asleep[row][c]) / 1000));
         json_array_append_new(map, values);
     }
     return map;
+}
+
+/* Errors and conservation without the work and with it. */
+static void add_drift(json_t *entry, const struct bench_skip *skip)
+{
+    const struct {
+        const char *name;
+        const double *of;
+    } pairs[] = {{"error", skip->error}, {"momentum", skip->momentum}, {"energy", skip->energy}};
+    for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++)
+        json_object_set_new(entry, pairs[k].name,
+                            json_pack("[o, o]", result_number_or_null(pairs[k].of[BENCH_WITHOUT]),
+                                      result_number_or_null(pairs[k].of[BENCH_WITH])));
+    json_object_set_new(entry, "measured",
+                        skip->measured ? json_string(skip->measured) : json_null());
 }
 
 void bench_skips_add_json(const struct bench_skips *result, bool maps, json_t *document)
@@ -50,8 +65,9 @@ void bench_skips_add_json(const struct bench_skips *result, bool maps, json_t *d
                 promises[skip->promise], "difference", result_number_or_null(skip->difference),
                 "bound", skip->promise == PROMISE_UNUSED ? json_null() : result_number(skip->bound),
                 "status", skip->kept ? "pass" : "fail"));
-        if (!shares) continue;
         json_t *entry = json_array_get(list, json_array_size(list) - 1);
+        if (skip->promise != PROMISE_UNUSED) add_drift(entry, skip);
+        if (!shares) continue;
         json_object_set_new(entry, "possible_by",
                             json_string(shares->coarse ? "coarse threshold" : "exact solution"));
         if (maps) json_object_set_new(entry, "asleep", map_json(shares));
@@ -69,7 +85,8 @@ static void print_answer(const struct bench_skip *skip, const struct table_style
     printf("  %s%s%s: ", skip->kept ? "" : style->bad, skip->kept ? "" : "NOT ",
            promises[skip->promise]);
     if (skip->promise == PROMISE_ERROR)
-        printf("L1 %.4e against %.4e", skip->l1[BENCH_WITHOUT], skip->l1[BENCH_WITH]);
+        printf("%s %.4e against %.4e", skip->measured ? skip->measured : "none known",
+               skip->error[BENCH_WITHOUT], skip->error[BENCH_WITH]);
     else
         printf("%.1e", skip->difference);
     if (skip->promise != PROMISE_BITS) printf(" (bound %.0e)", skip->bound);
@@ -112,4 +129,25 @@ void bench_skips_print(const struct bench_skips *result, const struct table_styl
         "any field at t_end over the field's largest value;\nbound of round-off: 1e-8, or ten "
         "times what steps longer by a part of 1e-11 change%s\n",
         style->faint, BENCH_LOOPS_PARTICLES, style->end);
+}
+
+void bench_steps_print(const struct bench_skips *result, const struct table_style *style)
+{
+    printf("%s%-22s %6s %9s %7s  %-16s %10s %10s %9s %9s %9s %9s%s\n", style->bold, "case", "n",
+           "CPU ratio", "spread", "error of", "local", "global", "momentum", "global", "energy",
+           "global", style->end);
+    for (size_t s = 0; s < result->count; s++) {
+        const struct bench_skip *skip = &result->skips[s];
+        printf("%-22s %6zu %9.2f %6.0f%%  %-16s %s%10.3e%s %10.3e %9.1e %9.1e %9.1e %9.1e\n",
+               result->cases[skip->case_index].file.name, result->n[skip->case_index],
+               skip->cpu_s[BENCH_WITHOUT] / skip->cpu_s[BENCH_WITH], 100 * skip->spread,
+               skip->measured ? skip->measured : "nothing exact", skip->kept ? "" : style->bad,
+               skip->error[BENCH_WITHOUT], skip->kept ? "" : style->end, skip->error[BENCH_WITH],
+               skip->momentum[BENCH_WITHOUT], skip->momentum[BENCH_WITH],
+               skip->energy[BENCH_WITHOUT], skip->energy[BENCH_WITH]);
+    }
+    printf("%sCPU ratio: time with local steps over that with global ones, both runs of one "
+           "benchmark. momentum, energy:\nhow far they are not conserved, relative, with local "
+           "steps and with global ones%s\n",
+           style->faint, style->end);
 }

@@ -220,8 +220,9 @@ static enum status kernels(struct request *request, struct error *error)
 
 /* --- what is left out ------------------------------------------------------------------------- */
 
-/* Settings of the case named, or of all built-in ones. The caller frees. */
-static struct run_settings *all_cases(const struct request *request, size_t *count,
+/* Settings of the case named, or of all built-in ones: of 1D, or of 2D and 3D (clouds). The caller
+ * frees. */
+static struct run_settings *all_cases(const struct request *request, size_t *count, bool clouds,
                                       struct error *error)
 {
     size_t most = 0;
@@ -238,26 +239,33 @@ static struct run_settings *all_cases(const struct request *request, size_t *cou
             return NULL;
         }
         cases[c].threads = request->options->threads;
-        /* work is left out in 1D only */
-        *count += request->case_name || cases[c].file.dimension == 1;
+        *count += request->case_name || (cases[c].file.dimension > 1) == clouds;
     }
     return cases;
 }
 
-static enum status skips(struct request *request, struct error *error)
+static enum status leave_out(struct request *request, enum bench_part part, const char *option,
+                             struct error *error)
 {
+    const bool steps = part == BENCH_STEPS;
     struct bench_skips result;
     size_t count;
     bool kept = true;
-    if (refuse_option(request, "--skips", "n", error) ||
-        refuse_option(request, "--skips", "vary", error) ||
-        refuse_option(request, "--skips", "plot", error))
+    if (refuse_option(request, option, "n", error) ||
+        refuse_option(request, option, "vary", error) ||
+        refuse_option(request, option, "plot", error))
         return error->status;
-    struct run_settings *cases = all_cases(request, &count, error);
+    struct run_settings *cases = all_cases(request, &count, steps, error);
     if (!cases) return error->status;
-    progress_begin(&request->progress, "bench --skips", request->options->quiet);
-    enum status status = bench_skips_measure(cases, count, &request->rules, false, &result, error);
+    progress_begin(&request->progress, steps ? "bench --steps" : "bench --skips",
+                   request->options->quiet);
+    enum status status = bench_skips_measure(cases, count, &request->rules, part, &result, error);
     progress_end(&request->progress);
+    if (!status && result.count == 0)
+        status = error_set(error, STATUS_BAD_INPUT,
+                           "bench: --steps: %s has no local steps; allowed: cases in 2D and 3D "
+                           "with a scheme that steps=local goes with",
+                           request->case_name);
     for (size_t s = 0; s < result.count; s++) kept = kept && result.skips[s].kept;
     if (!status) {
         json_t *document = result_new("bench");
@@ -268,11 +276,21 @@ static enum status skips(struct request *request, struct error *error)
     }
     if (!status && request->options->speak) {
         const struct table_style style = table_style(request->options->color);
-        bench_skips_print(&result, &style);
+        (steps ? bench_steps_print : bench_skips_print)(&result, &style);
     }
     bench_skips_free(&result);
     free(cases);
     return status || kept ? status : STATUS_CHECK_FAILED;
+}
+
+static enum status skips(struct request *request, struct error *error)
+{
+    return leave_out(request, BENCH_WORK, "--skips", error);
+}
+
+static enum status steps(struct request *request, struct error *error)
+{
+    return leave_out(request, BENCH_STEPS, "--steps", error);
 }
 
 /* --- how cost grows --------------------------------------------------------------------------- */
@@ -319,6 +337,7 @@ static const struct {
 } modes[] = {
     {"kernels", kernels},
     {"skips", skips},
+    {"steps", steps},
     {"scaling", scaling},
 };
 enum { MODES = sizeof modes / sizeof *modes };
@@ -331,12 +350,13 @@ static enum status run(const struct options *options, int n, char **arguments, s
         if (!options_value(options, modes[m].flag)) continue;
         if (chosen != work_precision)
             return command_usage(options, error,
-                                 "--kernels, --skips and --scaling exclude each other");
+                                 "--kernels, --skips, --steps and --scaling exclude each other");
         chosen = modes[m].run;
     }
     static const char *const of_shares[] = {"shard", "list", "cache", "engine", "code", "work"};
     for (size_t i = 0; chosen != work_precision && i < sizeof of_shares / sizeof *of_shares; i++)
-        if (refuse_option(&request, "--kernels, --skips or --scaling", of_shares[i], error))
+        if (refuse_option(&request, "--kernels, --skips, --steps or --scaling", of_shares[i],
+                          error))
             return error->status;
     if (read_rules(&request, error)) return error->status;
     if (n > 0 && !strchr(arguments[0], '=')) {
@@ -353,6 +373,7 @@ static const struct command_option own_options[] = {
     {"plot", "FILE.svg|.png", "draw error against CPU time (needs gnuplot)"},
     {"kernels", NULL, "ns per pair: kernels x solver loops and gradient operators x dimension"},
     {"skips", NULL, "what each piece of work left out saves, and that the answer is the same"},
+    {"steps", NULL, "2D, 3D: local time steps beside global ones: CPU time, error, conservation"},
     {"scaling", NULL, "time and memory against n, with exponents; gain of threads"},
     {"time", "S", "CPU time of a sample, at least (default 0.02 s)"},
     {"samples", "N", "samples of each measurement (default 5); the least counts"},

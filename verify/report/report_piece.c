@@ -133,7 +133,7 @@ static enum status compute_skips(const struct report_piece *piece, json_t **docu
     const struct bench_rules rules = {.least_s = 0.01, .most_s = 2, .samples = 3};
     struct bench_skips skips;
     const enum status status =
-        bench_skips_measure(&piece->settings, 1, &rules, true, &skips, error);
+        bench_skips_measure(&piece->settings, 1, &rules, BENCH_SLEEP, &skips, error);
     if (!status) {
         char reproduce[256];
         snprintf(reproduce, sizeof reproduce, "sphproof bench %s %s --skips --samples %d",

@@ -242,6 +242,8 @@ BAD = [
     ("list nothing", 2, "nothing", "allowed", "kernels"),
     ("run sod --n 400", 2, "'--n' is a key, not an option; write it as n=400"),
     ("judge a.csv --case sod --gate density_l1=1 --gate pressure_l1=1", 2, "--gate is given twice; allowed: once, as NAME=BOUND,..."),
+    ("bench sod --steps", 2, "sod has no local steps"),
+    ("bench sod --steps --n 100,200", 2, "--n"),
     ("run sod --n=400", 2, "write it as n=400"),
     ("run sod --eta --json -", 2, "write it as eta=VALUE"),
     ("run gresho n=64^3", 2, "n=64^3", "the case has 2 dimensions; allowed: 64^2"),

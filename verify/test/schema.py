@@ -138,6 +138,7 @@ COMMANDS = [
     ["bench", "--n", "20,40", "t_end=0.05", "--vary", "gradient", *BRIEF],
     ["bench", "--kernels", "--vary", "kernel=cubic_spline", *BRIEF],
     ["bench", "--skips", "sod", "n=90", "t_end=0.05", *BRIEF],
+    ["bench", "--steps", "kelvin_helmholtz", "n=16^2", "t_end=0.05", *BRIEF],
     ["bench", "--skips", "sound_wave", "n=24", "t_end=0.1", *BRIEF],
     ["bench", "--scaling", "--n", "20,40,60,80", "t_end=0.02", *BRIEF],
     ["bench", "sound_wave", "--n", "24,16", "--vary", "eta=1.5,0.1", *BRIEF],

@@ -370,7 +370,7 @@ TEST(test_promises_are_kept_or_seen_broken)
     const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 2};
     assert_int_equal(run_prepare(&settings, "sod", 2, (char *[]){"t_end=0.1", "n=180"}, &error), 0);
     settings.threads = 1;
-    assert_int_equal(bench_skips_measure(&settings, 1, &brief, false, &skips, &error), 0);
+    assert_int_equal(bench_skips_measure(&settings, 1, &brief, BENCH_WORK, &skips, &error), 0);
     assert_true(skips.count >= 6);
     near_inside(skips.skips[0].shares->skipped, 0.2, 0.9); /* no signal has come far at t = 0.1 */
     for (size_t i = 0; i < skips.count; i++) {
@@ -393,7 +393,7 @@ TEST(test_no_viscosity)
         const char *name = k ? "gresho" : "sound_wave";
         assert_int_equal(run_prepare(&settings, name, 2 + k, keys[k], &error), 0);
         settings.threads = 1;
-        assert_int_equal(bench_skips_measure(&settings, 1, &brief, false, &skips, &error), 0);
+        assert_int_equal(bench_skips_measure(&settings, 1, &brief, BENCH_WORK, &skips, &error), 0);
         int met = 0;
         for (size_t i = 0; i < skips.count; i++) {
             assert_true(skips.skips[i].kept);
@@ -402,6 +402,37 @@ TEST(test_no_viscosity)
             met++;
         }
         assert_int_equal(met, 1);
+        bench_skips_free(&skips);
+    }
+}
+
+/* Local steps beside global ones: the error is that of what is exact, and sums are conserved. */
+TEST(test_steps)
+{
+    static const struct {
+        const char *name, *measured;
+    } cases[] = {
+        {"noh_2d", "L1 of density"}, {"kelvin_helmholtz", "mode_amplitude"}, {"sod", NULL}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        static struct run_settings settings;
+        struct bench_skips skips;
+        struct error error = {0};
+        const struct bench_rules brief = {.least_s = 1e-6, .most_s = 0.01, .samples = 1};
+        char *keys[] = {"t_end=0.05", "n=256"};
+        assert_int_equal(run_prepare(&settings, cases[k].name, 2, keys, &error), 0);
+        settings.threads = 1;
+        assert_int_equal(bench_skips_measure(&settings, 1, &brief, BENCH_STEPS, &skips, &error), 0);
+        assert_int_equal(skips.count, cases[k].measured ? 1 : 0);
+        for (size_t i = 0; i < skips.count; i++) {
+            const struct bench_skip *skip = &skips.skips[i];
+            assert_true(skip->kept && skip->promise == PROMISE_ERROR);
+            assert_string_equal(skip->measured, cases[k].measured);
+            for (int side = 0; side < BENCH_SIDES; side++) {
+                near_inside(skip->error[side], 1e-9, 1e3);
+                near_absolute(skip->momentum[side], 0, 1e-13);
+                near_absolute(skip->energy[side], 0, 1e-12);
+            }
+        }
         bench_skips_free(&skips);
     }
 }
@@ -427,7 +458,7 @@ TEST(test_promises_in_2d)
     char *keys[] = {"t_end=0.02", "n=16^2", "gradient=standard", "viscosity=constant"};
     assert_int_equal(run_prepare(&settings, "gresho", 4, keys, &error), 0);
     settings.threads = 1;
-    assert_int_equal(bench_skips_measure(&settings, 1, &brief, false, &skips, &error), 0);
+    assert_int_equal(bench_skips_measure(&settings, 1, &brief, BENCH_WORK, &skips, &error), 0);
     bool matrix = false, slope = false, line = false;
     for (size_t i = 0; i < skips.count; i++) {
         const struct bench_skip *skip = &skips.skips[i];
