@@ -114,6 +114,7 @@ const struct sums cells_sums = {
     .reserve = reserve,
     .arrange = workspace_arrange,
     .widths = workspace_widths,
+    .close = workspace_close,
     .matrix = matrix,
     .forces = forces,
     .signal = signal,

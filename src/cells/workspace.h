@@ -55,6 +55,7 @@ void workspace_serialise(struct simulation *simulation, struct serialiser *seria
 enum status workspace_arrange(struct simulation *simulation, struct error *error);
 enum status workspace_widths(struct simulation *simulation, bool newton, double ratio,
                              struct error *error);
+void workspace_close(struct simulation *simulation);
 enum status workspace_begin_sleep(struct simulation *simulation, struct error *error);
 void workspace_update_sleep(struct simulation *simulation);
 bool workspace_sleeps(const struct simulation *simulation, ptrdiff_t i);

@@ -317,3 +317,8 @@ enum status workspace_widths(struct simulation *simulation, bool newton, double 
 {
     return newton ? newton_widths(simulation, error) : predicted_widths(simulation, ratio, error);
 }
+
+void workspace_close(struct simulation *simulation)
+{
+    close_all(simulation, false);
+}

@@ -65,24 +65,44 @@ static void limit_time_step(struct simulation *simulation, double rate)
     simulation->time_step = simulation->scheme.cfl / largest(rate, simulation->sleep.rate);
 }
 
+/* Rates of a state whose neighbours, widths and densities are known. */
+static enum status find_rates(struct simulation *simulation, struct error *error)
+{
+    const struct plan *plan = &simulation->plan;
+    double rate;
+    if (plan->matrix || plan->slope) plan->sums->matrix(simulation);
+    enum status status = plan->sums->forces(simulation, &rate, error);
+    if (status == STATUS_OK && plan->gravity) fall(simulation);
+    if (status == STATUS_OK) fixed_rates(simulation);
+    if (status == STATUS_OK && plan->jump) plan->sums->find_switch(simulation);
+    if (status == STATUS_OK) limit_time_step(simulation, rate);
+    return status;
+}
+
 enum status evaluate_rates_of_primitives(struct simulation *simulation, struct error *error)
 {
     const struct plan *plan = &simulation->plan;
     const struct particles *a = &simulation->particles;
     /* the first widths have none before them that they could be predicted from */
     const bool newton = plan->newton || simulation->dt <= 0;
-    double rate;
-    enum status status = prepare(simulation, newton, error);
+    const enum status status = prepare(simulation, newton, error);
     if (status) return status;
     if (newton && !plan->newton)
         for (ptrdiff_t i = 0; i < a->n; i++) a->h_inverse_old[i] = a->h_inverse_found[i];
-    if (plan->matrix || plan->slope) plan->sums->matrix(simulation);
-    status = plan->sums->forces(simulation, &rate, error);
-    if (status == STATUS_OK && plan->gravity) fall(simulation);
-    if (status == STATUS_OK) fixed_rates(simulation);
-    if (status == STATUS_OK && plan->jump) plan->sums->find_switch(simulation);
-    if (status == STATUS_OK) limit_time_step(simulation, rate);
-    return status;
+    return find_rates(simulation, error);
+}
+
+enum status evaluate_rates_in_place(struct simulation *simulation, struct error *error)
+{
+    const struct plan *plan = &simulation->plan;
+    /* predicted widths would be predicted once more, and a sum of energies has other terms now */
+    if (!plan->newton || plan->energy_sum || !plan->sums->close)
+        return evaluate_rates(simulation, error);
+    const enum status status = find_primitives(simulation, error);
+    if (status) return status;
+    plan->sums->close(simulation);
+    fixed_state(simulation);
+    return find_rates(simulation, error);
 }
 
 void evaluate_signal(struct simulation *simulation)

@@ -116,7 +116,7 @@ static void explain_neighbours(const struct setup *setup, struct writer *writer)
     }
     for (int k = 0; k < setup->dim; k++) walls |= setup->boundary[k] == BOUNDARY_REFLECTING;
     line(writer, "neighbour lists", true,
-         "a grid of cells and a list for each particle, made anew at every evaluation", "");
+         "a grid of cells and a list for each particle, made anew where particles have moved", "");
     line(writer, "mirror images", walls, "boundary=reflecting: particles near a wall",
          "no reflecting wall");
 }

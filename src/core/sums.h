@@ -43,6 +43,9 @@ struct sums {
      * Newton's method; otherwise 1/h is extrapolated by ratio times its last change. */
     enum status (*widths)(struct simulation *simulation, bool newton, double ratio,
                           struct error *error);
+    /* Computes what widths does, of particles that are where they were then, with other U, where
+     * density is no sum of U: h and rho stay. NULL: widths has to be called again. */
+    void (*close)(struct simulation *simulation);
     /* Computes moment matrices and velocity gradients; called if the plan needs either. */
     void (*matrix)(struct simulation *simulation);
     /* Computes F, de and, if the plan needs it, dalpha. *rate becomes at least the largest signal

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Leapfrog that evaluates once more after the second kick, so that a step begins with rates of its
- * own state. */
+ * Leapfrog that evaluates once more after the second kick, where particles have not moved since the
+ * evaluation before, so that a step begins with rates of its own state. */
 #ifndef INTEGRATOR_MODIFIED_LEAPFROG_H
 #define INTEGRATOR_MODIFIED_LEAPFROG_H
 
@@ -10,7 +10,7 @@ static enum status modified_leapfrog_step(struct simulation *simulation, double 
                                           struct error *error)
 {
     const enum status status = leapfrog_kicks(simulation, dt, error);
-    return status ? status : evaluate_rates(simulation, error);
+    return status ? status : evaluate_rates_in_place(simulation, error);
 }
 
 #endif

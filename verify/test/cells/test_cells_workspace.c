@@ -102,6 +102,45 @@ TEST(test_everybody_moves_whole)
     }
 }
 
+/* Where particles have not moved, rates in place are the same bits if nothing has changed, and
+ * those of an evaluation from the start if energies and momenta have. */
+TEST(test_rates_in_place)
+{
+    static const enum volume_element elements[] = {VOLUME_MASS, VOLUME_ENERGY, VOLUME_NUMBER};
+    for (int k = 0; k < 6; k++) {
+        const int dim = 2 + k % 2;
+        struct scheme scheme = made_scheme();
+        double rates[3][5][N];
+        double largest[5] = {0};
+        scheme.volume_element = elements[k / 2], scheme.h_method = H_NEWTON;
+        struct setup setup = setup_of(dim, dim == 2 ? 16 : 8, &scheme);
+        struct simulation *simulation = made_of(&setup);
+        const struct particles *a = &simulation->particles;
+        const double *found[5] = {a->F[0], a->F[1], a->de, a->rho, a->P};
+        for (int round = 0; round < 4; round++) {
+            struct error error;
+            for (ptrdiff_t i = 0; round == 2 && i < a->n; i++) {
+                a->e[i] *= 1 + 0.3 * sin(11. * (double)i);
+                for (int d = 0; d < dim; d++) a->p[d][i] += 0.1 * a->m[i] * cos(5. * (double)i + d);
+            }
+            if (round > 0)
+                assert_int_equal(
+                    (round < 3 ? evaluate_rates_in_place : evaluate_rates)(simulation, &error),
+                    STATUS_OK);
+            for (int c = 0; c < 5; c++)
+                for (ptrdiff_t i = 0; i < a->n; i++) {
+                    const double now = found[c][i], before = rates[round ? round - 1 : 0][c][i];
+                    if (round == 1 && elements[k / 2] != VOLUME_ENERGY) assert_true(now == before);
+                    if (round == 2) largest[c] = fmax(largest[c], fabs(now));
+                    if (round == 3) near_below(fabs(now - before), 1e-8 * largest[c]);
+                    if (round < 3) rates[round][c][i] = now;
+                }
+            if (round == 2) assert_true(rates[2][0][7] != rates[1][0][7]);
+        }
+        simulation_destroy(simulation);
+    }
+}
+
 /* A first guess of the density may be anything: the widths are the same. */
 TEST(test_first_guess)
 {
