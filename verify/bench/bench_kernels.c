@@ -17,7 +17,7 @@
 
 enum { VARIANTS = 3, LIST = 1024 };
 enum { SOLVER_ROWS_MAX = 4 }; /* of a kernel and a gradient, see add_solver: steps and the loops */
-enum { CELLS_ROWS = 7 };      /* of a kernel in 2D or 3D, see add_cells */
+enum { CELLS_ROWS = 10 };     /* of a kernel in 2D or 3D, see add_cells */
 enum variant { STAMPED, UNSTAMPED, LIMIT };
 
 /* One measurement: what a row's column is made from. */
@@ -254,35 +254,43 @@ static void set_limit(const struct bench *bench, struct job *limit, const struct
     }
 }
 
-/* An evaluation in 2D or 3D and its parts; the first row of a gradient is the whole. */
+/* Textbook SPH; with the Integral Approach; the solver's defaults. */
+enum cells_scheme { CELLS_STANDARD, CELLS_IA, CELLS_DEFAULT };
+
+/* An evaluation in 2D or 3D and its parts; the first row of a scheme is the whole. */
 static const struct {
     const char *what;
     unsigned passes;
-    bool ia;
+    enum cells_scheme scheme;
     const char *limit; /* the operator, and how often; NULL: of the search, or of all parts */
     double times;
 } cells_rows[CELLS_ROWS] = {
-    {"evaluation standard", CELLS_EVALUATION, false, NULL, 0},
-    {"search", CELLS_SEARCH, false, NULL, 0},
-    {"density", CELLS_DENSITY, false, "standard", 1},
-    {"force standard", CELLS_FORCE, false, "standard", 2},
-    {"evaluation ia", CELLS_EVALUATION, true, NULL, 0},
-    {"matrix", CELLS_MATRIX, true, "linear_exact", 1},
-    {"force ia", CELLS_FORCE, true, "standard", 2},
+    {"evaluation standard", CELLS_EVALUATION, CELLS_STANDARD, NULL, 0},
+    {"search", CELLS_SEARCH, CELLS_STANDARD, NULL, 0},
+    {"density", CELLS_DENSITY, CELLS_STANDARD, "standard", 1},
+    {"force standard", CELLS_FORCE, CELLS_STANDARD, "standard", 2},
+    {"evaluation ia", CELLS_EVALUATION, CELLS_IA, NULL, 0},
+    {"matrix", CELLS_MATRIX, CELLS_IA, "linear_exact", 1},
+    {"force ia", CELLS_FORCE, CELLS_IA, "standard", 2},
+    {"evaluation default", CELLS_EVALUATION, CELLS_DEFAULT, NULL, 0},
+    {"matrix default", CELLS_MATRIX, CELLS_DEFAULT, "linear_exact", 1},
+    {"force default", CELLS_FORCE, CELLS_DEFAULT, "standard", 2},
 };
 
-/* The solver's own scheme with a kernel and a gradient, and viscosity=constant. */
-static enum status cloud_scheme(const struct kernel *kernel, bool ia, int dim,
+/* The solver's defaults with a kernel, and for the first two a gradient and viscosity=constant. */
+static enum status cloud_scheme(const struct kernel *kernel, enum cells_scheme which, int dim,
                                 struct scheme *scheme, struct error *error)
 {
     char key[64];
-    char *arguments[] = {key, ia ? "gradient=ia" : "gradient=standard", "viscosity=constant"};
+    char *arguments[] = {key, which == CELLS_IA ? "gradient=ia" : "gradient=standard",
+                         "viscosity=constant"};
+    const int given = which == CELLS_DEFAULT ? 1 : 3;
     struct run_settings asked;
     struct run *run = malloc(sizeof *run);
     if (!run) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     snprintf(key, sizeof key, "kernel=%s", kernel->member.name);
     enum status status =
-        run_prepare(&asked, dim == 2 ? "sound_wave_2d" : "sound_wave_3d", 3, arguments, error);
+        run_prepare(&asked, dim == 2 ? "sound_wave_2d" : "sound_wave_3d", given, arguments, error);
     if (!status) status = run_resolve(run, &asked, error);
     if (!status) *scheme = run->scheme;
     free(run);
@@ -296,7 +304,7 @@ static enum status add_cells(struct bench *bench, const struct kernel *kernel, i
     size_t whole = 0;
     for (size_t r = 0; r < CELLS_ROWS; r++) {
         struct scheme scheme;
-        if (cloud_scheme(kernel, cells_rows[r].ia, dim, &scheme, error)) return error->status;
+        if (cloud_scheme(kernel, cells_rows[r].scheme, dim, &scheme, error)) return error->status;
         struct job *job = new_row(bench, kernel->member.name, cells_rows[r].what, dim, false);
         if (cells_rows[r].passes == CELLS_EVALUATION) whole = bench->row_count - 1;
         bench->result->rows[bench->row_count - 1].whole = whole;

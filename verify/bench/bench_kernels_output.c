@@ -51,18 +51,16 @@ void bench_kernels_print(const struct bench_kernels *result, const struct table_
         if (row->on_cloud) printf(" %10.2e", row->error);
         printf("\n");
     }
-    printf(
-        "%sns: CPU time of one thread. step: whole steps of the 1D solver (sound wave, n = %d), "
-        "its limit the same\narithmetic with neighbours known; density, matrix, force: these loops "
-        "one by one. In 2D and 3D evaluation: search and\nsums of 4096 jittered particles, h of "
-        "the "
-        "kernel's default; share: of the evaluation with its gradient (search\nand density: "
-        "standard); limit of search: distances of all points in cells of that width; of density: "
-        "arithmetic of the\noperator standard, of the matrix: of linear_exact, of the force: twice "
-        "that of standard; of the evaluation:\nthe sum. Others: gradient operators on 4096 "
-        "jittered points, search included, h = 2.4 "
-        "spacings;\ntheir limit is the same arithmetic on one contiguous array. "
-        "generic: every choice and the kernel behind\na pointer. error: rms of a smooth "
-        "field's gradient error, times h/max|f|.%s\n",
-        style->faint, BENCH_LOOPS_PARTICLES, style->end);
+    printf("%sns: CPU time of one thread. step: whole steps of the 1D solver (sound wave, n = "
+           "%d), its limit the same arithmetic\nwith neighbours known; density, matrix, force: "
+           "these loops one by one. In 2D and 3D evaluation: search and sums of\n4096 jittered "
+           "particles, h of the kernel's default; share: of the evaluation of its scheme "
+           "(search and density:\nstandard; default: the solver's own scheme); limit of search: "
+           "distances of all points in cells of that width; of\ndensity: arithmetic of the "
+           "operator standard, of the matrix: of linear_exact, of the force: twice that of "
+           "standard; of\nthe evaluation: the sum. Others: gradient operators on 4096 jittered "
+           "points, search included, h = 2.4 spacings; their\nlimit is the same arithmetic on "
+           "one contiguous array. generic: every choice and the kernel behind a pointer. "
+           "error:\nrms of a smooth field's gradient error, times h/max|f|.%s\n",
+           style->faint, BENCH_LOOPS_PARTICLES, style->end);
 }
