@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a scheme loses its order to, on problems whose exact solution is smooth: the error of the
+ * velocity over a ladder of resolutions, taken apart. Three parts are measured on whole runs (the
+ * time step, what the measure makes of exact fields) and the others on single evaluations of the
+ * acceleration where every particle has the exact velocity and energy, against the exact
+ * acceleration -grad P/rho + g: at the regular positions of the start and at the positions that the
+ * run itself has come to. Code units. */
+#ifndef SPHPROOF_AUTOPSY_H
+#define SPHPROOF_AUTOPSY_H
+
+#include <jansson.h>
+
+#include "order.h"
+#include "regularity.h"
+#include "run.h"
+
+enum autopsy_part {
+    AUTOPSY_TIME_STEP, /* error of the run less that of the run with a quarter of the time step */
+    AUTOPSY_MEASURE,   /* error that is measured where all fields are exact */
+    AUTOPSY_REFERENCE, /* what the exact solution misses of its own equation of motion */
+    AUTOPSY_OPERATOR,  /* at regular positions, with the exact pressure: the gradient */
+    AUTOPSY_DENSITY,   /* at regular positions: pressure of the density that particles have */
+    AUTOPSY_DISORDER,  /* at the run's own positions: what regular ones do not have */
+    AUTOPSY_VISCOSITY, /* at the run's own positions: artificial viscosity of the exact flow */
+    AUTOPSY_PARTS
+};
+extern const struct family autopsy_part_family;
+
+struct autopsy_level {
+    size_t n;
+    double spacing;              /* (box/n)^(1/d) */
+    double error[3];             /* L1 of the velocity at t_end; with half, a quarter of the step */
+    double size[AUTOPSY_PARTS];  /* the first two: velocities, as error; then rms accelerations */
+    double share[AUTOPSY_PARTS]; /* of the error: >= 0, their sum is 1 (NaN: there is no error) */
+    /* rms error of the acceleration without viscosity, of exact fields: at positions of the start,
+     * at the run's own at t_end, at those of the start moved by 0.2 spacings at random */
+    double regular, own, jittered;
+    double acceleration; /* rms of the exact one at t_end */
+    /* L1 of the density: of the run at t_end, of regular positions at the start, where it is
+     * `compression` times the exact one on the whole */
+    double density, density_regular, compression;
+    struct regularity regularity; /* at t_end */
+};
+
+struct autopsy {
+    int dim;
+    size_t count; /* of levels, from the coarsest on */
+    struct autopsy_level levels[CASE_LADDER_MAX];
+    /* from autopsy_judge: */
+    struct order_fit order, orders[AUTOPSY_PARTS]; /* of the error; of the sizes, n = 0: it is 0 */
+    struct order_fit regular, own, jittered;
+    bool lost;               /* the order is less than a smooth flow allows, AUTOPSY_ORDER */
+    enum autopsy_part cause; /* the largest part at the finest level, of those that fall as slowly
+                                if the order is lost */
+    size_t from;             /* the level from which on it is the largest of them */
+    bool floor;              /* it stands at regular positions and does not fall: lattice sums */
+    char verdict[320];       /* all this in a sentence */
+};
+
+/* Less is lost order: second order, as far as a fit tells. */
+#define AUTOPSY_ORDER 1.8
+/* What falls more slowly at regular positions is a floor. */
+#define AUTOPSY_FLOOR 0.5
+
+/* STATUS_BAD_INPUT: the problem of the run is not smooth, or its solution is not known. */
+enum status autopsy_check(const struct run *run, struct error *error);
+
+/* Seven times the work of a run. STATUS_*: as run_execute. */
+enum status autopsy_measure(const struct run *run, struct autopsy_level *level,
+                            struct error *error);
+
+/* Orders and verdict of count levels, at least ORDER_LEVELS_MIN, of rising n. */
+enum status autopsy_judge(struct autopsy *autopsy, struct error *error);
+
+/* Adds "levels", "orders", "cause", "from" and "verdict" to a document. */
+void autopsy_add_json(const struct autopsy *autopsy, json_t *document);
+
+#endif

@@ -1,0 +1,359 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "autopsy.h"
+#include "initial.h"
+#include "initial_create.h"
+#include "rate_table.h"
+
+/* Particles somewhere, with the exact fields of one time; n each. */
+struct scene {
+    const struct run *run;
+    size_t n;
+    double time, spacing;
+    double *x[3], *m; /* not owned, and not changed */
+    double *v[3], *u, *P;
+    double *exact[3];   /* acceleration -grad P/rho + g */
+    double *inertia[3]; /* dv/dt of the solution along its own flow */
+    double *weight;     /* volume in the window */
+    double *storage;
+};
+
+/* ---- exact fields ---- */
+
+/* Difference quotient of fourth order of four values at -2, -1, 1 and 2 steps. */
+static double slope(const double f[4], double step)
+{
+    return (8 * (f[2] - f[1]) - (f[3] - f[0])) / (12 * step);
+}
+
+static const double steps[4] = {-2, -1, 1, 2};
+
+static double pressure_slope(const struct scene *s, const double x[3], int d, double step)
+{
+    double P[4];
+    for (int k = 0; k < 4; k++) {
+        struct problem_state state;
+        double place[3] = {x[0], x[1], x[2]};
+        place[d] += steps[k] * step;
+        problem_sample(&s->run->problem, place, s->time, &state);
+        P[k] = state.P;
+    }
+    return slope(P, step);
+}
+
+/* Along the flow, a step of time being the one in which sound goes a step in space. */
+static void inertia(const struct scene *s, size_t i, const double x[3],
+                    const struct problem_state *here, double step)
+{
+    const struct prepared *p = &s->run->problem;
+    const double dt = step / sqrt(p->gamma * here->P / here->rho);
+    double v[3][4];
+    for (int k = 0; k < 4; k++) {
+        struct problem_state state;
+        double place[3] = {x[0], x[1], x[2]};
+        for (int d = 0; d < p->domain.dim; d++) place[d] += steps[k] * dt * here->v[d];
+        problem_sample(p, place, s->time + steps[k] * dt, &state);
+        for (int d = 0; d < 3; d++) v[d][k] = state.v[d];
+    }
+    for (int d = 0; d < p->domain.dim; d++) s->inertia[d][i] = slope(v[d], dt);
+}
+
+/* Steps are small against the spacing, so that few particles see a kink of the solution, and large
+ * against round-off. At t = 0 there is no time before: then no inertia is found. */
+static void fill_exact(const struct scene *s)
+{
+    const struct prepared *p = &s->run->problem;
+    const double step = 1e-3 * s->spacing;
+    for (size_t i = 0; i < s->n; i++) {
+        struct problem_state state;
+        double x[3] = {0};
+        for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i];
+        problem_sample(p, x, s->time, &state);
+        s->u[i] = state.u;
+        s->P[i] = state.P;
+        for (int d = 0; d < p->domain.dim; d++) {
+            s->v[d][i] = state.v[d];
+            s->exact[d][i] = p->gravity[d] - pressure_slope(s, x, d, step) / state.rho;
+        }
+        if (s->time > 0) inertia(s, i, x, &state, step);
+        const struct snapshot one = {.n = 1,
+                                     .x = {&x[0], &x[1], &x[2]},
+                                     .m = &s->m[i],
+                                     .rho = &state.rho,
+                                     .volume = &(double){s->m[i] / state.rho},
+                                     .time = s->time};
+        s->weight[i] = problem_window_part(p, &one, 0);
+    }
+}
+
+/* x, m: of the caller, who keeps them. */
+static enum status scene_make(struct scene *s, const struct run *run, size_t n, double time,
+                              double *const x[3], double *m, struct error *error)
+{
+    enum { ARRAYS = 12 };
+    const struct domain *domain = &run->problem.domain;
+    double volume = 1, *next = calloc(ARRAYS * n, sizeof *next);
+    for (int d = 0; d < domain->dim; d++) volume *= domain_length(domain, d);
+    *s = (struct scene){.run = run, .n = n, .time = time, .m = m, .storage = next};
+    s->spacing = pow(volume / (double)n, 1. / domain->dim);
+    if (!next) return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", n);
+    double **const arrays[ARRAYS] = {&s->v[0],       &s->v[1],     &s->v[2],       &s->exact[0],
+                                     &s->exact[1],   &s->exact[2], &s->inertia[0], &s->inertia[1],
+                                     &s->inertia[2], &s->u,        &s->P,          &s->weight};
+    for (int k = 0; k < ARRAYS; k++, next += n) *arrays[k] = next;
+    for (int d = 0; d < domain->dim; d++) s->x[d] = x[d];
+    fill_exact(s);
+    return STATUS_OK;
+}
+
+static void scene_free(struct scene *s)
+{
+    free(s->storage);
+    s->storage = NULL;
+}
+
+/* ---- evaluations ---- */
+
+/* One evaluation of the scene's particles with the energies u: in the table accelerations stand in
+ * place of forces. */
+static enum status evaluate(const struct scene *s, double *u, bool viscous,
+                            struct rate_table *table, struct error *error)
+{
+    const struct initial initial = {.n = s->n,
+                                    .x = {s->x[0], s->x[1], s->x[2]},
+                                    .v = {s->v[0], s->v[1], s->v[2]},
+                                    .m = s->m,
+                                    .u = u};
+    struct setup setup = run_setup(s->run, &initial);
+    if (!viscous) setup.scheme.viscosity = VISCOSITY_NONE;
+    setup.skip = false;
+    const enum status status = rate_table_make(table, &setup, error);
+    for (int d = 0; !status && d < setup.dim; d++)
+        for (size_t i = 0; i < s->n; i++) table->force[d][i] /= s->m[i];
+    return status;
+}
+
+/* Root of the mean square over the window of the vectors a - b; b NULL: of a. */
+static double rms(const struct scene *s, double *const a[3], double *const b[3])
+{
+    double sum = 0, weight = 0;
+    for (size_t i = 0; i < s->n; i++) {
+        for (int d = 0; d < s->run->problem.domain.dim; d++) {
+            const double off = a[d][i] - (b ? b[d][i] : 0);
+            sum += s->weight[i] * off * off;
+        }
+        weight += s->weight[i];
+    }
+    return sqrt(sum / weight);
+}
+
+/* ---- positions of the start ---- */
+
+/* With jitter in spacings; positions at random become a lattice first. */
+static enum status lay(const struct run *run, const char *jitter, struct initial *initial,
+                       struct error *error)
+{
+    struct run_settings asked = run->asked;
+    struct run other;
+    const enum lattice lattice = (enum lattice)settings_choice(&run->settings, SETTING_lattice);
+    enum status status = STATUS_OK;
+    if (lattice == LATTICE_JITTERED || lattice == LATTICE_RANDOM || lattice == LATTICE_GLASS)
+        status = settings_set(&asked.settings, SETTING_lattice, "auto", SOURCE_USER, NULL, error);
+    if (!status)
+        status = settings_set(&asked.settings, SETTING_jitter, jitter, SOURCE_USER, NULL, error);
+    if (!status) status = run_resolve(&other, &asked, error);
+    return status ? status : initial_create(initial, &other.problem, &other.settings, error);
+}
+
+/* Gives the particles energies with which their pressure is the exact one, times how much too large
+ * densities are on the whole at regular positions: that factor no gradient sees. */
+static void correct_energy(struct scene *s, const struct rate_table *table, double factor)
+{
+    for (size_t i = 0; i < s->n; i++) s->u[i] *= factor * s->P[i] / table->P[i];
+}
+
+/* At regular positions: how much too large the density is, and L1 of its error. */
+static void look_at_density(const struct scene *s, const struct rate_table *table, double *factor,
+                            double *l1)
+{
+    const double gamma = s->run->problem.gamma;
+    double sum = 0, off = 0, weight = 0;
+    for (size_t i = 0; i < s->n; i++) {
+        const double rho = s->P[i] / ((gamma - 1) * s->u[i]);
+        sum += s->weight[i] * table->P[i] / s->P[i];
+        off += s->weight[i] * fabs(table->rho[i] - rho);
+        weight += s->weight[i];
+    }
+    *factor = sum / weight;
+    *l1 = off / weight;
+}
+
+static enum status look_at_regular(struct scene *s, struct autopsy_level *level,
+                                   struct error *error)
+{
+    struct rate_table table = {0}, corrected = {0};
+    enum status status = evaluate(s, s->u, false, &table, error);
+    if (!status) {
+        look_at_density(s, &table, &level->compression, &level->density_regular);
+        correct_energy(s, &table, level->compression);
+        status = evaluate(s, s->u, false, &corrected, error);
+    }
+    if (!status) {
+        level->size[AUTOPSY_DENSITY] = rms(s, table.force, corrected.force);
+        level->regular = level->size[AUTOPSY_OPERATOR] = rms(s, corrected.force, s->exact);
+    }
+    rate_table_free(&table);
+    rate_table_free(&corrected);
+    return status;
+}
+
+/* The error of the acceleration without viscosity, of exact velocities and pressures. */
+static enum status look_at_positions(struct scene *s, double compression, struct rate_table *table,
+                                     double *size, struct error *error)
+{
+    struct rate_table first = {0};
+    enum status status = evaluate(s, s->u, false, &first, error);
+    if (!status) {
+        correct_energy(s, &first, compression);
+        status = evaluate(s, s->u, false, table, error);
+    }
+    if (!status) *size = rms(s, table->force, s->exact);
+    rate_table_free(&first);
+    return status;
+}
+
+static enum status look_at_jittered(struct scene *s, struct autopsy_level *level,
+                                    struct error *error)
+{
+    struct rate_table table = {0};
+    const enum status status =
+        look_at_positions(s, level->compression, &table, &level->jittered, error);
+    rate_table_free(&table);
+    return status;
+}
+
+typedef enum status look(struct scene *s, struct autopsy_level *level, struct error *error);
+
+static enum status look_at_start(const struct run *run, const char *jitter, look *look_at,
+                                 struct autopsy_level *level, struct error *error)
+{
+    struct initial initial = {0};
+    struct scene scene = {0};
+    enum status status = lay(run, jitter, &initial, error);
+    if (!status) status = scene_make(&scene, run, initial.n, 0, initial.x, initial.m, error);
+    if (!status) status = look_at(&scene, level, error);
+    scene_free(&scene);
+    initial_free(&initial);
+    return status;
+}
+
+/* ---- the run's own positions ---- */
+
+/* What the run's own measure says of exact velocities where its particles are. */
+static enum status judge_exact(const struct scene *s, const struct snapshot *end, double *l1,
+                               struct error *error)
+{
+    struct run_result judged;
+    struct snapshot exact = *end;
+    size_t *id = malloc(s->n * sizeof *id);
+    if (!id) return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", s->n);
+    for (size_t i = 0; i < s->n; i++) id[i] = i;
+    exact.id = id;
+    for (int d = 0; d < s->run->problem.domain.dim; d++) exact.v[d] = s->v[d];
+    const enum status status = run_judge(s->run, &exact, &judged, error);
+    free(id);
+    if (status) return status;
+    *l1 = judged.errors[FIELD_VELOCITY].l1;
+    run_free(&judged);
+    return STATUS_OK;
+}
+
+/* Parts of the acceleration: what is less is round-off, of sums and of difference quotients. */
+static const double round_off = 1e-9, quotient = 1e-6;
+
+static enum status look_at_own(struct scene *s, const struct snapshot *end,
+                               struct autopsy_level *level, struct error *error)
+{
+    struct rate_table table = {0}, viscous = {0};
+    enum status status = judge_exact(s, end, &level->size[AUTOPSY_MEASURE], error);
+    if (!status) status = look_at_positions(s, level->compression, &table, &level->own, error);
+    if (!status) status = evaluate(s, s->u, true, &viscous, error);
+    if (!status) {
+        const double own = level->own, regular = level->regular;
+        level->size[AUTOPSY_DISORDER] = own > regular ? sqrt(own * own - regular * regular) : 0;
+        level->size[AUTOPSY_VISCOSITY] = rms(s, table.force, viscous.force);
+        level->acceleration = rms(s, s->exact, NULL);
+        level->size[AUTOPSY_REFERENCE] = rms(s, s->inertia, s->exact);
+        if (level->size[AUTOPSY_REFERENCE] < quotient * level->acceleration)
+            level->size[AUTOPSY_REFERENCE] = 0;
+    }
+    rate_table_free(&table);
+    rate_table_free(&viscous);
+    return status;
+}
+
+static enum status look_at_end(const struct run *run, const struct run_result *result,
+                               struct autopsy_level *level, struct error *error)
+{
+    const struct snapshot *end = &result->snapshot;
+    struct scene scene = {0};
+    double *const x[3] = {(double *)end->x[0], (double *)end->x[1], (double *)end->x[2]};
+    enum status status = scene_make(&scene, run, end->n, end->time, x, (double *)end->m, error);
+    if (!status) status = look_at_own(&scene, end, level, error);
+    scene_free(&scene);
+    return status;
+}
+
+static enum status look_at_result(const struct run *run, const struct run_result *result,
+                                  struct autopsy_level *level, struct error *error)
+{
+    level->n = result->n;
+    level->spacing = result->spacing;
+    level->density = result->errors[FIELD_DENSITY].l1;
+    level->regularity = result->regularity;
+    enum status status = look_at_start(run, "0", look_at_regular, level, error);
+    if (!status) status = look_at_start(run, "0.2", look_at_jittered, level, error);
+    return status ? status : look_at_end(run, result, level, error);
+}
+
+/* ---- a level ---- */
+
+/* Time step and measure have their shares of the error itself; what is left the others share as
+ * their squares, as independent errors do. */
+static void divide(struct autopsy_level *level)
+{
+    double *share = level->share, squares = 0;
+    const double error = level->error[0];
+    level->size[AUTOPSY_TIME_STEP] = fmax(0, error - level->error[2]);
+    share[AUTOPSY_MEASURE] = fmin(1, level->size[AUTOPSY_MEASURE] / error);
+    share[AUTOPSY_TIME_STEP] =
+        fmin(1 - share[AUTOPSY_MEASURE], level->size[AUTOPSY_TIME_STEP] / error);
+    const double rest = 1 - share[AUTOPSY_MEASURE] - share[AUTOPSY_TIME_STEP];
+    for (int k = AUTOPSY_REFERENCE; k < AUTOPSY_PARTS; k++)
+        if (level->size[k] < round_off * level->acceleration) level->size[k] = 0;
+    for (int k = AUTOPSY_REFERENCE; k < AUTOPSY_PARTS; k++)
+        squares += level->size[k] * level->size[k];
+    for (int k = AUTOPSY_REFERENCE; k < AUTOPSY_PARTS; k++)
+        share[k] = squares > 0 ? rest * level->size[k] * level->size[k] / squares : 0;
+}
+
+enum status autopsy_measure(const struct run *run, struct autopsy_level *level, struct error *error)
+{
+    enum status status = STATUS_OK;
+    *level = (struct autopsy_level){0};
+    for (int k = 2; !status && k >= 0; k--) {
+        struct run finer = *run;
+        struct run_result result;
+        finer.scheme.cfl /= 1 << k;
+        status = run_execute(&finer, &result, error);
+        if (status && status != STATUS_BROKE_DOWN) return status;
+        level->error[k] = result.errors[FIELD_VELOCITY].l1;
+        if (!status && k == 0) status = look_at_result(run, &result, level, error);
+        run_free(&result);
+    }
+    if (!status) divide(level);
+    return status;
+}
