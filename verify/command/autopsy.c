@@ -55,20 +55,54 @@ static void print_parts(const struct autopsy *autopsy, const struct table_style 
            "share", "order, 95 % interval", style->end);
     for (size_t k = 0; k < AUTOPSY_PARTS; k++) {
         printf("%c %-44s %10.2e %5.1f%%", letters[k], autopsy_part_family.members[k]->label,
-               finest->size[k], 100 * finest->share[k]);
+               finest->size[k].rms, 100 * finest->share[k]);
         print_order(&autopsy->orders[k]);
         printf("\n");
     }
-    printf("%sthe time step and the measure: in L1 of the velocity; the others: rms of the "
-           "acceleration, of\nwhich the exact one has %.3g; what the first two leave of the error "
-           "is shared as their squares%s\n",
-           style->faint, finest->acceleration, style->end);
+    printf(
+        "%sthe time step and the measure: in L1 of the velocity; the others: rms of the "
+        "acceleration, of\nwhich the exact one has %.3g. What the first two leave of the error the "
+        "others share as squares: a\nsmooth error as what is smooth in them, noise as their "
+        "noise%s\n",
+        style->faint, finest->acceleration, style->end);
 }
 
 static void print_row(const char *what, double size, const struct order_fit *order)
 {
     printf("  %-44s %10.2e %6s", what, size, "");
     print_order(order);
+    printf("\n");
+}
+
+static void print_power(const struct autopsy_level *level, const struct table_style *style)
+{
+    printf("\n%s  %-44s %10s %10s %10s%s\n", style->bold, "power at t_end, of the run's own state",
+           "work", "heat", "their sum", style->end);
+    double largest = 0;
+    for (size_t k = 0; k < AUTOPSY_TERMS; k++) largest = fmax(largest, level->power[k].scale);
+    for (size_t k = 0; k < AUTOPSY_TERMS; k++) {
+        const struct autopsy_power *power = &level->power[k];
+        if (power->scale > 0)
+            printf("  %-44s %10.2e %10.2e %10.1e\n", autopsy_term_family.members[k]->label,
+                   power->work, power->heat, (power->work + power->heat) / largest);
+    }
+    printf("%swork is done on the flow; their sum: over all that the largest gives and takes%s\n",
+           style->faint, style->end);
+}
+
+static void print_trace(const struct trace *trace, const struct table_style *style)
+{
+    enum { SHOWN = 6 };
+    printf("\n%s  how regular particles stand: time%s", style->bold, style->end);
+    const size_t step = trace->looks > SHOWN ? (trace->looks - 1 + SHOWN - 2) / (SHOWN - 1) : 1;
+    size_t rows[TRACE_LOOKS + 2], count = 0;
+    for (size_t k = 0; k + 1 < trace->looks; k += step) rows[count++] = k;
+    if (trace->looks) rows[count++] = trace->looks - 1;
+    for (size_t k = 0; k < count; k++) printf(" %8.3g", trace->looked[rows[k]]);
+    printf("\n  %-33s", "distances to nearest neighbours:");
+    for (size_t k = 0; k < count; k++) printf(" %8.2e", trace->seen[rows[k]].spread);
+    printf("\n  %-33s", "E0, h |sum V grad W|:");
+    for (size_t k = 0; k < count; k++) printf(" %8.2e", trace->seen[rows[k]].gradient);
     printf("\n");
 }
 
@@ -81,12 +115,13 @@ static void print_operator(const struct autopsy *autopsy, const struct table_sty
     print_row("at the run's own positions at t_end", finest->own, &autopsy->own);
     print_row("at positions of the start, moved by 0.2", finest->jittered, &autopsy->jittered);
     printf("\n%s%10s %11s %11s %11s %11s %11s %8s %8s%s\n", style->bold, "n", "L1(v)", "dt/2",
-           "dt/4", "L1(rho)", "regular", "spread", "E0", style->end);
+           "dt/4", "L1(rho)", "regular", "noise", "spread", style->end);
     for (size_t l = 0; l < autopsy->count; l++) {
         const struct autopsy_level *level = &autopsy->levels[l];
-        printf("%10zu %11.4e %11.4e %11.4e %11.4e %11.4e %8.2e %8.2e\n", level->n, level->error[0],
-               level->error[1], level->error[2], level->density, level->density_regular,
-               level->regularity.spread, level->regularity.gradient);
+        printf("%10zu %11.4e %11.4e %11.4e %11.4e %11.4e %6.1f %% %8.2e\n", level->n,
+               level->error[0], level->error[1], level->error[2], level->density,
+               level->density_regular, 100 * pow(level->velocity.noise / level->velocity.rms, 2),
+               level->regularity.spread);
     }
     printf(
         "%sregular: of the positions of the start; spread: of distances to nearest neighbours over "
@@ -153,7 +188,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
         if (resolve(&settings, ladder[l], &level, error)) return error->status;
     for (size_t l = 0; l < autopsy.count; l++)
         if (resolve(&settings, ladder[l], &level, error) ||
-            autopsy_measure(&level, &autopsy.levels[l], error))
+            autopsy_measure(&level, &autopsy.levels[l],
+                            l + 1 == autopsy.count ? &autopsy.trace : NULL, error))
             return error->status;
     if (autopsy_judge(&autopsy, error)) return error->status;
     if (options->speak) {
@@ -162,6 +198,9 @@ static enum status run(const struct options *options, int n, char **arguments, s
         print_levels(&autopsy, &style);
         print_parts(&autopsy, &style);
         print_operator(&autopsy, &style);
+        print_power(&autopsy.levels[autopsy.count - 1], &style);
+        print_trace(&autopsy.trace, &style);
+        printf("\n");
         table_wrap("", autopsy.verdict);
     }
     return options->json ? write_json(options, &level, &autopsy, error) : STATUS_OK;

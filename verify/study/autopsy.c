@@ -25,6 +25,15 @@ const struct family autopsy_part_family = {
     },
     AUTOPSY_PARTS};
 
+const struct family autopsy_term_family = {"terms", "what moves energy between flow and heat",
+                                           (const struct member *const[]){
+                                               MEMBER("pressure", "pressure"),
+                                               MEMBER("viscosity", "viscosity"),
+                                               MEMBER("noise", "viscosity, its noise term"),
+                                               MEMBER("conductivity", "conductivity"),
+                                           },
+                                           AUTOPSY_TERMS};
+
 enum status autopsy_check(const struct run *run, struct error *error)
 {
     const struct problem *problem = run->problem.problem;
@@ -135,7 +144,8 @@ enum status autopsy_judge(struct autopsy *autopsy, struct error *error)
     for (size_t k = 0; k < sizeof figures / sizeof *figures; k++)
         if (fit(autopsy, figures[k].at, figures[k].order, error)) return error->status;
     for (size_t k = 0; k < AUTOPSY_PARTS; k++)
-        if (fit(autopsy, offsetof(struct autopsy_level, size) + k * sizeof(double),
+        if (fit(autopsy,
+                offsetof(struct autopsy_level, size[0].rms) + k * sizeof(struct autopsy_split),
                 &autopsy->orders[k], error))
             return error->status;
     autopsy->lost = !(autopsy->order.order >= AUTOPSY_ORDER);
@@ -152,22 +162,51 @@ static json_t *order_json(const struct order_fit *fit)
                      result_number_or_null(fit->low), "high", result_number_or_null(fit->high));
 }
 
-static json_t *level_json(const struct autopsy_level *level)
+static json_t *parts_json(const struct autopsy_level *level)
 {
     json_t *parts = json_object();
     for (size_t k = 0; k < AUTOPSY_PARTS; k++)
         json_object_set_new(parts, autopsy_part_family.members[k]->name,
-                            json_pack("{s:o, s:o}", "size", result_number(level->size[k]), "share",
+                            json_pack("{s:o, s:o, s:o}", "size", result_number(level->size[k].rms),
+                                      "noise", result_number(level->size[k].noise), "share",
                                       result_number(level->share[k])));
-    return json_pack(
-        "{s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "n", (int)level->n,
-        "spacing", result_number(level->spacing), "error", result_number(level->error[0]),
-        "error_half_step", result_number(level->error[1]), "error_quarter_step",
-        result_number(level->error[2]), "acceleration", result_number(level->acceleration),
-        "regular", result_number(level->regular), "own", result_number(level->own), "jittered",
-        result_number(level->jittered), "density", result_number(level->density), "density_regular",
-        result_number(level->density_regular), "regularity", regularity_json(&level->regularity),
-        "parts", parts);
+    return parts;
+}
+
+static json_t *power_json(const struct autopsy_power power[AUTOPSY_TERMS])
+{
+    json_t *terms = json_object();
+    for (size_t k = 0; k < AUTOPSY_TERMS; k++)
+        json_object_set_new(terms, autopsy_term_family.members[k]->name,
+                            json_pack("{s:o, s:o, s:o}", "work", result_number(power[k].work),
+                                      "heat", result_number(power[k].heat), "scale",
+                                      result_number(power[k].scale)));
+    return terms;
+}
+
+static json_t *level_json(const struct autopsy_level *level)
+{
+    const struct {
+        const char *name;
+        double value;
+    } numbers[] = {{"spacing", level->spacing},
+                   {"error", level->error[0]},
+                   {"error_half_step", level->error[1]},
+                   {"error_quarter_step", level->error[2]},
+                   {"error_rms", level->velocity.rms},
+                   {"noise_rms", level->velocity.noise},
+                   {"acceleration", level->acceleration},
+                   {"regular", level->regular},
+                   {"own", level->own},
+                   {"jittered", level->jittered},
+                   {"density", level->density},
+                   {"density_regular", level->density_regular}};
+    json_t *object =
+        json_pack("{s:i, s:o, s:o, s:o}", "n", (int)level->n, "parts", parts_json(level), "power",
+                  power_json(level->power), "regularity", regularity_json(&level->regularity));
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+        json_object_set_new(object, numbers[k].name, result_number(numbers[k].value));
+    return object;
 }
 
 void autopsy_add_json(const struct autopsy *autopsy, json_t *document)
@@ -184,6 +223,7 @@ void autopsy_add_json(const struct autopsy *autopsy, json_t *document)
                             order_json(&autopsy->orders[k]));
     json_object_set_new(document, "levels", levels);
     json_object_set_new(document, "orders", orders);
+    json_object_set_new(document, "trace", trace_json(&autopsy->trace, autopsy->dim));
     json_object_set_new(document, "lost", json_boolean(autopsy->lost));
     json_object_set_new(document, "cause",
                         json_string(autopsy_part_family.members[autopsy->cause]->name));

@@ -26,20 +26,45 @@ enum autopsy_part {
 };
 extern const struct family autopsy_part_family;
 
+/* What moves energy between flow and heat. */
+enum autopsy_term {
+    AUTOPSY_PRESSURE,
+    AUTOPSY_VISCOUS, /* without the next one */
+    AUTOPSY_NOISE,   /* the term of a viscosity that damps noise alone */
+    AUTOPSY_CONDUCTIVITY,
+    AUTOPSY_TERMS
+};
+extern const struct family autopsy_term_family;
+
+/* A term's power on all particles: done on the flow, given as heat, and the sum of the sizes of all
+ * that single particles get. Pressure and viscosity conserve energy: work + heat is round-off. */
+struct autopsy_power {
+    double work, heat, scale;
+};
+
+/* Of a vector field on particles: root of its mean square over the window, and the part of it that
+ * differs between neighbours: from the linear functions that fit best in cells of 4 spacings. */
+struct autopsy_split {
+    double rms, noise;
+};
+
 struct autopsy_level {
     size_t n;
-    double spacing;              /* (box/n)^(1/d) */
-    double error[3];             /* L1 of the velocity at t_end; with half, a quarter of the step */
-    double size[AUTOPSY_PARTS];  /* the first two: velocities, as error; then rms accelerations */
+    double spacing;  /* (box/n)^(1/d) */
+    double error[3]; /* L1 of the velocity at t_end; with half, a quarter of the step */
+    struct autopsy_split size[AUTOPSY_PARTS]; /* first two: velocities, no noise; accelerations */
     double share[AUTOPSY_PARTS]; /* of the error: >= 0, their sum is 1 (NaN: there is no error) */
     /* rms error of the acceleration without viscosity, of exact fields: at positions of the start,
      * at the run's own at t_end, at those of the start moved by 0.2 spacings at random */
     double regular, own, jittered;
     double acceleration; /* rms of the exact one at t_end */
+    double round_off;    /* of accelerations; a part that is less is 0 */
     /* L1 of the density: of the run at t_end, of regular positions at the start, where it is
      * `compression` times the exact one on the whole */
     double density, density_regular, compression;
-    struct regularity regularity; /* at t_end */
+    struct autopsy_split velocity;             /* its error at t_end */
+    struct autopsy_power power[AUTOPSY_TERMS]; /* at t_end; evolving alphas are as at the start */
+    struct regularity regularity;              /* at t_end */
 };
 
 struct autopsy {
@@ -54,6 +79,7 @@ struct autopsy {
                                 if the order is lost */
     size_t from;             /* the level from which on it is the largest of them */
     bool floor;              /* it stands at regular positions and does not fall: lattice sums */
+    struct trace trace;      /* of the finest level: how regular particles stand through time */
     char verdict[320];       /* all this in a sentence */
 };
 
@@ -65,8 +91,8 @@ struct autopsy {
 /* STATUS_BAD_INPUT: the problem of the run is not smooth, or its solution is not known. */
 enum status autopsy_check(const struct run *run, struct error *error);
 
-/* Seven times the work of a run. STATUS_*: as run_execute. */
-enum status autopsy_measure(const struct run *run, struct autopsy_level *level,
+/* Seven times the work of a run, whose trace is kept. STATUS_*: as run_execute. */
+enum status autopsy_measure(const struct run *run, struct autopsy_level *level, struct trace *trace,
                             struct error *error);
 
 /* Orders and verdict of count levels, at least ORDER_LEVELS_MIN, of rising n. */

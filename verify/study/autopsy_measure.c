@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "autopsy.h"
+#include "autopsy_state.h"
 #include "initial.h"
 #include "initial_create.h"
 #include "rate_table.h"
@@ -13,12 +13,14 @@ struct scene {
     const struct run *run;
     size_t n;
     double time, spacing;
-    double *x[3], *m; /* not owned, and not changed */
+    double *x[3]; /* not owned, and not changed */
+    double *m, *rho;
     double *v[3], *u, *P;
     double *exact[3];   /* acceleration -grad P/rho + g */
     double *inertia[3]; /* dv/dt of the solution along its own flow */
     double *weight;     /* volume in the window */
     double *storage;
+    struct autopsy_cells cells;
 };
 
 /* ---- exact fields ---- */
@@ -74,6 +76,7 @@ static void fill_exact(const struct scene *s)
         problem_sample(p, x, s->time, &state);
         s->u[i] = state.u;
         s->P[i] = state.P;
+        s->rho[i] = state.rho;
         for (int d = 0; d < p->domain.dim; d++) {
             s->v[d][i] = state.v[d];
             s->exact[d][i] = p->gravity[d] - pressure_slope(s, x, d, step) / state.rho;
@@ -89,28 +92,31 @@ static void fill_exact(const struct scene *s)
     }
 }
 
-/* x, m: of the caller, who keeps them. */
+/* x: of the caller, who keeps them. */
 static enum status scene_make(struct scene *s, const struct run *run, size_t n, double time,
-                              double *const x[3], double *m, struct error *error)
+                              double *const x[3], const double *m, struct error *error)
 {
-    enum { ARRAYS = 12 };
+    enum { ARRAYS = 14 };
     const struct domain *domain = &run->problem.domain;
     double volume = 1, *next = calloc(ARRAYS * n, sizeof *next);
     for (int d = 0; d < domain->dim; d++) volume *= domain_length(domain, d);
-    *s = (struct scene){.run = run, .n = n, .time = time, .m = m, .storage = next};
+    *s = (struct scene){.run = run, .n = n, .time = time, .storage = next};
     s->spacing = pow(volume / (double)n, 1. / domain->dim);
     if (!next) return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", n);
-    double **const arrays[ARRAYS] = {&s->v[0],       &s->v[1],     &s->v[2],       &s->exact[0],
-                                     &s->exact[1],   &s->exact[2], &s->inertia[0], &s->inertia[1],
-                                     &s->inertia[2], &s->u,        &s->P,          &s->weight};
+    double **const arrays[ARRAYS] = {&s->m,          &s->rho,        &s->v[0],       &s->v[1],
+                                     &s->v[2],       &s->exact[0],   &s->exact[1],   &s->exact[2],
+                                     &s->inertia[0], &s->inertia[1], &s->inertia[2], &s->u,
+                                     &s->P,          &s->weight};
     for (int k = 0; k < ARRAYS; k++, next += n) *arrays[k] = next;
     for (int d = 0; d < domain->dim; d++) s->x[d] = x[d];
+    memcpy(s->m, m, n * sizeof *m);
     fill_exact(s);
-    return STATUS_OK;
+    return autopsy_cells_make(&s->cells, &run->problem, n, s->x, s->weight, error);
 }
 
 static void scene_free(struct scene *s)
 {
+    autopsy_cells_free(&s->cells);
     free(s->storage);
     s->storage = NULL;
 }
@@ -136,18 +142,12 @@ static enum status evaluate(const struct scene *s, double *u, bool viscous,
     return status;
 }
 
-/* Root of the mean square over the window of the vectors a - b; b NULL: of a. */
-static double rms(const struct scene *s, double *const a[3], double *const b[3])
+/* What one field has more than another that is independent of it. */
+static struct autopsy_split more(struct autopsy_split one, struct autopsy_split other)
 {
-    double sum = 0, weight = 0;
-    for (size_t i = 0; i < s->n; i++) {
-        for (int d = 0; d < s->run->problem.domain.dim; d++) {
-            const double off = a[d][i] - (b ? b[d][i] : 0);
-            sum += s->weight[i] * off * off;
-        }
-        weight += s->weight[i];
-    }
-    return sqrt(sum / weight);
+    const double noise = fmax(0, one.noise * one.noise - other.noise * other.noise),
+                 whole = fmax(noise, one.rms * one.rms - other.rms * other.rms);
+    return (struct autopsy_split){sqrt(whole), sqrt(noise)};
 }
 
 /* ---- positions of the start ---- */
@@ -179,12 +179,10 @@ static void correct_energy(struct scene *s, const struct rate_table *table, doub
 static void look_at_density(const struct scene *s, const struct rate_table *table, double *factor,
                             double *l1)
 {
-    const double gamma = s->run->problem.gamma;
     double sum = 0, off = 0, weight = 0;
     for (size_t i = 0; i < s->n; i++) {
-        const double rho = s->P[i] / ((gamma - 1) * s->u[i]);
         sum += s->weight[i] * table->P[i] / s->P[i];
-        off += s->weight[i] * fabs(table->rho[i] - rho);
+        off += s->weight[i] * fabs(table->rho[i] - s->rho[i]);
         weight += s->weight[i];
     }
     *factor = sum / weight;
@@ -202,26 +200,29 @@ static enum status look_at_regular(struct scene *s, struct autopsy_level *level,
         status = evaluate(s, s->u, false, &corrected, error);
     }
     if (!status) {
-        level->size[AUTOPSY_DENSITY] = rms(s, table.force, corrected.force);
-        level->regular = level->size[AUTOPSY_OPERATOR] = rms(s, corrected.force, s->exact);
+        level->size[AUTOPSY_DENSITY] = autopsy_split(&s->cells, table.force, corrected.force);
+        level->size[AUTOPSY_OPERATOR] = autopsy_split(&s->cells, corrected.force, s->exact);
+        level->regular = level->size[AUTOPSY_OPERATOR].rms;
     }
     rate_table_free(&table);
     rate_table_free(&corrected);
     return status;
 }
 
-/* The error of the acceleration without viscosity, of exact velocities and pressures. */
+/* The error of the acceleration without viscosity, of exact velocities, pressures and, by other
+ * masses, densities: where particles stand is all that is left of the run. */
 static enum status look_at_positions(struct scene *s, double compression, struct rate_table *table,
-                                     double *size, struct error *error)
+                                     struct autopsy_split *size, struct error *error)
 {
-    struct rate_table first = {0};
+    struct rate_table first = {0}, second = {0};
     enum status status = evaluate(s, s->u, false, &first, error);
-    if (!status) {
-        correct_energy(s, &first, compression);
-        status = evaluate(s, s->u, false, table, error);
-    }
-    if (!status) *size = rms(s, table->force, s->exact);
+    for (size_t i = 0; !status && i < s->n; i++) s->m[i] *= compression * s->rho[i] / first.rho[i];
+    if (!status) status = evaluate(s, s->u, false, &second, error);
+    if (!status) correct_energy(s, &second, compression);
     rate_table_free(&first);
+    rate_table_free(&second);
+    if (!status) status = evaluate(s, s->u, false, table, error);
+    if (!status) *size = autopsy_split(&s->cells, table->force, s->exact);
     return status;
 }
 
@@ -229,8 +230,9 @@ static enum status look_at_jittered(struct scene *s, struct autopsy_level *level
                                     struct error *error)
 {
     struct rate_table table = {0};
-    const enum status status =
-        look_at_positions(s, level->compression, &table, &level->jittered, error);
+    struct autopsy_split size = {0};
+    const enum status status = look_at_positions(s, level->compression, &table, &size, error);
+    level->jittered = size.rms;
     rate_table_free(&table);
     return status;
 }
@@ -274,21 +276,33 @@ static enum status judge_exact(const struct scene *s, const struct snapshot *end
 /* Parts of the acceleration: what is less is round-off, of sums and of difference quotients. */
 static const double round_off = 1e-9, quotient = 1e-6;
 
+/* Mean of P/rho. */
+static double energy(const struct scene *s)
+{
+    double sum = 0;
+    for (size_t i = 0; i < s->n; i++) sum += s->u[i];
+    return (s->run->problem.gamma - 1) * sum / (double)s->n;
+}
+
 static enum status look_at_own(struct scene *s, const struct snapshot *end,
                                struct autopsy_level *level, struct error *error)
 {
     struct rate_table table = {0}, viscous = {0};
-    enum status status = judge_exact(s, end, &level->size[AUTOPSY_MEASURE], error);
-    if (!status) status = look_at_positions(s, level->compression, &table, &level->own, error);
+    struct autopsy_split own = {0};
+    double *const v[3] = {(double *)end->v[0], (double *)end->v[1], (double *)end->v[2]};
+    enum status status = judge_exact(s, end, &level->size[AUTOPSY_MEASURE].rms, error);
+    if (!status) status = look_at_positions(s, level->compression, &table, &own, error);
     if (!status) status = evaluate(s, s->u, true, &viscous, error);
     if (!status) {
-        const double own = level->own, regular = level->regular;
-        level->size[AUTOPSY_DISORDER] = own > regular ? sqrt(own * own - regular * regular) : 0;
-        level->size[AUTOPSY_VISCOSITY] = rms(s, table.force, viscous.force);
-        level->acceleration = rms(s, s->exact, NULL);
-        level->size[AUTOPSY_REFERENCE] = rms(s, s->inertia, s->exact);
-        if (level->size[AUTOPSY_REFERENCE] < quotient * level->acceleration)
-            level->size[AUTOPSY_REFERENCE] = 0;
+        level->own = own.rms;
+        level->velocity = autopsy_split(&s->cells, v, s->v);
+        level->round_off = 1e-13 * energy(s) / s->spacing;
+        level->acceleration = autopsy_split(&s->cells, s->exact, NULL).rms;
+        level->size[AUTOPSY_DISORDER] = more(own, level->size[AUTOPSY_OPERATOR]);
+        level->size[AUTOPSY_VISCOSITY] = autopsy_split(&s->cells, table.force, viscous.force);
+        level->size[AUTOPSY_REFERENCE] = autopsy_split(&s->cells, s->inertia, s->exact);
+        if (level->size[AUTOPSY_REFERENCE].rms < quotient * level->acceleration)
+            level->size[AUTOPSY_REFERENCE] = (struct autopsy_split){0};
     }
     rate_table_free(&table);
     rate_table_free(&viscous);
@@ -301,7 +315,7 @@ static enum status look_at_end(const struct run *run, const struct run_result *r
     const struct snapshot *end = &result->snapshot;
     struct scene scene = {0};
     double *const x[3] = {(double *)end->x[0], (double *)end->x[1], (double *)end->x[2]};
-    enum status status = scene_make(&scene, run, end->n, end->time, x, (double *)end->m, error);
+    enum status status = scene_make(&scene, run, end->n, end->time, x, end->m, error);
     if (!status) status = look_at_own(&scene, end, level, error);
     scene_free(&scene);
     return status;
@@ -314,33 +328,46 @@ static enum status look_at_result(const struct run *run, const struct run_result
     level->spacing = result->spacing;
     level->density = result->errors[FIELD_DENSITY].l1;
     level->regularity = result->regularity;
-    enum status status = look_at_start(run, "0", look_at_regular, level, error);
+    enum status status = autopsy_power(run, &result->snapshot, level->power, error);
+    if (!status) status = look_at_start(run, "0", look_at_regular, level, error);
     if (!status) status = look_at_start(run, "0.2", look_at_jittered, level, error);
     return status ? status : look_at_end(run, result, level, error);
 }
 
 /* ---- a level ---- */
 
-/* Time step and measure have their shares of the error itself; what is left the others share as
- * their squares, as independent errors do. */
+/* Time step and measure have their shares of the error itself. What is left the others share: noise
+ * of the error as the squares of their noise, a smooth error as the squares of what is smooth in
+ * them, as independent errors do. */
 static void divide(struct autopsy_level *level)
 {
-    double *share = level->share, squares = 0;
+    double *share = level->share, noise = 0, smooth = 0;
     const double error = level->error[0];
-    level->size[AUTOPSY_TIME_STEP] = fmax(0, error - level->error[2]);
-    share[AUTOPSY_MEASURE] = fmin(1, level->size[AUTOPSY_MEASURE] / error);
+    const double least = fmax(round_off * level->acceleration, level->round_off);
+    struct autopsy_split *size = level->size;
+    size[AUTOPSY_TIME_STEP].rms = fmax(0, error - level->error[2]);
+    share[AUTOPSY_MEASURE] = fmin(1, size[AUTOPSY_MEASURE].rms / error);
     share[AUTOPSY_TIME_STEP] =
-        fmin(1 - share[AUTOPSY_MEASURE], level->size[AUTOPSY_TIME_STEP] / error);
-    const double rest = 1 - share[AUTOPSY_MEASURE] - share[AUTOPSY_TIME_STEP];
-    for (int k = AUTOPSY_REFERENCE; k < AUTOPSY_PARTS; k++)
-        if (level->size[k] < round_off * level->acceleration) level->size[k] = 0;
-    for (int k = AUTOPSY_REFERENCE; k < AUTOPSY_PARTS; k++)
-        squares += level->size[k] * level->size[k];
-    for (int k = AUTOPSY_REFERENCE; k < AUTOPSY_PARTS; k++)
-        share[k] = squares > 0 ? rest * level->size[k] * level->size[k] / squares : 0;
+        fmin(1 - share[AUTOPSY_MEASURE], size[AUTOPSY_TIME_STEP].rms / error);
+    for (int k = AUTOPSY_REFERENCE; k < AUTOPSY_PARTS; k++) {
+        if (size[k].rms < least) size[k] = (struct autopsy_split){0};
+        noise += size[k].noise * size[k].noise;
+        smooth += size[k].rms * size[k].rms - size[k].noise * size[k].noise;
+    }
+    const double rest = 1 - share[AUTOPSY_MEASURE] - share[AUTOPSY_TIME_STEP],
+                 part = level->velocity.noise / level->velocity.rms,
+                 noisy = !(noise > 0)    ? 0
+                         : !(smooth > 0) ? 1
+                                         : part * part;
+    for (int k = AUTOPSY_REFERENCE; k < AUTOPSY_PARTS; k++) {
+        const double own = size[k].noise * size[k].noise, whole = size[k].rms * size[k].rms;
+        share[k] = rest * ((noise > 0 ? noisy * own / noise : 0) +
+                           (smooth > 0 ? (1 - noisy) * (whole - own) / smooth : 0));
+    }
 }
 
-enum status autopsy_measure(const struct run *run, struct autopsy_level *level, struct error *error)
+enum status autopsy_measure(const struct run *run, struct autopsy_level *level, struct trace *trace,
+                            struct error *error)
 {
     enum status status = STATUS_OK;
     *level = (struct autopsy_level){0};
@@ -348,6 +375,7 @@ enum status autopsy_measure(const struct run *run, struct autopsy_level *level, 
         struct run finer = *run;
         struct run_result result;
         finer.scheme.cfl /= 1 << k;
+        finer.asked.trace = k == 0 ? trace : NULL;
         status = run_execute(&finer, &result, error);
         if (status && status != STATUS_BROKE_DOWN) return status;
         level->error[k] = result.errors[FIELD_VELOCITY].l1;
