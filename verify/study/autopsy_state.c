@@ -29,17 +29,17 @@ static bool has(const struct scheme *scheme, enum autopsy_term term)
 static struct autopsy_power exchanged(const struct snapshot *s, const struct rate_table *table,
                                       const struct rate_table *less)
 {
-    long double work = 0, heat = 0, scale = 0;
+    double work = 0, heat = 0, scale = 0;
     for (size_t i = 0; i < s->n; i++) {
-        long double own = 0;
+        double own = 0;
         for (int d = 0; d < table->dim; d++)
-            own += (long double)s->v[d][i] * (table->force[d][i] - (less ? less->force[d][i] : 0));
+            own += s->v[d][i] * (table->force[d][i] - (less ? less->force[d][i] : 0));
         const double warmed = table->dU[i] - (less ? less->dU[i] : 0);
         work += own;
         heat += warmed;
-        scale += fabsl(own) + fabs(warmed);
+        scale += fabs(own) + fabs(warmed);
     }
-    return (struct autopsy_power){(double)work, (double)heat, (double)scale};
+    return (struct autopsy_power){work, heat, scale};
 }
 
 /* Terms are taken away one after the other, pressure is left: so their sum is that of the whole. */

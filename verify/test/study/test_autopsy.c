@@ -163,7 +163,8 @@ static void make(struct autopsy *autopsy, size_t part, size_t from)
     for (size_t l = 0; l < LEVELS; l++) {
         struct autopsy_level *level = &autopsy->levels[l];
         const double x = pow(2, -(double)l);
-        *level = (struct autopsy_level){.n = 256 << 2 * l, .spacing = x, .error = {x, x, x}};
+        *level =
+            (struct autopsy_level){.n = (size_t)256 << 2 * l, .spacing = x, .error = {x, x, x}};
         for (size_t k = 0; k < AUTOPSY_PARTS; k++) {
             level->size[k].rms = draw(0.9, 1.1) * pow(x, 2.5);
             level->share[k] = k == 0 && l < from ? 0.5 : 0.01;
