@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "finding.h"
 #include "html.h"
 #include "page_part.h"
 #include "value.h"
@@ -14,13 +15,9 @@ struct span {
     double seconds;
 };
 
-/* How much of its bound a figure uses; a figure that is not finite uses more than any other. */
 static double used(const json_t *figure)
 {
-    double value = value_member(figure, "value"), bound = value_member(figure, "bound");
-    if (isnan(value) || isnan(bound)) return (double)INFINITY;
-    if (bound > 0) return fmax(0, value / bound);
-    return value <= bound ? 0 : (double)INFINITY;
+    return finding_ratio(value_member(figure, "value"), value_member(figure, "bound"));
 }
 
 static bool same(const json_t *a, const json_t *b, const char *member)

@@ -4,28 +4,15 @@
 #include <string.h>
 
 #include "list.h"
-#include "result.h"
 #include "suite.h"
 #include "suite_output.h"
 #include "value.h"
 
-static json_t *numbers(const double *values, size_t n)
-{
-    json_t *array = json_array();
-    for (size_t i = 0; i < n; i++) json_array_append_new(array, result_number(values[i]));
-    return array;
-}
-
 json_t *suite_keep(const struct suite *suite)
 {
-    json_t *document = json_object(), *series = json_array();
+    json_t *document = json_object();
     suite_output_json(suite, document);
-    for (size_t i = 0; i < suite->series_count; i++) {
-        const struct series *s = &suite->series[i];
-        json_array_append_new(series, json_pack("{s:s, s:o, s:o}", "label", s->label, "x",
-                                                numbers(s->x, s->n), "y", numbers(s->y, s->n)));
-    }
-    json_object_set_new(document, "series", series);
+    json_object_set_new(document, "series", suite_output_series(suite, NULL));
     json_object_set_new(document, "seconds", json_real(suite->seconds));
     return document;
 }

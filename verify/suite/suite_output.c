@@ -199,20 +199,26 @@ static json_t *numbers_json(size_t n, const double *values)
     return array;
 }
 
-static json_t *failure_json(const struct suite *suite, const struct tally *t)
+json_t *suite_output_series(const struct suite *suite, const struct check *check)
 {
-    json_t *document = result_new("verify"), *checks = json_array(), *series = json_array();
-    for (size_t i = t->begin; i < t->end; i++)
-        json_array_append_new(checks, figure_json(&suite->figures[i]));
+    json_t *list = json_array();
     for (size_t i = 0; i < suite->series_count; i++) {
         const struct series *s = &suite->series[i];
-        if (s->check == t->check)
-            json_array_append_new(series, json_pack("{s:s, s:o, s:o}", "label", s->label, "x",
-                                                    numbers_json(s->n, s->x), "y",
-                                                    numbers_json(s->n, s->y)));
+        if (!check || s->check == check)
+            json_array_append_new(list, json_pack("{s:s, s:o, s:o}", "label", s->label, "x",
+                                                  numbers_json(s->n, s->x), "y",
+                                                  numbers_json(s->n, s->y)));
     }
+    return list;
+}
+
+static json_t *failure_json(const struct suite *suite, const struct tally *t)
+{
+    json_t *document = result_new("verify"), *checks = json_array();
+    for (size_t i = t->begin; i < t->end; i++)
+        json_array_append_new(checks, figure_json(&suite->figures[i]));
     json_object_set_new(document, "checks", checks);
-    json_object_set_new(document, "series", series);
+    json_object_set_new(document, "series", suite_output_series(suite, t->check));
     return document;
 }
 

@@ -16,6 +16,10 @@ void suite_output_table(const struct suite *suite, FILE *stream, bool color, boo
 /* Adds checks, mutants and summary to document. */
 void suite_output_json(const struct suite *suite, json_t *document);
 
+/* The data that a check (NULL: any) gave along with its figures, [{"label", "x", "y"}]; new
+ * reference. */
+json_t *suite_output_series(const struct suite *suite, const struct check *check);
+
 /* JUnit XML, as of a report: a test suite for each group and one for the mutants. */
 enum status suite_output_junit(const struct suite *suite, const char *path, struct error *error);
 
