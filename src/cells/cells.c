@@ -109,10 +109,14 @@ static void lay_out(struct cells *cells)
     add_field(&cells->shift, RECORD_ACCELERATION, dim);
 }
 
-/* Can forces have half loops? Only force, energy and signal speed have a place for reactions. */
+/* Have forces half loops? Only force, energy and signal speed have a place for reactions; and where
+ * pairs are few and cost little, reactions cost as much as is saved (measured at 20 to 30). */
 static bool method_halves(const struct cells_method *method)
 {
-    return !method->div_v && !(method->conductivity > 0);
+    const struct viscosity_descriptor *viscosity = &viscosity_of[method->viscosity];
+    const bool costly = viscosity->midpoint || viscosity->noise,
+               many = width_neighbours(method->box.dim, 1 / method->numbers.near) > 36;
+    return !method->div_v && !(method->conductivity > 0) && (costly || many);
 }
 
 double cells_bytes(const struct cells_method *method, double n, double neighbours)

@@ -51,7 +51,7 @@ static void draw_method(int trial)
                                     .number = draw_count(0, 1),
                                     .balsara = draw_count(0, 1),
                                     .worst_condition = 1e8,
-                                    .numbers = {1, 2, 2, 0.4, 0.4},
+                                    .numbers = {1, 2, 2, 0.25, 0.4}, /* many neighbours */
                                     .threads = 1};
     method->box.dim = 2 + trial % 2;
     method->signal_form = viscosity_of[method->viscosity].noise || draw_count(0, 1);
