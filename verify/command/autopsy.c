@@ -62,7 +62,7 @@ static void print_parts(const struct autopsy *autopsy, const struct table_style 
     printf(
         "%sthe time step and the measure: in L1 of the velocity; the others: rms of the "
         "acceleration, of\nwhich the exact one has %.3g. What the first two leave of the error the "
-        "others share as squares: a\nsmooth error as what is smooth in them, noise as their "
+        "others share as squares:\na smooth error as what is smooth in them, noise as their "
         "noise%s\n",
         style->faint, finest->acceleration, style->end);
 }
@@ -124,9 +124,10 @@ static void print_operator(const struct autopsy *autopsy, const struct table_sty
                level->regularity.spread);
     }
     printf(
-        "%sregular: of the positions of the start; spread: of distances to nearest neighbours over "
-        "their\nmean; E0: rms of h |sum V grad W|, both at "
-        "t_end%s\n\n",
+        "%sregular: of the positions of the start; noise: of the square of the velocity's error, "
+        "what "
+        "differs\nbetween neighbours; spread: of distances to nearest neighbours over their mean, "
+        "at t_end%s\n",
         style->faint, style->end);
 }
 
