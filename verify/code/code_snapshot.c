@@ -98,18 +98,21 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The greatest difference of two columns, each in its own order, over `scale` or, where that is 0,
- * over the values. NaN: no memory. */
-static double differ(const double *a, const double *b, size_t n, double scale)
+/* The difference of two columns, each in its own order, over `scale` or, where that is 0, over the
+ * values: of the share of the rows that is given, the greatest. NaN: no memory. */
+static double differ(const double *a, const double *b, size_t n, double scale, double share)
 {
-    double *sorted = malloc(2 * n * sizeof *sorted), worst = sorted ? 0 : (double)NAN;
+    double *sorted = malloc(2 * n * sizeof *sorted), found = (double)NAN;
     for (size_t i = 0; sorted && i < n; i++) sorted[i] = a[i], sorted[n + i] = b[i];
     for (size_t k = 0; sorted && k < 2; k++) qsort(sorted + k * n, n, sizeof *sorted, ascending);
     for (size_t i = 0; sorted && i < n; i++)
-        worst =
-            fmax(worst, fabs(sorted[i] - sorted[n + i]) / (scale > 0 ? scale : fabs(sorted[i])));
+        sorted[i] = fabs(sorted[i] - sorted[n + i]) / (scale > 0 ? scale : fabs(sorted[i]));
+    if (sorted && n) {
+        qsort(sorted, n, sizeof *sorted, ascending);
+        found = sorted[(size_t)(share * (double)(n - 1))];
+    }
     free(sorted);
-    return worst;
+    return found;
 }
 
 /* How far particles get by t_end with the exact velocity that they then have, in box lengths; what
@@ -143,14 +146,14 @@ static enum code_reason compare_start(const struct snapshot_file *file,
         return REASON_wrong_particles;
     }
     if (origin->cells) return REASON_NONE;
-    if (differ(ic->column[SNAPSHOT_M], file->column[SNAPSHOT_M], n, 0) > 1e-5) {
+    if (differ(ic->column[SNAPSHOT_M], file->column[SNAPSHOT_M], n, 0, 1) > 1e-5) {
         snprintf(message, size,
                  "masses are not those of the initial state: the code has not read it");
         return REASON_ignored_ic;
     }
     const double length = p->domain.hi[0] - p->domain.lo[0];
     if (!p->problem->fieldless && way_along_x(ic, p, origin->t_end) * PER_CENT > 1 &&
-        differ(ic->column[SNAPSHOT_X], file->column[SNAPSHOT_X], n, length) < 1e-7) {
+        differ(ic->column[SNAPSHOT_X], file->column[SNAPSHOT_X], n, length, 1) < 1e-7) {
         snprintf(message, size, "all particles are where they were at the start");
         return REASON_ignored_ic;
     }
@@ -175,6 +178,8 @@ enum code_reason code_compare(const struct snapshot_file *file, const struct cod
 
 /* ---- the start ---- */
 
+/* Medians: velocities of some codes are half a step ahead, which at a jump is much. */
+
 /* Positions from a corner of the box on, into [0, length) but for round-off below its ends. */
 static double *wrapped(const double *x, size_t n, double corner, double length)
 {
@@ -186,7 +191,7 @@ static double *wrapped(const double *x, size_t n, double corner, double length)
     return moved;
 }
 
-/* The greatest difference of positions along d, in box lengths: each file may count them from 0 or
+/* The median difference of positions along d, in box lengths: each file may count them from 0 or
  * from the case's corner. */
 static double apart(const struct snapshot_file *a, const struct snapshot_file *b,
                     const struct domain *box, int d)
@@ -196,7 +201,7 @@ static double apart(const struct snapshot_file *a, const struct snapshot_file *b
     double *x = wrapped(a->column[d], a->gas, 0, length);
     for (int k = -1; k <= 1; k++) {
         double *y = wrapped(b->column[d], b->gas, k * box->lo[d], length);
-        if (x && y) least = fmin(least, differ(x, y, a->gas, 1));
+        if (x && y) least = fmin(least, differ(x, y, a->gas, 1, 0.5));
         free(y);
     }
     free(x);
@@ -209,7 +214,7 @@ static double unlike(const struct snapshot_file *ic, const struct snapshot_file 
 {
     const double *a = ic->column[column], *b = file->column[column];
     for (size_t i = 0; a && i < ic->gas; i++) scale = fmax(scale, fabs(a[i]));
-    return a && b && scale > 0 ? differ(a, b, ic->gas, scale) : 0;
+    return a && b && scale > 0 ? differ(a, b, ic->gas, scale, 0.5) : 0;
 }
 
 bool code_is_start(const struct snapshot_file *file, const struct code_origin *origin,
@@ -228,8 +233,8 @@ bool code_is_start(const struct snapshot_file *file, const struct code_origin *o
     for (int d = 0; d < box->dim; d++) {
         const double way = apart(ic, file, box, d);
         if (!(way <= 1e-3 * spacing + 1e-6)) {
-            snprintf(message, size, "positions along %c are up to %.2g of the box from those",
-                     'x' + d, way);
+            snprintf(message, size, "positions along %c are %.2g of the box from those", 'x' + d,
+                     way);
             return false;
         }
     }
@@ -239,8 +244,8 @@ bool code_is_start(const struct snapshot_file *file, const struct code_origin *o
         const bool velocity = column < SNAPSHOT_VX + box->dim;
         if (!velocity && column != SNAPSHOT_U) continue;
         const double off = unlike(ic, file, column, velocity ? speed : 0);
-        if (!(off <= 1e-3)) {
-            snprintf(message, size, "%s differs by up to %.2g from that",
+        if (!(off <= 1e-2)) {
+            snprintf(message, size, "%s differs by %.2g of the greatest from that",
                      snapshot_column_names[column], off);
             return false;
         }
