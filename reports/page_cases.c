@@ -168,15 +168,15 @@ static void percent_cell(struct buffer *to, double part)
 static const struct html_column run_columns[] = {
     COLUMN("scheme", "label", .kind = CELL_TEXT),
     COLUMN("#n", "n"),
-    COLUMN("#L1 density", "errors/density/l1"),
-    COLUMN("#L1 velocity", "errors/velocity/l1"),
-    COLUMN("#L1 pressure", "errors/pressure/l1"),
-    COLUMN("#L1 internal energy", "errors/internal_energy/l1"),
-    COLUMN("#mass", "conservation/mass"),
-    COLUMN("#momentum", "conservation/momentum"),
-    COLUMN("#energy", "conservation/energy"),
-    COLUMN("#steps", "cost/steps"),
-    COLUMN("#CPU s", "cost/cpu_s"),
+    COLUMN("#L1 density", "errors/density/l1", .otherwise = "—"),
+    COLUMN("#L1 velocity", "errors/velocity/l1", .otherwise = "—"),
+    COLUMN("#L1 pressure", "errors/pressure/l1", .otherwise = "—"),
+    COLUMN("#L1 internal energy", "errors/internal_energy/l1", .otherwise = "—"),
+    COLUMN("#mass", "conservation/mass", .otherwise = "—"),
+    COLUMN("#momentum", "conservation/momentum", .otherwise = "—"),
+    COLUMN("#energy", "conservation/energy", .otherwise = "—"),
+    COLUMN("#steps", "cost/steps", .otherwise = "—"),
+    COLUMN("#CPU s", "cost/cpu_s", .otherwise = "—"),
     COLUMN("", "status", .kind = CELL_STATUS),
     {0}};
 
@@ -266,16 +266,18 @@ static void case_head(struct buffer *to, const char *name, const json_t *title,
     buffer_escape(to, title ? json_string_value(title) : "");
     buffer_add(to, "</span></h3>");
     html_status(to, state);
+    size_t shown = 0;
     for (size_t k = 0; k < study_count; k++) {
         const json_t *order = page_study_main(studies[k]);
-        if (!k) buffer_add(to, " <span class=\"note\">order of ");
-        if (!k) page_study_name(to, order);
-        buffer_add(to, k ? ", " : ": ");
+        if (!order) continue; /* it failed */
+        if (!shown) buffer_add(to, " <span class=\"note\">order of ");
+        if (!shown) page_study_name(to, order);
+        buffer_add(to, shown++ ? ", " : ": ");
         buffer_escape(to, value_text(studies[k], "label"));
         buffer_format(to, " %.2f ± %.2f", value_member(order, "order"),
                       (value_member(order, "high") - value_member(order, "low")) / 2);
     }
-    buffer_format(to, "%s</summary>\n", study_count ? "</span>" : "");
+    buffer_format(to, "%s</summary>\n", shown ? "</span>" : "");
 }
 
 static int dimension_of(const json_t *document)

@@ -58,7 +58,7 @@ static void cell(struct buffer *to, const json_t *study, const json_t *run)
         page_study_name(to, order);
         buffer_add(to, " ");
         html_number(to, page_study_finest(study));
-        buffer_format(to, "<br/>order %.2f [%.2f, %.2f]", value_member(order, "order"),
+        buffer_format(to, "<br/>order %.2f [%.2f,&#160;%.2f]", value_member(order, "order"),
                       value_member(order, "low"), value_member(order, "high"));
     } else {
         const double error = case_state_error(run, &what);
@@ -69,7 +69,10 @@ static void cell(struct buffer *to, const json_t *study, const json_t *run)
     const char *gate = gate_of(shown, study ? "orders" : "gates");
     if (strcmp(gate, "none")) {
         buffer_add(to, " ");
-        html_status(to, gate);
+        if (strcmp(gate, "smoke"))
+            html_status(to, gate);
+        else
+            buffer_add(to, "<b class=\"open\">too coarse to judge</b>");
     }
     again(to, value_text(shown, "reproduce"));
     buffer_add(to, "</td>");
@@ -125,10 +128,10 @@ static const struct html_column conserved[] = {
     COLUMN("case", "case", .kind = CELL_TEXT),
     COLUMN("code", "label", .kind = CELL_TEXT),
     COLUMN("#n", "n"),
-    COLUMN("#mass", "conservation/mass"),
-    COLUMN("#momentum", "conservation/momentum"),
-    COLUMN("#angular momentum", "conservation/angular_momentum"),
-    COLUMN("#energy", "conservation/energy"),
+    COLUMN("#mass", "conservation/mass", .otherwise = "—"),
+    COLUMN("#momentum", "conservation/momentum", .otherwise = "—"),
+    COLUMN("#angular momentum", "conservation/angular_momentum", .otherwise = "—"),
+    COLUMN("#energy", "conservation/energy", .otherwise = "—"),
     {0}};
 
 static const struct html_column assumed[] = {COLUMN("what", "what", .kind = CELL_TEXT),

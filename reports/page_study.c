@@ -223,9 +223,16 @@ static void plot_convergence(struct page_writer *writer, const char *case_name,
               "of the order, dashes have the named order.");
 }
 
-/* A level's main error, with its deviation over the replicates where that exceeds 3 %. */
-static void error_cell(struct buffer *to, const struct study *study, size_t i)
+/* The main error at a number of particles, with its deviation over the replicates where that
+ * exceeds 3 %; a dash: the study has none there. */
+static void error_cell(struct buffer *to, const struct study *study, double n)
 {
+    size_t i = 0;
+    while (i < study->levels && study->n[i] != n) i++;
+    if (i == study->levels) {
+        buffer_add(to, "<td class=\"n\">—</td>");
+        return;
+    }
     const json_t *level = json_array_get(json_object_get(study->document, "levels"), i);
     const char *name = study->names[0];
     const double spread = value_inner(json_object_get(level, "spread"), name, "l1");
@@ -233,6 +240,16 @@ static void error_cell(struct buffer *to, const struct study *study, size_t i)
     html_number(to, error_of(study->document, name, i));
     if (spread > 0.03) buffer_format(to, " ± %.0f %%", 100 * spread);
     buffer_add(to, "</td>");
+}
+
+/* The least number of particles of any study above this one; INFINITY: there is none. */
+static double next_n(const struct study *studies, size_t count, double above)
+{
+    double least = (double)INFINITY;
+    for (size_t k = 0; k < count; k++)
+        for (size_t i = 0; i < studies[k].levels; i++)
+            if (studies[k].n[i] > above) least = fmin(least, studies[k].n[i]);
+    return least;
 }
 
 /* What the errors of a study are means of. */
@@ -257,24 +274,26 @@ static void error_table(struct buffer *to, const struct study *studies, size_t c
         buffer_add(&columns, "|#");
         buffer_escape(&columns, value_text(studies[k].document, "label"));
     }
+    const json_t *named = NULL;
+    for (size_t k = 0; k < count && !named; k++) named = page_study_main(studies[k].document);
     buffer_add(to, "<h4>");
-    page_study_name(to, page_study_main(studies->document));
+    page_study_name(to, named);
     buffer_add(to, " over n</h4>\n");
     if (columns.data) html_table(to, "errors", columns.data);
     buffer_free(&columns);
-    const struct study *longest = studies;
-    for (size_t k = 1; k < count; k++)
-        if (studies[k].levels > longest->levels) longest = &studies[k];
-    for (size_t i = 0; i < longest->levels; i++) {
-        buffer_format(to, "<tr><td class=\"n\">%.0f</td>", longest->n[i]);
-        for (size_t k = 0; k < count; k++) error_cell(to, &studies[k], i);
+    for (double n = 0; isfinite(n = next_n(studies, count, n));) {
+        buffer_format(to, "<tr><td class=\"n\">%.0f</td>", n);
+        for (size_t k = 0; k < count; k++) error_cell(to, &studies[k], n);
         buffer_add(to, "</tr>\n");
     }
     buffer_add(to, "<tr class=\"total\"><th>order</th>");
     for (size_t k = 0; k < count; k++) {
         const json_t *order = page_study_main(studies[k].document);
-        buffer_format(to, "<td class=\"n\">%.2f ± %.2f</td>", value_member(order, "order"),
-                      (value_member(order, "high") - value_member(order, "low")) / 2);
+        if (order)
+            buffer_format(to, "<td class=\"n\">%.2f ± %.2f</td>", value_member(order, "order"),
+                          (value_member(order, "high") - value_member(order, "low")) / 2);
+        else
+            buffer_add(to, "<td class=\"n\">—</td>");
     }
     buffer_add(to, "</tr>\n");
     html_table_end(to);

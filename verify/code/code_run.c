@@ -16,6 +16,7 @@
 #include "output.h"
 #include "profile.h"
 #include "result.h"
+#include "value.h"
 
 /* A run on its way. */
 struct course {
@@ -455,6 +456,27 @@ enum status code_run(const struct run *run, struct judged *judged, json_t **docu
 
 /* ---- as a pool and a study see it ---- */
 
+/* Moves every number of a list. */
+static void move(json_t *list, double by)
+{
+    for (size_t i = 0; i < json_array_size(list); i++)
+        json_array_set_new(list, i, result_number(value_real(json_array_get(list, i)) + by));
+}
+
+/* A profile in the coordinates of the case, from whatever corner the code counts. */
+static json_t *placed(json_t *profile, const struct domain *ours, const struct domain *theirs)
+{
+    json_t *map = json_object_get(profile, "map"), *over = json_object_get(profile, "over");
+    const double along_x = ours->lo[0] - theirs->lo[0];
+    if (!over || strcmp(json_string_value(over), "x") == 0) { /* else a radius */
+        move(json_object_get(profile, "x"), along_x);
+        move(json_object_get(json_object_get(profile, "exact"), "x"), along_x);
+    }
+    move(json_object_get(map, "x"), along_x);
+    move(json_object_get(map, "y"), ours->lo[1] - theirs->lo[1]);
+    return profile;
+}
+
 static enum status compute(const struct run_external *external, const struct run *run, bool profile,
                            json_t **document, struct error *error)
 {
@@ -464,9 +486,10 @@ static enum status compute(const struct run_external *external, const struct run
     if (status) return status;
     const struct run_result *result = &judged.result;
     if (profile)
-        json_object_set_new(*document, "profile",
-                            judged.file.dim > 1 ? cloud_profile_json(result)
-                                                : profile_json(result));
+        json_object_set_new(
+            *document, "profile",
+            placed(judged.file.dim > 1 ? cloud_profile_json(result) : profile_json(result),
+                   &run->problem.domain, &result->problem.domain));
     judge_free(&judged);
     return STATUS_OK;
 }

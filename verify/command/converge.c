@@ -145,9 +145,10 @@ static void print_budget(const struct study_result *result, const struct table_s
     printf("still gas stays still: |v - v0| <= %.2g c far ahead of every wave (allowed: %g): "
            "%s%s%s\n",
            result->still, STUDY_STILL_BOUND, good ? style->good : style->bad,
-           result->still_status == FINDING_NONE ? "not judged, the start is random"
-           : good                               ? "pass"
-                                                : "FAIL",
+           result->still_status == FINDING_NONE
+               ? "not judged: the start is random, or another code computes"
+           : good ? "pass"
+                  : "FAIL",
            style->end);
 }
 

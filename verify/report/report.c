@@ -540,7 +540,8 @@ static enum status add_codes(struct report *report, struct error *error)
         struct reported *of = &report->cases[c];
         const struct scheme_label *ours = of->dimension > 1 ? cloud_schemes : line_schemes;
         of->entries[of->schemes++] = ours[0];
-        of->entries[of->schemes++] = of->dimension > 1 ? ours[2] : ours[1];
+        of->entries[of->schemes] = of->dimension > 1 ? ours[2] : ours[1];
+        of->entries[of->schemes++].label = "textbook SPH";
         of->studied = *of->size ? of->schemes : 0;
         if (add_case(report, c, error)) return error->status;
     }

@@ -171,14 +171,15 @@ static void judge_gates(struct study_result *result, const struct case_file *fil
     }
 }
 
-/* Gas that no wave has reached: noise that was put there is none of its own. */
-static void judge_stillness(struct study_result *result)
+/* Gas that no wave has reached: noise that was put there is none of its own. The bound is for our
+ * schemes: of other codes the figure is only told. */
+static void judge_stillness(struct study_result *result, bool ours)
 {
     result->still = (double)NAN;
     for (size_t l = 0; l < result->level_count; l++)
         if (result->levels[l].budget.regions)
             result->still = fmax(result->still, result->levels[l].budget.still);
-    if (isnan(result->still) || study_is_random(&result->settings)) return;
+    if (isnan(result->still) || !ours || study_is_random(&result->settings)) return;
     result->still_status = result->still <= STUDY_STILL_BOUND ? FINDING_PASS : FINDING_FAIL;
     if (result->still_status == FINDING_FAIL) result->status = STATUS_CHECK_FAILED;
 }
@@ -288,7 +289,7 @@ enum status study_judge(struct study *study, const struct pool *pool, struct err
                 return error->status;
             extrapolate(result);
             judge_gates(result, &study->settings.file, !study->settings.external);
-            judge_stillness(result);
+            judge_stillness(result, !study->settings.external);
             suspect(result, &study->settings.file);
         }
         if (result->status > study->status) study->status = result->status;
