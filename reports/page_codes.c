@@ -42,6 +42,13 @@ static void failed_cell(struct buffer *to, const json_t *document)
     buffer_escape(to, value_text(document, "message"));
 }
 
+static double finest_n(const json_t *study)
+{
+    const json_t *levels = json_object_get(study, "levels");
+    const size_t count = json_array_size(levels);
+    return value_member(count ? json_array_get(levels, count - 1) : NULL, "n");
+}
+
 /* Error at the finest level, order with its interval, gate, command. */
 static void cell(struct buffer *to, const json_t *study, const json_t *run)
 {
@@ -58,6 +65,7 @@ static void cell(struct buffer *to, const json_t *study, const json_t *run)
         page_study_name(to, order);
         buffer_add(to, " ");
         html_number(to, page_study_finest(study));
+        buffer_format(to, " at n&#160;=&#160;%.0f", finest_n(study));
         buffer_format(to, "<br/>order %.2f [%.2f,&#160;%.2f]", value_member(order, "order"),
                       value_member(order, "low"), value_member(order, "high"));
     } else {

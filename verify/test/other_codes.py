@@ -356,6 +356,11 @@ def test_report():
     assert "nan" not in text.split(), text
     assert "L1() over n" not in text and "order of L1()" not in text, text
     # errors over n, of ladders that differ: a dash where a code has not run
+    table = next(table for table in page.iter("table") if table.get("class") == "overview")
+    row = next(row for row in table.iter("tr") if "gresho" in "".join(row[0].itertext()))
+    heads = ["".join(cell.itertext()) for cell in next(table.iter("tr"))]
+    for name, n in ("Stand-in", 784), ("Third", 625), ("default", 784):  # each at the end of its own ladder
+        assert "at n = %d" % n in "".join(row[heads.index(name)].itertext()).replace("\u00a0", " "), (name, heads)
     table = next(table for table in page.iter("table") if table.get("class") == "errors")
     rows = [["".join(cell.itertext()) for cell in row] for row in table.iter("tr")]
     for name, missing in ("Broken", "225 256 400 576 625 784 order"), ("Third", "256 784"), ("default", "225 625"):
