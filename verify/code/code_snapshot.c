@@ -120,7 +120,7 @@ static double differ(const double *a, const double *b, size_t n, double scale, d
 static double way_along_x(const struct snapshot_file *ic, const struct prepared *p, double t_end)
 {
     const double length = p->domain.hi[0] - p->domain.lo[0];
-    double sum = 0, least = INFINITY;
+    double sum = 0, least = (double)INFINITY;
     for (size_t i = 0; i < ic->gas; i++) least = fmin(least, ic->column[SNAPSHOT_X][i]);
     for (size_t i = 0; i < ic->gas; i++) {
         struct problem_state state;
@@ -197,7 +197,7 @@ static double apart(const struct snapshot_file *a, const struct snapshot_file *b
                     const struct domain *box, int d)
 {
     const double length = box->hi[d] - box->lo[d];
-    double least = INFINITY;
+    double least = (double)INFINITY;
     double *x = wrapped(a->column[d], a->gas, 0, length);
     for (int k = -1; k <= 1; k++) {
         double *y = wrapped(b->column[d], b->gas, k * box->lo[d], length);

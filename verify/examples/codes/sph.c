@@ -117,7 +117,7 @@ static double approach(const struct pair *k, double dv[2], double *own, double *
 /* Accelerations, d_entropy; the longest step that is allowed. */
 static double find_rates(void)
 {
-    double dv[2], own, other, step = INFINITY;
+    double dv[2], own, other, step = HUGE_VAL;
     find_density();
     for (int i = 0; i < n; i++) {
         p[i].pressure = p[i].entropy * pow(p[i].rho, gas_gamma);
