@@ -6,6 +6,7 @@
 
 #include "initial.h"
 #include "initial_create.h"
+#include "sleep.h"
 
 static const double reaches = 3;
 /* Rates of change, in c per h/c of the setup's mean sound speed, below which gas counts as calm. It
@@ -18,9 +19,10 @@ struct counting {
     struct simulation *simulation;
     double *h;                 /* of the start, by id */
     double *before;            /* v and rho of the step before, by id: dim + 1 runs of n */
-    bool *asleep;              /* in the order of a snapshot */
+    bool *asleep, *free;       /* who sleeps, and who could: in the order of a snapshot */
     double sound, time, t_end; /* of the setup; of the step before; of the run */
-    double share;              /* what could be skipped, summed over steps */
+    /* what could be skipped, and what of it was done: summed over steps */
+    double share, reached, layers;
     uint64_t steps;
     int columns;
     double slept[BENCH_ROWS][BENCH_COLUMNS], gas[BENCH_ROWS][BENCH_COLUMNS];
@@ -54,23 +56,20 @@ static void place_at(const struct counting *counting, size_t i, double time, dou
     }
 }
 
-static size_t count_ahead(const struct counting *counting, double time)
+static void find_ahead(const struct counting *counting, const struct snapshot *s, double time)
 {
     const struct prepared *p = counting->problem;
-    size_t ahead = 0;
-    for (size_t i = 0; i < counting->initial->n; i++) {
+    for (size_t i = 0; i < s->n; i++) {
         double x[3] = {0};
-        place_at(counting, i, time, x);
-        ahead += p->problem->ahead(p, x, time) > reaches * counting->h[i];
+        place_at(counting, s->id[i], time, x);
+        counting->free[i] = p->problem->ahead(p, x, time) > reaches * counting->h[s->id[i]];
     }
-    return ahead;
 }
 
-/* How many change slowly; keeps their values for the next step. */
-static size_t count_calm(struct counting *counting, const struct snapshot *s, double dt)
+/* Who changes slowly; keeps their values for the next step. */
+static void find_calm(struct counting *counting, const struct snapshot *s, double dt)
 {
     const int dim = counting->problem->domain.dim;
-    size_t calm = 0;
     for (size_t i = 0; i < s->n; i++) {
         double *rho = &counting->before[(size_t)dim * s->n + s->id[i]];
         const double slow = coarse * dt * counting->sound / s->h[i]; /* relative */
@@ -80,10 +79,10 @@ static size_t count_calm(struct counting *counting, const struct snapshot *s, do
             square += (s->v[k][i] - *v) * (s->v[k][i] - *v);
             *v = s->v[k][i];
         }
-        calm += sqrt(square) <= slow * counting->sound && fabs(s->rho[i] - *rho) <= slow * *rho;
+        counting->free[i] =
+            sqrt(square) <= slow * counting->sound && fabs(s->rho[i] - *rho) <= slow * *rho;
         *rho = s->rho[i];
     }
-    return calm;
 }
 
 /* Of the box along x, counted from 0. */
@@ -122,12 +121,28 @@ static int count_columns(const struct counting *counting)
 static void map_sleepers(struct counting *counting, const struct snapshot *s, double time)
 {
     const int row = (int)fmin(time / counting->t_end * BENCH_ROWS, BENCH_ROWS - 1);
-    simulation_asleep(counting->simulation, counting->asleep);
     for (size_t i = 0; i < s->n; i++) {
         const int column = column_at(counting, s->x[0][i], counting->columns);
         counting->gas[row][column]++;
         counting->slept[row][column] += counting->asleep[i];
     }
+}
+
+static void add_shares(struct counting *counting, const struct snapshot *s)
+{
+    size_t free = 0, reached = 0, layers = 0;
+    for (size_t i = 0; i < s->n; i++) {
+        if (!counting->free[i]) continue;
+        free++;
+        if (counting->asleep[i]) continue;
+        if (sleep_disturbance(counting->simulation, (ptrdiff_t)i, 1) <= 1)
+            layers++;
+        else
+            reached++;
+    }
+    counting->share += (double)free / (double)s->n;
+    counting->reached += (double)reached / (double)s->n;
+    counting->layers += (double)layers / (double)s->n;
 }
 
 static bool count(void *context, double time, uint64_t steps)
@@ -136,9 +151,12 @@ static bool count(void *context, double time, uint64_t steps)
     const bool known = counting->problem->problem->ahead != NULL;
     struct snapshot s;
     simulation_snapshot(counting->simulation, &s);
-    const size_t calm =
-        known ? count_ahead(counting, time) : count_calm(counting, &s, time - counting->time);
-    counting->share += (double)calm / (double)s.n;
+    if (known)
+        find_ahead(counting, &s, time);
+    else
+        find_calm(counting, &s, time - counting->time);
+    simulation_asleep(counting->simulation, counting->asleep);
+    add_shares(counting, &s);
     counting->steps = steps;
     counting->time = time;
     map_sleepers(counting, &s, time);
@@ -179,13 +197,15 @@ static enum status run_counting(const struct run *run, struct counting *counting
     counting->t_end = setup.t_end;
     counting->columns = count_columns(counting);
     for (size_t i = 0; i < start.n; i++) counting->h[start.id[i]] = start.h[i];
-    count_calm(counting, &start, 0);
+    find_calm(counting, &start, 0);
     status = simulation_run(counting->simulation, setup.t_end, count, counting, error);
     simulation_cost(counting->simulation, &cost);
     simulation_destroy(counting->simulation);
     const double skipped = (double)cost.skipped_particle_updates;
     shares->skipped = skipped / (skipped + (double)cost.particle_updates);
     shares->possible = counting->share / (double)counting->steps;
+    shares->reached = counting->reached / (double)counting->steps;
+    shares->layers = counting->layers / (double)counting->steps;
     shares->coarse = run->problem.problem->ahead == NULL;
     shares->columns = counting->columns;
     fill_map(counting, shares);
@@ -200,13 +220,14 @@ enum status bench_possible(const struct run *run, struct bench_shares *shares, s
     const size_t values = (size_t)run->problem.domain.dim + 1;
     struct counting *counting = calloc(1, sizeof *counting);
     double *kept = calloc((values + 1) * initial.n, sizeof *kept);
-    bool *asleep = calloc(initial.n, sizeof *asleep);
+    bool *asleep = calloc(2 * initial.n, sizeof *asleep);
     if (counting && kept && asleep) {
         *counting = (struct counting){.problem = &run->problem,
                                       .initial = &initial,
                                       .h = kept,
                                       .before = kept + initial.n,
-                                      .asleep = asleep};
+                                      .asleep = asleep,
+                                      .free = asleep + initial.n};
         status = run_counting(run, counting, shares, error);
     } else {
         status = error_set(error, STATUS_ENVIRONMENT, "no memory");

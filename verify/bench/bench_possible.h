@@ -15,6 +15,9 @@ struct bench_shares {
      * density change more slowly than a coarse threshold. */
     double possible;
     bool coarse; /* possible is found with the coarse threshold */
+    /* Of what is possible and was done: particles whose own rates are above the tolerance of sleep,
+     * so that a precursor has reached them; and particles that are awake for their neighbours. */
+    double reached, layers;
     /* Share of the gas that sleeps, by parts of t_end and parts of the box along x, of which there
      * are so few that none between particles is empty at the start; NaN: no gas. */
     int columns;

@@ -41,6 +41,9 @@ TEST(test_shares)
         const struct bench_shares shares = shares_of(cases[k].name, cases[k].keys);
         near_inside(shares.possible, cases[k].possible, 1);
         near_inside(shares.skipped, 0.8 * shares.possible, 1);
+        /* what could sleep does, or it is told why not (a step sees who sleeps after it) */
+        assert_true(shares.reached >= 0 && shares.layers > 0);
+        near_absolute(shares.possible - shares.reached - shares.layers, shares.skipped, 0.03);
     }
 }
 
