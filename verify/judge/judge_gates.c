@@ -141,7 +141,7 @@ static enum status no_such_figure(const json_t *figures, const char *name, struc
 
 static enum status ask(const char *text, const json_t *figures, json_t *gates, struct error *error)
 {
-    for (const char *at = text; at && *at;) {
+    for (const char *at = text; at && (*at || at == text);) { /* an empty text is refused, too */
         const size_t length = strcspn(at, ","), end = strcspn(at, "<>=");
         const size_t sign = strspn(at + end, "<>=");
         char name[NAME], relation[3] = "", number[40];

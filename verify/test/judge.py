@@ -486,7 +486,7 @@ def hostile(folder, blocks, hdf5):
     refused(BINARY, "--case", "sod", "--map", "rho=d", says="--map is for text")
     refused(BINARY, "--case", "sod", "--kernel", "cubic", says="kernel")
     refused(BINARY, "--case", "sod", "--h-is", "wide", says="--h-is")
-    for gate in ("density", "density_l1=x", "density_l1=-1", "density_l7=1", "azimuthal_l1=1"):
+    for gate in ("", "density", "density_l1=x", "density_l1=-1", "density_l7=1", "azimuthal_l1=1"):
         refused(BINARY, "--case", "sod", "--gate", gate, says="--gate")
     for size in list(range(1, 300, 37)) + list(range(300, len(whole), 997)) + [len(whole) - 1]:
         refused(write(folder, "cut", whole[:size]), "--case", "sod", says="cut")

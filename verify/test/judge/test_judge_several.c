@@ -184,9 +184,9 @@ static json_t *gate(const char *text, const struct judged *judged, size_t n, con
     struct error error = {0};
     json_t *found = NULL;
     const enum status status = judge_gates(text, false, judged, n, &found, &error);
-    if (!says && status) fail_msg("%s: %s", text, error.message);
+    if (!says && status) fail_msg("%s: %s", text ? text : "none", error.message);
     if (says && (status != STATUS_BAD_INPUT || !strstr(error.message, says)))
-        fail_msg("%s: '%s' is not in: %s", text, says, error.message);
+        fail_msg("%s: '%s' is not in: %s", text ? text : "none", says, error.message);
     if (!says) return found;
     json_decref(found);
     return NULL;
@@ -241,14 +241,13 @@ TEST(gates)
     json_t *found = gate("density_l1=1e300,density_l1>=1e-300", &judged, 1, NULL);
     for (size_t g = 0; g < 2; g++) assert_string_equal(status_at(found, g), "fail");
     json_decref(found);
-    for (int k = 0; k < 2; k++) {
-        found = gate(k ? "" : NULL, &judged, 1, NULL);
-        assert_int_equal(json_array_size(found), 0);
-        json_decref(found);
-    }
+    found = gate(NULL, &judged, 1, NULL);
+    assert_int_equal(json_array_size(found), 0);
+    json_decref(found);
     static const struct {
         const char *text, *says;
     } wrong[] = {
+        {"", "NAME=BOUND,..."}, /* an empty variable of a script is no gate that passes */
         {"density_l1", "NAME=BOUND,..."},
         {"density_l1,velocity_l1=1", "NAME=BOUND,..."},
         {"velocity_l1=1,,pressure_l1=1", "NAME=BOUND,..."},
