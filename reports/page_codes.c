@@ -140,6 +140,9 @@ static const struct html_column conserved[] = {
     COLUMN("#momentum", "conservation/momentum", .otherwise = "—"),
     COLUMN("#angular momentum", "conservation/angular_momentum", .otherwise = "—"),
     COLUMN("#energy", "conservation/energy", .otherwise = "—"),
+    COLUMN("#kinetic energy regained", "conservation/ke_rebound", .otherwise = "—"),
+    COLUMN("#halves differ", "conservation/ke_asymmetry", .otherwise = "—"),
+    COLUMN("#centre, spacings", "conservation/centre", .otherwise = "—"),
     {0}};
 
 static const struct html_column assumed[] = {COLUMN("what", "what", .kind = CELL_TEXT),

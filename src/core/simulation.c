@@ -435,7 +435,7 @@ void simulation_conservation(const struct simulation *simulation, struct conserv
     const struct particles *a = &simulation->particles;
     const bool total = simulation->scheme.energy == ENERGY_TOTAL;
     /* long double: the sums themselves shall not be what is measured */
-    long double mass = 0, momentum[3] = {0}, momentum_scale = 0, sound = 0, energy = 0;
+    long double mass = 0, momentum[3] = {0}, momentum_scale = 0, sound = 0, energy = 0, kinetic = 0;
     for (ptrdiff_t i = 0; i < a->n; i++) {
         mass += a->m[i];
         momentum_scale += particles_norm(a, a->p, i);
@@ -446,6 +446,7 @@ void simulation_conservation(const struct simulation *simulation, struct conserv
             momentum[k] += p;
             energy -= (long double)a->m[i] * simulation->gravity[k] * a->x[k][i];
             if (!total) energy += 0.5L * p * p / a->m[i];
+            kinetic += 0.5L * p * p / a->m[i];
         }
     }
     *sums = (struct conservation){
@@ -454,6 +455,7 @@ void simulation_conservation(const struct simulation *simulation, struct conserv
         .momentum_scale = (double)momentum_scale,
         .sound_scale = (double)sound,
         .energy = (double)energy,
+        .kinetic = (double)kinetic,
     };
     if (a->dim > 1) add_turning(simulation, sums);
 }

@@ -71,6 +71,7 @@ struct rates {
 
 struct conservation { /* sums over all particles; extensive, code units */
     double mass, momentum[3], momentum_scale /* sum |p| */, sound_scale /* sum m c */, energy;
+    double kinetic; /* the part of the energy that is sum p^2/2m */
     /* about the middle of the box, of positions wrapped into it where it is periodic; 0 in 1D */
     double angular_momentum[3], angular_scale /* sum |r x p| */, turning_scale /* sum |r| m c */;
 };

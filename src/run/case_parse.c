@@ -12,6 +12,7 @@
 #include "problem_list.h"
 #include "problem_prepare.h"
 #include "text.h"
+#include "trace.h"
 
 /* Keys of a case file beside settings_keys: SECTION, KEY. */
 #define EXTRA_LIST(EXTRA)                                                                          \
@@ -163,9 +164,16 @@ static bool gate_name(const char *name, int *field, int *norm)
     return false;
 }
 
-#define ORDER_GATE    "least order, greatest order, bound of the finest error; or "
+/* The static name of a functional, or of a figure of conservation; NULL: it is neither. */
+static const char *figure_name(const char *name)
+{
+    const size_t figure = trace_figure(name);
+    return figure < TRACE_FIGURES ? trace_figures[figure] : problem_functional_name(name);
+}
+
+#define ORDER_GATE    "least order, greatest order, bound; or "
 #define ERROR_GATE    "order for shorter ladders, bound of the finest error"
-#define SMOOTH_GATE   "; or order, least and greatest error"
+#define TWO_SIDES     " or LEAST:BOUND"
 #define KNOWN_FAILURE "; `known: WHY` after them, if it is known to fail"
 
 /* What stands before `known: WHY` in a gate's value, without blanks at its end, and WHY, "" where
@@ -181,12 +189,22 @@ static bool read_known(const char *value, char text[256], const char **why)
     return !(known && !**why) && strlen(*why) < sizeof((struct case_weakness *)NULL)->why;
 }
 
-/* The numbers of a gate's value and why it is known to fail; false where the value is none. */
-static bool read_gate(const char *value, size_t count, double *numbers, const char **why)
+/* The numbers of a gate's value, of which the last may be LEAST:BOUND (least 0: it is not), and why
+ * it is known to fail; false where the value is none. */
+static bool read_gate(const char *value, size_t count, double *numbers, double *least,
+                      const char **why)
 {
     char text[256];
-    return read_known(value, text, why) && text_reals(text, " \t,", count, numbers) &&
-           numbers[count - 1] > 0;
+    *least = 0;
+    if (!read_known(value, text, why)) return false;
+    char *colon = strchr(text, ':'), *from = colon;
+    if (colon) {
+        while (from > text && !strchr(" \t,", from[-1])) from--;
+        *colon = '\0';
+        if (!text_real(from, least) || !(*least > 0) || strpbrk(colon + 1, " \t,")) return false;
+        memmove(from, colon + 1, strlen(colon + 1) + 1);
+    }
+    return text_reals(text, " \t,", count, numbers) && numbers[count - 1] > *least;
 }
 
 /* The number of the gate of a functional, or NULL and of a field's norm; gate_count: there is none.
@@ -234,8 +252,9 @@ static void set_compared(struct parser *parser, struct case_gate *gate, const ch
 {
     struct case_weakness *compared = &gate->compared;
     const char *why;
+    double least = 0;
     if (!read_absence(value, &compared->bound, &why) &&
-        !read_gate(value, 1, &compared->bound, &why))
+        (!read_gate(value, 1, &compared->bound, &least, &why) || least > 0))
         ini_text_fail_value(&parser->at, name, value,
                             "bound of the finest error, or none where there is nothing to be "
                             "measured" KNOWN_FAILURE);
@@ -279,17 +298,14 @@ static void set_gate(struct parser *parser, const char *functional, int field, i
     const char *why;
     struct case_gate gate = {.functional = functional};
     if (!functional) gate.field = (enum field)field, gate.norm = (enum norm)norm;
-    if (!functional && read_gate(value, 3, numbers, &why) && numbers[0] < numbers[1])
+    if (!functional && read_gate(value, 3, numbers, &gate.least, &why) && numbers[0] < numbers[1])
         gate.gate = (struct order_gate){numbers[0], numbers[1], numbers[2]};
-    else if (functional && read_gate(value, 3, numbers, &why) && numbers[0] >= 0 &&
-             numbers[1] > 0 && numbers[1] < numbers[2])
-        gate.gate = (struct order_gate){numbers[0], INFINITY, numbers[2]}, gate.least = numbers[1];
-    else if (read_gate(value, 2, numbers, &why) && numbers[0] >= 0)
+    else if (read_gate(value, 2, numbers, &gate.least, &why) && numbers[0] >= 0)
         gate.gate = (struct order_gate){numbers[0], INFINITY, numbers[1]};
     else {
         ini_text_fail_value(&parser->at, name, value,
-                            functional ? ERROR_GATE SMOOTH_GATE KNOWN_FAILURE
-                                       : ORDER_GATE ERROR_GATE KNOWN_FAILURE);
+                            functional ? ERROR_GATE TWO_SIDES KNOWN_FAILURE
+                                       : ORDER_GATE ERROR_GATE TWO_SIDES KNOWN_FAILURE);
         return;
     }
     add_gate(parser, name, gate, why);
@@ -366,11 +382,11 @@ static int take_pair(void *context, const char *section, const char *name, const
             parser->at.failed = true;
     } else if (strcmp(section, "converge") == 0 && gate_name(name, &field, &norm)) {
         set_gate(parser, NULL, field, norm, name, value);
-    } else if (strcmp(section, "converge") == 0 && problem_functional_name(name)) {
-        set_gate(parser, problem_functional_name(name), 0, 0, name, value);
+    } else if (strcmp(section, "converge") == 0 && figure_name(name)) {
+        set_gate(parser, figure_name(name), 0, 0, name, value);
     } else if ((strcmp(section, "compared") == 0 || strcmp(section, "finer") == 0) &&
-               (gate_name(name, &field, &norm) || problem_functional_name(name))) {
-        amend_gate(parser, section, problem_functional_name(name), field, norm, name, value);
+               (gate_name(name, &field, &norm) || figure_name(name))) {
+        amend_gate(parser, section, figure_name(name), field, norm, name, value);
     } else {
         unknown(parser, section, name);
     }
@@ -428,7 +444,7 @@ static void find_judge(struct parser *parser)
 }
 
 /* What a functional's gate needs: a problem that has it, in 2D or 3D (in 1D no order is found of
- * functionals). */
+ * functionals). Every run has what it conserves. */
 static enum status check_gates(struct parser *parser)
 {
     const struct case_file *file = parser->file;
@@ -436,7 +452,7 @@ static enum status check_gates(struct parser *parser)
     for (size_t i = 0; i < file->gate_count; i++) {
         const char *functional = file->gates[i].functional;
         char what[120];
-        if (!functional) continue;
+        if (!functional || trace_figure(functional) < TRACE_FIGURES) continue;
         parser->at.line = parser->seen_gates[i];
         if (!problem_functional(problem, functional)) {
             snprintf(what, sizeof what, "key %.40s and kind = %.40s exclude each other", functional,
@@ -494,7 +510,7 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
 bool case_amend(struct case_file *file, struct ini_text *at, const char *name, const char *value)
 {
     struct parser parser = {.file = file, .at = *at};
-    const char *functional = problem_functional_name(name);
+    const char *functional = figure_name(name);
     int field = 0, norm = 0;
     const bool ladder = strcmp(name, extras[EXTRA_n].name) == 0;
     if (!ladder && !functional && !gate_name(name, &field, &norm)) return false;

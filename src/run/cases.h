@@ -16,22 +16,23 @@
 enum { CASE_LADDER_MAX = ORDER_LEVELS_MAX, CASE_GATES_MAX = FIELDS * NORMS + 16 /* functionals */ };
 
 /* A gate of [converge]: `density_l1 = LOW HIGH BOUND`; where no order can be asked for, and of
- * functionals (`growth_rate = ORDER BOUND`, of |value - exact|), of the finest error alone: ORDER
- * is then what the bound is raised by where a ladder ends before the case's. Functionals that
- * hardly scatter may have `ORDER LEAST BOUND`: on the case's own ladder, with its own settings, an
- * error below LEAST is too good and shows an unknown change. With `... known: WHY` of a weakness
- * that is shown and fails nothing. The schemes that a report compares with the default have a bound
- * thrice as wide, or their own, in a line of the same name in [compared]: `density_l1 = BOUND`.
- * `density_l1 = BOUND known: WHY`: they are known to fail the gate, but their error is a number up
- * to BOUND. `density_l1 = none known: WHY`: there is nothing to be measured (no shock to be found),
- * their error is no number. A bound in [finer], `shock_radius = BOUND`, replaces that of [converge]
- * for more particles than the finest level of the case's own ladder has. */
+ * functionals (`growth_rate = ORDER BOUND`, of |value - exact|; `momentum = ORDER BOUND` and the
+ * other figures of "conservation", of the worst run of the finest level), of the finest error
+ * alone: ORDER is then what the bound is raised by where a ladder ends before the case's. Errors
+ * that hardly scatter may have LEAST:BOUND as their bound: on the case's own ladder, with its own
+ * settings, an error below LEAST is too good and shows an unknown change. With `... known: WHY` of
+ * a weakness that is shown and fails nothing. The schemes that a report compares with the default
+ * have a bound thrice as wide, or their own, in a line of the same name in [compared]: `density_l1
+ * = BOUND`. `density_l1 = BOUND known: WHY`: they are known to fail the gate, but their error is a
+ * number up to BOUND. `density_l1 = none known: WHY`: there is nothing to be measured (no shock to
+ * be found), their error is no number. A bound in [finer], `shock_radius = BOUND`, replaces that of
+ * [converge] for more particles than the finest level of the case's own ladder has. */
 struct case_weakness {
     double bound;  /* of the finest error; INFINITY: any number, NAN: none at all, 0: unsaid */
     char why[160]; /* "" if there is none */
 };
 struct case_gate {
-    const char *functional; /* its name, static; NULL: of a field's norm */
+    const char *functional; /* its name, static, or one of trace_figures; NULL: of a field's norm */
     enum field field;
     enum norm norm;
     struct order_gate gate; /* of the error alone: low = ORDER, high = INFINITY */

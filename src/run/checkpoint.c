@@ -59,6 +59,7 @@ void checkpoint_save(struct checkpoint *checkpoint, struct simulation *simulatio
     fprintf(output.stream, "%s %s\n%s\n", magic, checkpoint->build, checkpoint->run);
     SERIALISE(&serialiser, *growth);
     SERIALISE(&serialiser, checkpoint->snapshot);
+    if (checkpoint->trace) SERIALISE(&serialiser, *checkpoint->trace);
     simulation_serialise(simulation, &serialiser);
     fwrite(&stream.sum, sizeof stream.sum, 1, output.stream);
     output_close(&output, &checkpoint->trouble); /* tells whether it worked */
@@ -160,6 +161,7 @@ enum status checkpoint_load(struct checkpoint *checkpoint, struct simulation *si
     if (!status) {
         SERIALISE(&serialiser, *growth);
         SERIALISE(&serialiser, checkpoint->snapshot);
+        if (checkpoint->trace) SERIALISE(&serialiser, *checkpoint->trace);
         simulation_serialise(simulation, &serialiser);
         if (serialiser.failed) status = refuse(checkpoint, "is damaged, or too large", error);
     }

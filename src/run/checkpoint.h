@@ -9,14 +9,16 @@
 
 #include "growth.h"
 #include "simulation.h"
+#include "trace.h"
 
 struct checkpoint {
     const char *path;
-    const char *build; /* of the program; of no more than CHECKPOINT_WORD letters */
-    const char *run;   /* JSON object, one line: all that decides the run's result */
-    double every;      /* seconds of wall time between two writes */
-    bool resume;       /* begin with what the file has, if there is one */
-    double snapshot;   /* goes with the state: time of the last snapshot on the way; < 0: none */
+    const char *build;   /* of the program; of no more than CHECKPOINT_WORD letters */
+    const char *run;     /* JSON object, one line: all that decides the run's result */
+    double every;        /* seconds of wall time between two writes */
+    bool resume;         /* begin with what the file has, if there is one */
+    double snapshot;     /* goes with the state: time of the last snapshot on the way; < 0: none */
+    struct trace *trace; /* likewise: the run's so far; NULL: none is kept */
     /* kept by the functions below: */
     bool begun;           /* written holds a time */
     double written;       /* when the file was last written, or the first question was asked */

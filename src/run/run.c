@@ -244,6 +244,7 @@ static enum status broke_down_at_start(struct run_result *result, const struct e
     result->status = STATUS_BROKE_DOWN;
     snprintf(result->message, sizeof result->message, "%s", reason->message);
     result->mass = result->momentum = result->angular_momentum = result->energy = (double)NAN;
+    result->motion = trace_motion(&(struct trace){.count = 0});
     run_measure_nothing(result);
     return STATUS_OK;
 }
@@ -252,17 +253,21 @@ struct watch {
     const struct run *run;
     struct simulation *simulation;
     struct run_result *result;
+    struct trace *trace;
     double until; /* where the present call of simulation_run ends */
 };
 
-/* Sums of what a run shall conserve: no momentum along a direction where walls or gravity push, and
- * none at all beside layers that are kept: they also drag what flows along them. */
+/* Sums of what a run shall conserve, kinetic energy without that of the boost: no momentum along a
+ * direction where walls or gravity push, and none at all beside layers that are kept: they also
+ * drag what flows along them. */
 static void take_sums(const struct run *run, const struct simulation *simulation,
                       struct conservation *sums)
 {
     const struct prepared *p = &run->problem;
     bool layers = false;
     simulation_conservation(simulation, sums);
+    for (int d = 0; d < p->domain.dim; d++)
+        sums->kinetic -= p->boost[d] * (sums->momentum[d] - 0.5 * sums->mass * p->boost[d]);
     for (int d = 0; d < p->domain.dim; d++) layers |= p->boundary[d] == BOUNDARY_FIXED;
     for (int d = 0; d < p->domain.dim; d++)
         if (layers || p->boundary[d] == BOUNDARY_REFLECTING || p->gravity[d] != 0)
@@ -273,7 +278,7 @@ static void keep_trace(const struct watch *watch, double time)
 {
     struct conservation sums;
     take_sums(watch->run, watch->simulation, &sums);
-    trace_add(watch->run->asked.trace, time, &sums);
+    trace_add(watch->trace, time, &sums);
 }
 
 static void keep_look(const struct watch *watch, double time)
@@ -292,12 +297,12 @@ static bool after_step(void *context, double time, uint64_t steps)
     const struct run_settings *settings = &watch->run->asked;
     const double t_end = settings_real(&watch->run->settings, SETTING_t_end);
     struct checkpoint *checkpoint = settings->checkpoint;
+    if (trace_wants(watch->trace, steps)) keep_trace(watch, time); /* a checkpoint has it */
     /* not after the last step: a checkpoint always has a step to go on with */
     if (checkpoint && time < watch->until && checkpoint_due(checkpoint)) {
         checkpoint->snapshot = settings->snapshots ? snapshots_last(settings->snapshots) : -1;
         checkpoint_save(checkpoint, watch->simulation, &watch->result->growth);
     }
-    if (settings->trace && trace_wants(settings->trace, steps)) keep_trace(watch, time);
     if (settings->trace && trace_looks(settings->trace, time, t_end)) keep_look(watch, time);
     if (settings->progress && (steps % STEPS_BETWEEN == 0 || settings->each_step) &&
         !settings->progress(settings->progress_context, time, steps))
@@ -368,10 +373,6 @@ static enum status steps(struct watch *watch, struct simulation *simulation,
     enum { STOPS = 17 };
     const struct prepared *p = &result->problem;
     const struct growing *growing = p->problem->growing;
-    const struct run_settings *asked = &watch->run->asked;
-    simulation_progress *progress =
-        asked->progress || asked->trace || asked->checkpoint || asked->snapshots ? after_step
-                                                                                 : NULL;
     double times[2] = {0, 0};
     if (growing) growing->during(p, times);
     /* a run that is resumed has seen some of it */
@@ -379,12 +380,12 @@ static enum status steps(struct watch *watch, struct simulation *simulation,
         const double stop = times[0] + (times[1] - times[0]) * i / (STOPS - 1);
         struct snapshot seen;
         if (!(stop < t_end)) break;
-        const enum status status = run_until(watch, stop, progress, error);
+        const enum status status = run_until(watch, stop, after_step, error);
         simulation_snapshot(simulation, &seen);
         if (status || seen.time < stop) return status;
         growth_see(&result->growth, stop, growing->amplitude(p, &seen));
     }
-    return run_until(watch, t_end, progress, error);
+    return run_until(watch, t_end, after_step, error);
 }
 
 static enum status simulate(const struct run *run, struct run_result *result,
@@ -403,17 +404,21 @@ static enum status simulate(const struct run *run, struct run_result *result,
         *error = outcome.reason;
         return status;
     }
-    struct watch watch = {.run = run, .simulation = simulation, .result = result};
+    struct trace own = {0};
+    struct watch watch = {.run = run,
+                          .simulation = simulation,
+                          .result = result,
+                          .trace = asked->trace ? asked->trace : &own};
     take_sums(run, simulation, &outcome.start);
+    keep_trace(&watch, 0);
+    if (asked->checkpoint) asked->checkpoint->trace = watch.trace;
     if (asked->checkpoint && asked->checkpoint->resume &&
         checkpoint_load(asked->checkpoint, simulation, &result->growth, error)) {
+        asked->checkpoint->trace = NULL;
         simulation_destroy(simulation);
         return error->status;
     }
-    if (asked->trace) {
-        keep_trace(&watch, 0);
-        keep_look(&watch, 0);
-    }
+    if (asked->trace) keep_look(&watch, 0);
     if (asked->snapshots) {
         simulation_snapshot(simulation, &outcome.snapshot);
         snapshots_begin(asked->snapshots, outcome.snapshot.time,
@@ -425,10 +430,10 @@ static enum status simulate(const struct run *run, struct run_result *result,
     simulation_end(simulation); /* its neighbours' memory serves for the snapshot */
     take_sums(run, simulation, &outcome.end);
     simulation_snapshot(simulation, &outcome.snapshot);
-    if (asked->trace) {
-        trace_add(asked->trace, outcome.snapshot.time, &outcome.end);
-        keep_look(&watch, outcome.snapshot.time);
-    }
+    trace_add(watch.trace, outcome.snapshot.time, &outcome.end);
+    result->motion = trace_motion(watch.trace);
+    if (asked->trace) keep_look(&watch, outcome.snapshot.time);
+    if (asked->checkpoint) asked->checkpoint->trace = NULL;
     status = finish(result, &outcome, error);
     simulation_destroy(simulation); /* its memory serves for the errors */
     return status ? status : run_measure_errors(result, error);
@@ -440,6 +445,7 @@ static enum status simulate_otherwise(const struct run *run, struct run_result *
     struct run_outcome outcome = {0};
     const struct setup setup = run_setup(run, initial);
     run->asked.solver(&setup, &outcome);
+    result->motion = trace_motion(&(struct trace){.count = 0});
     result->cost = outcome.cost;
     const enum status status = finish(result, &outcome, error);
     if (outcome.release) outcome.release(outcome.owned);

@@ -112,6 +112,7 @@ struct run_result {
     /* conservation: relative, >= 0: see trace_drift; momentum only along directions without walls,
      * layers and gravity */
     double mass, momentum, angular_momentum, energy;
+    struct trace_motion motion; /* NaN: not known */
     struct simulation_cost cost;
     struct description_sums matrix; /* at time; none after a breakdown */
     double peak_rss;                /* bytes, of the process so far */
@@ -161,6 +162,11 @@ json_t *run_errors_json(const struct run_result *result);
 
 /* [{"name", "value", "reference"}]; owned by the caller. */
 json_t *run_functionals_json(const struct run_result *result);
+
+/* Adds "ke_rebound" and "ke_asymmetry" (null unless the exact flow is steady), and "centre", in
+ * particle spacings, to what is conserved; null where they are not known. */
+void run_add_motion(const struct run_result *result, const struct trace_motion *motion,
+                    json_t *conservation);
 
 /* Adds everything that a result of kind `run` has to a document (see result_new). */
 void run_add_json(const struct run_settings *settings, const struct run_result *result,

@@ -42,6 +42,20 @@ json_t *run_errors_json(const struct run_result *result)
     return errors;
 }
 
+static void set_known(json_t *object, const char *name, bool means, double value)
+{
+    json_object_set_new(object, name, means && !isnan(value) ? result_number(value) : json_null());
+}
+
+void run_add_motion(const struct run_result *result, const struct trace_motion *motion,
+                    json_t *conservation)
+{
+    const bool steady = result->problem.problem->steady;
+    set_known(conservation, "ke_rebound", steady, motion->rebound);
+    set_known(conservation, "ke_asymmetry", steady, motion->asymmetry);
+    set_known(conservation, "centre", true, motion->centre / result->spacing);
+}
+
 static json_t *conservation_json(const struct run_result *result)
 {
     json_t *object = json_object();
@@ -51,6 +65,7 @@ static json_t *conservation_json(const struct run_result *result)
                         result->problem.domain.dim == 1 ? json_null()
                                                         : result_number(result->angular_momentum));
     set_number(object, "energy", result->energy);
+    run_add_motion(result, &result->motion, object);
     return object;
 }
 

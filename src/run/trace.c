@@ -2,8 +2,19 @@
 #include "trace.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "result.h"
+
+const char *const trace_figures[TRACE_FIGURES] = {
+    "mass", "momentum", "angular_momentum", "energy", "ke_rebound", "ke_asymmetry", "centre"};
+
+size_t trace_figure(const char *name)
+{
+    size_t k = 0;
+    while (k < TRACE_FIGURES && strcmp(trace_figures[k], name) != 0) k++;
+    return k;
+}
 
 bool trace_wants(const struct trace *trace, uint64_t step)
 {
@@ -53,6 +64,58 @@ struct trace_drift trace_drift(const struct conservation *start, const struct co
     };
 }
 
+struct trace_drift trace_worst(const struct trace *trace)
+{
+    struct trace_drift worst = {0};
+    for (size_t k = 1; k < trace->count; k++) {
+        const struct trace_drift drift =
+            trace_drift(&trace->sums[0], &trace->sums[k], &trace->sums[trace->count - 1]);
+        worst.mass = fmax(worst.mass, drift.mass);
+        worst.momentum = fmax(worst.momentum, drift.momentum);
+        worst.angular_momentum = fmax(worst.angular_momentum, drift.angular_momentum);
+        worst.energy = fmax(worst.energy, drift.energy);
+    }
+    return worst;
+}
+
+/* On straight lines between entries. */
+static double kinetic_at(const struct trace *trace, double time)
+{
+    size_t k = 1;
+    while (k + 1 < trace->count && trace->time[k] < time) k++;
+    const double from = trace->time[k - 1], part = (time - from) / (trace->time[k] - from);
+    return (1 - part) * trace->sums[k - 1].kinetic + part * trace->sums[k].kinetic;
+}
+
+struct trace_motion trace_motion(const struct trace *trace)
+{
+    const struct conservation *sums = trace->sums;
+    const double *time = trace->time, start = sums[0].kinetic;
+    struct trace_motion motion = {(double)NAN, (double)NAN, (double)NAN};
+    double least = start, way[3] = {0};
+    if (trace->count < 2) return motion;
+    const bool moves = start > 1e-12 * fabs(sums[0].energy);
+    motion.centre = 0;
+    if (moves) motion.rebound = motion.asymmetry = 0;
+    for (size_t k = 1; k < trace->count; k++) {
+        const double mirrored = time[0] + time[trace->count - 1] - time[k];
+        const double step = time[k] - time[k - 1];
+        double squares = 0;
+        for (int d = 0; d < 3; d++) {
+            way[d] += step *
+                      (0.5 * (sums[k].momentum[d] + sums[k - 1].momentum[d]) - sums[0].momentum[d]);
+            squares += way[d] * way[d];
+        }
+        motion.centre = fmax(motion.centre, sqrt(squares) / sums[0].mass);
+        if (!moves) continue;
+        least = fmin(least, sums[k].kinetic);
+        motion.rebound = fmax(motion.rebound, (sums[k].kinetic - least) / start);
+        motion.asymmetry =
+            fmax(motion.asymmetry, fabs(sums[k].kinetic - kinetic_at(trace, mirrored)) / start);
+    }
+    return motion;
+}
+
 bool trace_looks(const struct trace *trace, double time, double t_end)
 {
     return trace->looks <= TRACE_LOOKS &&
@@ -86,7 +149,9 @@ static json_t *seen_json(const struct trace *trace)
 json_t *trace_json(const struct trace *trace, int dim)
 {
     json_t *time = json_array(), *mass = json_array(), *momentum = json_array(),
-           *turning = json_array(), *energy = json_array();
+           *turning = json_array(), *energy = json_array(), *kinetic = json_array(),
+           *potential = json_array();
+    const struct conservation *start = &trace->sums[0];
     for (size_t k = 0; k < trace->count; k++) {
         const struct trace_drift drift =
             trace_drift(&trace->sums[0], &trace->sums[k], &trace->sums[trace->count - 1]);
@@ -95,11 +160,16 @@ json_t *trace_json(const struct trace *trace, int dim)
         json_array_append_new(momentum, result_number(drift.momentum));
         json_array_append_new(turning, result_number(drift.angular_momentum));
         json_array_append_new(energy, result_number(drift.energy));
+        const double gained = trace->sums[k].kinetic - start->kinetic;
+        json_array_append_new(kinetic, result_number(gained / fabs(start->energy)));
+        json_array_append_new(
+            potential,
+            result_number((trace->sums[k].energy - start->energy - gained) / fabs(start->energy)));
     }
-    json_t *trace_of =
-        json_pack("{s:o, s:o, s:o, s:O, s:o, s:o}", "time", time, "mass", mass, "momentum",
-                  momentum, "angular_momentum", dim > 1 ? turning : json_null(), "energy", energy,
-                  "regularity", seen_json(trace));
+    json_t *trace_of = json_pack("{s:o, s:o, s:o, s:O, s:o, s:o, s:o, s:o}", "time", time, "mass",
+                                 mass, "momentum", momentum, "angular_momentum",
+                                 dim > 1 ? turning : json_null(), "energy", energy, "kinetic",
+                                 kinetic, "potential", potential, "regularity", seen_json(trace));
     json_decref(turning);
     return trace_of;
 }

@@ -34,6 +34,25 @@ struct trace_drift {
 struct trace_drift trace_drift(const struct conservation *start, const struct conservation *now,
                                const struct conservation *end);
 
+/* What an error at the end does not show (CONVENTIONS.md, section 6). NaN: fewer than two entries,
+ * or nothing moves at the start. */
+struct trace_motion {
+    double rebound; /* largest rise of the kinetic energy above its least before, over its start */
+    double asymmetry; /* largest |K(t) - K(t_end - t)| over K(0) */
+    double centre;    /* how far the centre of mass is away from where its first velocity leads it:
+                         a length, the largest */
+};
+struct trace_motion trace_motion(const struct trace *trace);
+
+/* The largest drift of all entries. */
+struct trace_drift trace_worst(const struct trace *trace);
+
+/* Names of what is conserved, as "conservation" in results has them, and each by its number. */
+enum { TRACE_FIGURES = 7 };
+extern const char *const trace_figures[TRACE_FIGURES];
+/* The number of a name; TRACE_FIGURES: there is no such figure. */
+size_t trace_figure(const char *name);
+
 /* Is this step to be kept? The start is step 0. */
 bool trace_wants(const struct trace *trace, uint64_t step);
 void trace_add(struct trace *trace, double time, const struct conservation *sums);
@@ -43,6 +62,8 @@ bool trace_looks(const struct trace *trace, double time, double t_end);
 void trace_see(struct trace *trace, double time, const struct regularity *regularity);
 
 /* {"time", "mass", "momentum", "angular_momentum" (null in 1D), "energy": arrays of the drift;
+ * "kinetic", "potential": what each has gained since the start, over the energy at the start, the
+ * latter all that is not kinetic;
  * "regularity": {"time", and the figures of regularity_json}}. New reference. */
 json_t *trace_json(const struct trace *trace, int dim);
 

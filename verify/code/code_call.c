@@ -85,11 +85,6 @@ void code_values(struct code_values *values, const struct code_external *externa
 
 /* ---- the command ---- */
 
-const char *code_command(const struct code_external *external)
-{
-    return external->command ? external->command : external->of->way.value[CODE_command];
-}
-
 void code_words_free(char **words)
 {
     for (size_t i = 0; words && words[i]; i++) free(words[i]);
@@ -250,7 +245,7 @@ enum status code_add_key(const struct run_external *base, const struct run *run,
 {
     const struct code_external *external = (const struct code_external *)base;
     const struct code_way *way = &external->of->way;
-    const char *command = code_command(external);
+    const char *command = way->value[CODE_command];
     struct code_values values;
     if (check_keys(external, run, error)) return error->status;
     code_values(&values, external, run, NULL);
@@ -264,13 +259,15 @@ enum status code_add_key(const struct run_external *base, const struct run *run,
                              "elements", code_value(way, CODE_elements), "shell", code_shell(way),
                              "files", files, "templates", template_sums(external, &values));
     free(filled);
+    if (code && external->variation)
+        json_object_set_new(code, "variation", json_integer((json_int_t)external->variation));
     if (code && !json_object_set_new(key, "code", code)) return STATUS_OK;
     return error_set(error, STATUS_ENVIRONMENT, "no memory for a run's key");
 }
 
 void code_program_sum(const struct code_external *external, char sum[SHA256_TEXT])
 {
-    const char *rest = code_command(external);
+    const char *rest = external->of->way.value[CODE_command];
     char path[CODE_PATH];
     size_t length;
     const char *word = code_next_word(&rest, &length);

@@ -19,9 +19,6 @@ struct code_values {
 void code_values(struct code_values *values, const struct code_external *external,
                  const struct run *run, const struct run_result *start);
 
-/* The command, or that of a fault. */
-const char *code_command(const struct code_external *external);
-
 /* The words of a command, with files beside the code file and words filled in: of sh where the code
  * file says so. Malloced, ends with NULL; NULL: no memory. */
 char **code_words_of(const struct code_external *external, const char *command,

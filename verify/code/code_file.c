@@ -36,10 +36,13 @@ static void end_case(struct parser *parser)
 {
     struct code_case *of = parser->of;
     parser->of = NULL;
-    if (!of || parser->gates || !parser->ladder) return;
-    for (size_t g = 0; g < of->file.gate_count; g++)
-        of->file.gates[g].gate.bound *= gates_raise(&parser->given, &parser->given.gates[g],
-                                                    of->file.ladder[of->file.ladder_count - 1]);
+    if (!of || parser->gates) return;
+    for (size_t g = 0; g < of->file.gate_count; g++) {
+        of->file.gates[g].least = 0; /* it is of our scheme */
+        if (parser->ladder)
+            of->file.gates[g].gate.bound *= gates_raise(&parser->given, &parser->given.gates[g],
+                                                        of->file.ladder[of->file.ladder_count - 1]);
+    }
 }
 
 static void begin_case(struct parser *parser, const char *name)
@@ -178,6 +181,24 @@ static void complete(struct code_way *way, const struct code_way *from)
         }
 }
 
+/* A fault says what differs. */
+static enum status check_fault(struct parser *parser, const struct code_fault *fault)
+{
+    bool says = false;
+    for (int key = 0; key < CODE_KEYS; key++) says |= fault->way.line[key] > 0;
+    if (!says)
+        return error_set(parser->at.error, STATUS_BAD_INPUT,
+                         "%.200s: [fault %.60s] has no key; allowed: those of [code] that differ, "
+                         "such as command",
+                         parser->at.path, fault->name);
+    for (size_t c = 0; c < parser->code->case_count && !parser->at.failed; c++) {
+        struct code_way way = fault->way;
+        complete(&way, &parser->code->cases[c].way);
+        code_check_command(parser->code, &parser->at, &way);
+    }
+    return parser->at.failed ? parser->at.error->status : STATUS_OK;
+}
+
 static enum status finish(struct parser *parser)
 {
     static const enum code_key needed[] = {CODE_command, CODE_snapshot};
@@ -188,21 +209,20 @@ static enum status finish(struct parser *parser)
                          "%.200s: no [case NAME]; allowed: a section for each case that the code "
                          "can run",
                          parser->at.path);
-    for (size_t c = 0; c < code->case_count + code->fault_count; c++) {
-        const bool is_case = c < code->case_count;
-        struct code_fault *fault = &code->faults[is_case ? 0 : c - code->case_count];
-        struct code_way *way = is_case ? &code->cases[c].way : &fault->way;
-        const char *name = is_case ? code->cases[c].file.asked : fault->name;
-        if (is_case) complete(way, &code->way);
-        for (size_t k = 0; k < (is_case ? sizeof needed / sizeof *needed : 1); k++)
+    for (size_t c = 0; c < code->case_count; c++) {
+        struct code_way *way = &code->cases[c].way;
+        complete(way, &code->way);
+        for (size_t k = 0; k < sizeof needed / sizeof *needed; k++)
             if (!way->line[needed[k]])
                 return error_set(parser->at.error, STATUS_BAD_INPUT,
-                                 "%.200s: key %s is missing in %s[%s %.60s]", parser->at.path,
-                                 code_keys[needed[k]].name, is_case ? "[code] or " : "",
-                                 is_case ? "case" : "fault", name);
+                                 "%.200s: key %s is missing in [code] or [case %.60s]",
+                                 parser->at.path, code_keys[needed[k]].name,
+                                 code->cases[c].file.asked);
         code_check_command(code, &parser->at, way);
         if (parser->at.failed) return parser->at.error->status;
     }
+    for (size_t f = 0; f < code->fault_count; f++)
+        if (check_fault(parser, &code->faults[f])) return parser->at.error->status;
     return STATUS_OK;
 }
 
@@ -251,6 +271,13 @@ enum status code_load(struct code *code, const char *path, struct error *error)
     free(text);
     if (status) code_free(code);
     return status;
+}
+
+void code_with_fault(const struct code_case *of, const struct code_fault *fault,
+                     struct code_case *faulty)
+{
+    *faulty = (struct code_case){of->file, fault->way};
+    complete(&faulty->way, &of->way);
 }
 
 void code_free(struct code *code)

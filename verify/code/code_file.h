@@ -10,7 +10,7 @@
  *   [case gresho]              ; a case that it can run; keys of [code] that differ; n and gates
  *   n = 32^2 48^2 64^2 96^2
  *   velocity_l1 = 0.5 1.2 0.2
- *   [fault slow]               ; the same program with a deliberate fault
+ *   [fault slow]               ; the same program with a deliberate fault: keys that differ
  *   command = ./swift_faulty @PARAMETERS@
  *
  * Each run has a folder of its own, in which the command starts. A word of a command that names a
@@ -112,6 +112,10 @@ struct code {
 /* STATUS_BAD_INPUT: file, line, key and what is allowed; nothing is then left to free. */
 enum status code_load(struct code *code, const char *path, struct error *error);
 void code_free(struct code *code);
+
+/* A case as a fault runs it: the keys that the fault says, and else those of the case. */
+void code_with_fault(const struct code_case *of, const struct code_fault *fault,
+                     struct code_case *faulty);
 
 /* NULL: STATUS_BAD_INPUT in error, which names the cases that there are. */
 const struct code_case *code_case_of(const struct code *code, const char *name,

@@ -14,6 +14,7 @@
 #include "code_process.h"
 #include "code_snapshot.h"
 #include "output.h"
+#include "places.h"
 #include "profile.h"
 #include "result.h"
 #include "value.h"
@@ -33,6 +34,7 @@ struct course {
     struct code_outcome outcome;
     struct judged judged;
     bool is_judged;
+    struct trace trace;      /* from the initial state on, through all snapshots */
     enum code_reason reason; /* why there is no result */
     char message[400];
 };
@@ -113,6 +115,33 @@ static enum status write_start(struct course *course, struct error *error)
     return status;
 }
 
+/* Two units in the last place up or down, as the format keeps it; what is 0 stays. */
+static double vary(double value, bool up, bool single)
+{
+    const double to = up ? INFINITY : -INFINITY;
+    if (value == 0) return value;
+    if (single) return nextafterf(nextafterf((float)value, (float)to), (float)to);
+    return nextafter(nextafter(value, to), to);
+}
+
+/* Positions, which stay in the box, velocities and energies. */
+static void vary_start(struct run_result *start, const struct start_format *format, uint64_t seed)
+{
+    const bool single = format && format->precision;
+    const struct snapshot *s = &start->snapshot;
+    const struct domain *box = &start->problem.domain;
+    const double *const columns[] = {s->x[0], s->x[1], s->x[2], s->v[0], s->v[1], s->v[2], s->u};
+    for (size_t k = 0; k < sizeof columns / sizeof *columns; k++) {
+        if (!columns[k]) continue;
+        double *column = start->storage + (columns[k] - start->storage);
+        for (size_t i = 0; i < s->n; i++) {
+            const bool up = places_random(seed, k * s->n + i) < 0.5;
+            const double other = vary(column[i], up, single);
+            if (k >= 3 || (other >= box->lo[k] && other < box->hi[k])) column[i] = other;
+        }
+    }
+}
+
 static enum status prepare(struct course *course, struct error *error)
 {
     const struct code_external *external = course->external;
@@ -121,7 +150,8 @@ static enum status prepare(struct course *course, struct error *error)
         run_start(course->run, &course->start, error))
         return error->status;
     code_values(&course->values, external, course->run, &course->start);
-    course->words = code_words_of(external, code_command(external), &course->values);
+    if (external->variation) vary_start(&course->start, format, external->variation);
+    course->words = code_words_of(external, external->of->way.value[CODE_command], &course->values);
     if (!course->words) return error_set(error, STATUS_ENVIRONMENT, "no memory for a command");
     if (make_folder(course, error) || write_start(course, error)) return error->status;
     return code_write_templates(external, &course->values, course->folder, error);
@@ -180,12 +210,7 @@ static void complete(struct course *course)
         judge_sum(&result->problem, &course->start.snapshot, shift, &start);
     else
         start = course->judged.start;
-    const struct trace_drift drift =
-        trace_drift(&start, &course->judged.sums, &course->judged.sums);
-    result->mass = drift.mass;
-    result->momentum = drift.momentum;
-    result->angular_momentum = drift.angular_momentum;
-    result->energy = drift.energy;
+    if (start.mass > 0) trace_add(&course->trace, 0, &start);
     result->settings = run->settings;
     result->regularity = regularity_of(
         &result->problem, found->known ? &found->candidate[0].kernel : &run->scheme.kernel,
@@ -251,6 +276,50 @@ static enum status judge(struct course *course, const char *path, struct error *
     return status == STATUS_BAD_INPUT ? STATUS_OK : status;
 }
 
+/* Sums of a snapshot on the way, if it can be read; they come in the order of their names. */
+static void add_moment(struct course *course, const char *path)
+{
+    const double last = course->trace.time[course->trace.count - 1];
+    struct judge_request request = {.case_name = course->run->asked.file.asked,
+                                    .asked = &course->run->asked,
+                                    .gamma = {true, course->run->problem.gamma},
+                                    .kernel = -1,
+                                    .allow_far = true};
+    struct snapshot_file file;
+    struct judged judged;
+    struct error ignored = {0};
+    char box[160];
+    bool boxed = false;
+    if (snapshot_read(path, &request.options, &file, &ignored)) return;
+    const bool between =
+        file.time.known && file.time.value > last && file.time.value < course->judged.result.time;
+    if (between) boxed = box_of(course, &file, box, sizeof box);
+    snapshot_file_free(&file);
+    if (boxed) request.box = box;
+    if (!between || judge_as(path, &request, true, &judged, &ignored)) return;
+    if (judged.result.n == course->judged.result.n)
+        trace_add(&course->trace, judged.result.time, &judged.sums);
+    judge_free(&judged);
+}
+
+/* What is conserved, and how the gas moves, through all that the run has left. */
+static void follow(struct course *course, const struct code_matches *now,
+                   const struct code_matches *before, time_t began)
+{
+    struct run_result *result = &course->judged.result;
+    for (size_t i = 0; course->trace.count && i < now->n; i++)
+        if (strcmp(now->path[i], course->snapshot) != 0 && code_is_new(now, i, before, began))
+            add_moment(course, now->path[i]);
+    if (course->trace.count) trace_add(&course->trace, result->time, &course->judged.sums);
+    const struct trace_drift worst = trace_worst(&course->trace);
+    const bool known = course->trace.count > 1;
+    result->mass = known ? worst.mass : (double)NAN;
+    result->momentum = known ? worst.momentum : (double)NAN;
+    result->angular_momentum = known ? worst.angular_momentum : (double)NAN;
+    result->energy = known ? worst.energy : (double)NAN;
+    result->motion = trace_motion(&course->trace);
+}
+
 static enum status execute(struct course *course, struct error *error)
 {
     struct code_matches before = {0}, now = {0};
@@ -279,6 +348,7 @@ static enum status execute(struct course *course, struct error *error)
                          : "%.200s: there is no such file",
                      course->external->of->way.value[CODE_snapshot]);
     }
+    if (!status && course->is_judged && !course->reason) follow(course, &now, &before, start.st_mtime);
     code_matches_free(&before);
     code_matches_free(&now);
     free(pattern);
@@ -356,7 +426,8 @@ static void describe(const struct run_external *base, json_t *document)
 {
     const struct code_external *external = (const struct code_external *)base;
     forget_scheme(document);
-    json_object_set_new(document, "code", code_json(external, code_command(external)));
+    json_object_set_new(document, "code",
+                        code_json(external, external->of->way.value[CODE_command]));
 }
 
 /* What a run of ours has and another program does not tell. */
@@ -389,6 +460,9 @@ static enum status tell_sound(const struct course *course, json_t *document)
     run_add_json(&course->run->asked, &course->judged.result, document);
     forget(document);
     add_judged(&course->judged, document);
+    if (course->trace.count)
+        json_object_set_new(document, "through_time",
+                            trace_json(&course->trace, course->judged.file.dim));
     add_code(course, log ? log : "", document);
     free(log);
     return STATUS_OK;

@@ -6,6 +6,8 @@
 #ifndef SPHPROOF_CODE_RUN_H
 #define SPHPROOF_CODE_RUN_H
 
+#include <stdint.h>
+
 #include "code_file.h"
 #include "judge.h"
 #include "run.h"
@@ -21,8 +23,8 @@ struct code_external {
     struct run_external base;
     const struct code *code;
     const struct code_case *of;
-    const char *command; /* of a fault; NULL: the case's */
-    const char *work;    /* folder in which those of the runs stay; NULL: they go away */
+    const char *work;   /* folder in which those of the runs stay; NULL: they go away */
+    uint64_t variation; /* the start differs by 2 units in the last place, by this seed; 0: not */
 };
 
 /* The settings of a case of the code with KEY=VALUE arguments; settings->external becomes external.

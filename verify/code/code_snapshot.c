@@ -90,6 +90,12 @@ const char *code_first(const struct code_matches *now, const struct code_matches
     return NULL;
 }
 
+bool code_is_new(const struct code_matches *now, size_t i, const struct code_matches *before,
+                 time_t began)
+{
+    return !is_old(now, i, before, began);
+}
+
 /* ---- what it holds ---- */
 
 static int ascending(const void *a, const void *b)

@@ -49,6 +49,10 @@ void code_matches_free(struct code_matches *matches);
 const char *code_last(const struct code_matches *now, const struct code_matches *before,
                       time_t began, enum code_reason *reason);
 
+/* Has the run written the i-th of them? */
+bool code_is_new(const struct code_matches *now, size_t i, const struct code_matches *before,
+                 time_t began);
+
 /* The first of those that a run has written, which may be of its start; NULL: there is none but
  * `last`. */
 const char *code_first(const struct code_matches *now, const struct code_matches *before,

@@ -123,6 +123,16 @@ static void print_functionals(const struct study_result *result, const struct ta
     }
 }
 
+/* What is conserved, where it has a gate. */
+static void print_kept(const struct study_result *result, const struct table_style *style)
+{
+    for (size_t k = 0; k < TRACE_FIGURES; k++) {
+        if (result->kept[k].status == FINDING_NONE) continue;
+        printf("%-22s %14.8g at the finest level\n", trace_figures[k], result->kept[k].fit.finest);
+        print_gate(result, &result->kept[k], style);
+    }
+}
+
 static void print_budget(const struct study_result *result, const struct table_style *style)
 {
     const struct study_level *finest = &result->levels[result->level_count - 1];
@@ -186,6 +196,7 @@ static void print_study(const struct study *study, const struct study_result *re
     print_errors(study, result, &style);
     if (!study->settings.external) print_floor(result, &style);
     print_functionals(result, &style);
+    print_kept(result, &style);
     print_budget(result, &style);
     if (result->suspicion[0])
         printf("%ssuspicious: %s%s\n", style.bad, result->suspicion, style.end);

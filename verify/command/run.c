@@ -130,6 +130,11 @@ static void print_conservation(const struct run_result *result, const struct tab
            "against 0)\n",
            style->bold, style->end, result->mass, result->momentum, turning, result->energy,
            result->time);
+    const struct trace_motion *motion = &result->motion;
+    if (result->problem.problem->steady && isfinite(motion->rebound))
+        printf("                 kinetic energy rises by %.1e of the start's above its least, its "
+               "halves differ by %.1e\n",
+               motion->rebound, motion->asymmetry);
 }
 
 static void print_rest(const struct run_result *result, const struct table_style *style)

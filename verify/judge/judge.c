@@ -148,6 +148,7 @@ static void add_to_sums(const struct prepared *problem, const double x[3], const
         p[d] = m * v[d];
         r[d] = x[d] - 0.5 * (domain->lo[d] + domain->hi[d]);
         squares += v[d] * v[d];
+        sums->kinetic += 0.5 * m * (v[d] - problem->boost[d]) * (v[d] - problem->boost[d]);
         distance += r[d] * r[d];
         sums->energy -= m * problem->gravity[d] * x[d];
         if (problem->boundary[d] != BOUNDARY_REFLECTING && problem->boundary[d] != BOUNDARY_FIXED &&

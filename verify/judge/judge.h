@@ -81,10 +81,11 @@ void judge_sum(const struct prepared *problem, const struct snapshot *snapshot,
  * different times. */
 bool judge_drift(const struct judged *judged, size_t n, struct trace_drift *drift, size_t pair[2]);
 
-/* The same as JSON, {"mass", "momentum", "angular_momentum" (null in 1D), "energy", "between": two
- * files}; where there are no two, from the case's initial state to judge_main; null where that is
- * not known either. New reference. */
-json_t *judge_conservation(const struct judged *judged, size_t n);
+/* The largest differences of all snapshots between these two from the first, {"mass", "momentum",
+ * "angular_momentum" (null in 1D), "energy", what run_add_motion adds, "between": two files}; where
+ * there are no two, from the case's initial state to judge_main; null where that is not known
+ * either. *trace: what they were taken from, begins anew. New reference. */
+json_t *judge_conservation(const struct judged *judged, size_t n, struct trace *trace);
 
 /* The snapshot that gates look at: of most particles, of these the last. */
 const struct judged *judge_main(const struct judged *judged, size_t n);

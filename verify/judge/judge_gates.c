@@ -41,11 +41,11 @@ static void add_norms(json_t *figures, const char *name, const struct norms *of)
 /* {NAME: number, or of an order {"order", "low", "high" ...}}. New reference. */
 static json_t *figures_of(const struct judged *judged, size_t n)
 {
-    static const char *const kept[] = {"mass", "momentum", "angular_momentum", "energy"};
     const struct judged *main = judge_main(judged, n);
     const struct run_result *r = &main->result;
     const struct problem *problem = r->problem.problem;
-    json_t *figures = json_object(), *conserved = judge_conservation(judged, n),
+    struct trace trace;
+    json_t *figures = json_object(), *conserved = judge_conservation(judged, n, &trace),
            *orders = judge_orders(judged, n), *order;
     size_t i;
     for (int f = 0; f < FIELDS && !problem->fieldless; f++)
@@ -64,9 +64,9 @@ static json_t *figures_of(const struct judged *judged, size_t n)
         add_figure(figures, "density_l1.", r->budget.regions->names[k],
                    r->budget.l1[k][FIELD_DENSITY]);
     if (main->file.dim > 1) add_figure(figures, "", "noise", main->transverse);
-    for (size_t k = 0; json_is_object(conserved) && k < sizeof kept / sizeof *kept; k++)
-        if (!json_is_null(json_object_get(conserved, kept[k])))
-            add_figure(figures, "", kept[k], value_member(conserved, kept[k]));
+    for (size_t k = 0; json_is_object(conserved) && k < TRACE_FIGURES; k++)
+        if (!json_is_null(json_object_get(conserved, trace_figures[k])))
+            add_figure(figures, "", trace_figures[k], value_member(conserved, trace_figures[k]));
     json_array_foreach(orders, i, order) {
         char name[NAME];
         snprintf(name, sizeof name, "order.%s", value_text(order, "field"));

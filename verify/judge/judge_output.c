@@ -151,7 +151,10 @@ json_t *judge_json(const struct judged *judged, size_t n, json_t *gates, bool pr
     if (!document || !findings) return NULL;
     json_object_set_new(document, "case", json_string(main->run.asked.file.name));
     json_object_set_new(document, "settings", settings_json(&main->run.settings));
-    json_object_set_new(document, "conservation", judge_conservation(judged, n));
+    struct trace trace;
+    json_object_set_new(document, "conservation", judge_conservation(judged, n, &trace));
+    if (trace.count)
+        json_object_set_new(document, "through_time", trace_json(&trace, main->file.dim));
     json_object_set_new(document, "orders", judge_orders(judged, n));
     if (gates)
         json_object_set(document, "gates", gates);

@@ -43,22 +43,49 @@ bool judge_drift(const struct judged *judged, size_t n, struct trace_drift *drif
     return true;
 }
 
-json_t *judge_conservation(const struct judged *judged, size_t n)
+/* From the first to the last of a pair, all of as many particles, each time once. */
+static void take_trace(const struct judged *judged, size_t n, const size_t pair[2],
+                       struct trace *trace)
+{
+    const struct judged *next = &judged[pair[0]], *last = &judged[pair[1]];
+    while (next) {
+        const struct judged *now = next;
+        trace_add(trace, now->result.time, &now->sums);
+        next = NULL;
+        for (size_t i = 0; i < n; i++)
+            if (judged[i].result.n == last->result.n && judged[i].result.time > now->result.time &&
+                judged[i].result.time <= last->result.time &&
+                (!next || judged[i].result.time < next->result.time))
+                next = &judged[i];
+    }
+}
+
+json_t *judge_conservation(const struct judged *judged, size_t n, struct trace *trace)
 {
     const struct judged *main = judge_main(judged, n);
     const char *from = "the case's initial state", *to = main->path;
     struct trace_drift drift;
     size_t pair[2];
-    if (judge_drift(judged, n, &drift, pair))
-        from = judged[pair[0]].path, to = judged[pair[1]].path;
-    else if (main->start.mass > 0)
-        drift = trace_drift(&main->start, &main->sums, &main->sums);
-    else
+    *trace = (struct trace){.count = 0};
+    if (judge_drift(judged, n, &drift, pair)) {
+        main = &judged[pair[1]];
+        from = judged[pair[0]].path, to = main->path;
+        take_trace(judged, n, pair, trace);
+    } else if (main->start.mass > 0) {
+        trace_add(trace, 0, &main->start);
+        trace_add(trace, main->result.time, &main->sums);
+    } else {
         return json_null();
-    return json_pack("{s:o, s:o, s:o, s:o, s:[s, s]}", "mass", result_number(drift.mass),
-                     "momentum", result_number(drift.momentum), "angular_momentum",
-                     main->file.dim == 1 ? json_null() : result_number(drift.angular_momentum),
-                     "energy", result_number(drift.energy), "between", from, to);
+    }
+    drift = trace_worst(trace);
+    const struct trace_motion motion = trace_motion(trace);
+    json_t *conservation =
+        json_pack("{s:o, s:o, s:o, s:o, s:[s, s]}", "mass", result_number(drift.mass), "momentum",
+                  result_number(drift.momentum), "angular_momentum",
+                  main->file.dim == 1 ? json_null() : result_number(drift.angular_momentum),
+                  "energy", result_number(drift.energy), "between", from, to);
+    run_add_motion(&main->result, &motion, conservation);
+    return conservation;
 }
 
 /* ---- orders ---- */

@@ -37,6 +37,7 @@ struct study_level {
     double cpu_s;
     struct budget budget;
     double functionals[PROBLEM_FUNCTIONALS_MAX];
+    double kept[TRACE_FIGURES]; /* what is conserved: of the worst replicate; NaN: not known */
 };
 
 struct study_order {
@@ -65,9 +66,10 @@ struct study_result {
     /* In 2D and 3D: of L1 of the parts, and of |functional - exact|; n = 0: there is none. */
     struct order_fit parts[STUDY_PARTS];
     struct study_order functional_errors[PROBLEM_FUNCTIONALS_MAX]; /* gate: of any order */
-    double floor_density, floor_gradient; /* lattice sums of kernel and eta, relative */
-    bool floor_explains;                  /* a failed order is of the size of the floor */
-    double still;                         /* largest of the levels' budgets; NaN: none */
+    struct study_order kept[TRACE_FIGURES]; /* of no order; fit: only `finest` and n, levels */
+    double floor_density, floor_gradient;   /* lattice sums of kernel and eta, relative */
+    bool floor_explains;                    /* a failed order is of the size of the floor */
+    double still;                           /* largest of the levels' budgets; NaN: none */
     enum finding_status still_status;
     char suspicion[SUSPICION_TEXT]; /* "" if nothing is too good to be true */
 };

@@ -66,6 +66,19 @@ static enum status fit_cloud_orders(struct study_result *result, struct error *e
     return STATUS_OK;
 }
 
+/* What is conserved has an error and no order. */
+static void take_kept(struct study_result *result)
+{
+    const struct study_level *finest = &result->levels[result->level_count - 1];
+    for (size_t k = 0; k < TRACE_FIGURES; k++) {
+        struct order_fit *fit = &result->kept[k].fit;
+        fit->order = fit->low = fit->high = (double)NAN;
+        fit->n = result->level_count;
+        for (size_t l = 0; l + 1 < fit->n; l++) fit->pairwise[l] = (double)NAN;
+        fit->finest = finest->kept[k];
+    }
+}
+
 static void extrapolate(struct study_result *result)
 {
     const struct study_level *last = &result->levels[result->level_count - 3];
@@ -90,8 +103,10 @@ static size_t functional_of(const struct study_result *result, const struct case
 /* What a gate is of; NULL: of a functional that these settings have no exact value of. */
 static struct study_order *gated(struct study_result *result, const struct case_gate *gate)
 {
-    const size_t i = functional_of(result, gate);
+    const size_t i = functional_of(result, gate),
+                 kept = gate->functional ? trace_figure(gate->functional) : TRACE_FIGURES;
     if (!gate->functional) return &result->orders[gate->field][gate->norm];
+    if (kept < TRACE_FIGURES) return &result->kept[kept];
     return i < result->functional_count && result->functional_errors[i].fit.n
                ? &result->functional_errors[i]
                : NULL;
@@ -105,19 +120,23 @@ static double exact_of(const struct study_result *result, const struct case_gate
 }
 
 /* Is it the case as it stands, on its own ladder? */
-static bool is_untouched(const struct study_result *result, const struct case_file *file)
+static bool is_untouched(const struct study *study, const struct study_result *result)
 {
-    const size_t finest = result->levels[result->level_count - 1].n;
+    const struct case_file *file = &study->settings.file;
     for (int i = 0; i < SETTINGS; i++)
         if (i != SETTING_n && result->settings.value[i].source == SOURCE_USER) return false;
-    return file->ladder_count && finest == file->ladder[file->ladder_count - 1];
+    return file->ladder_count &&
+           study->ladder[study->level_count - 1] == file->ladder[file->ladder_count - 1];
 }
 
 static bool passes(const struct case_gate *gate, struct study_order *order)
 {
-    if (isfinite(gate->gate.high)) return order_passes(&order->fit, &order->gate, order->why);
-    order->gate.low = -(double)INFINITY;
     const bool small = order->fit.finest < order->least;
+    if (isfinite(gate->gate.high)) {
+        if (!order_passes(&order->fit, &order->gate, order->why)) return false;
+    } else {
+        order->gate.low = -(double)INFINITY;
+    }
     if (order->fit.finest <= order->gate.bound && !small) return true;
     snprintf(order->why, sizeof order->why, "finest error %.3g %s %.3g", order->fit.finest,
              small ? "is strangely below" : "exceeds", small ? order->least : order->gate.bound);
@@ -140,9 +159,10 @@ static bool is_known(const struct case_file *file, const struct case_gate *gate,
     return false;
 }
 
-/* of_ours: by our own solver, whose kernel is known. */
-static void judge_gates(struct study_result *result, const struct case_file *file, bool of_ours)
+static void judge_gates(const struct study *study, struct study_result *result)
 {
+    const struct case_file *file = &study->settings.file;
+    const bool of_ours = !study->settings.external; /* whose kernel is known */
     const struct study_level *finest = &result->levels[result->level_count - 1];
     const bool standard = result->scheme.gradient == GRADIENT_STANDARD;
     measure_lattice(&result->scheme.kernel, file->dimension, result->scheme.eta,
@@ -155,7 +175,7 @@ static void judge_gates(struct study_result *result, const struct case_file *fil
         if (!order) continue;
         order->gate = gate->gate;
         order->gate.bound *= gates_raise(file, gate, finest->n);
-        order->least = is_untouched(result, file) ? gate->least : 0;
+        order->least = is_untouched(study, result) ? gate->least : 0;
         order->status = passes(gate, order)
                             ? gates_weigh(file, gate, finest->n, order->gate.bound,
                                           exact_of(result, gate), &order->fit, order->why)
@@ -288,7 +308,8 @@ enum status study_judge(struct study *study, const struct pool *pool, struct err
                 (study->settings.file.dimension > 1 && fit_cloud_orders(result, error)))
                 return error->status;
             extrapolate(result);
-            judge_gates(result, &study->settings.file, !study->settings.external);
+            take_kept(result);
+            judge_gates(study, result);
             judge_stillness(result, !study->settings.external);
             suspect(result, &study->settings.file);
         }

@@ -170,6 +170,10 @@ static void add_result(const struct study *study, const struct study_result *res
             add(document, "orders",
                 order_json(&result->functional_errors[i], result->functional_names[i], "error"),
                 varied);
+    for (size_t k = 0; k < TRACE_FIGURES; k++)
+        if (result->kept[k].status != FINDING_NONE)
+            add(document, "orders", order_json(&result->kept[k], trace_figures[k], "drift"),
+                varied);
     for (size_t i = 0; i < result->functional_count; i++)
         add(document, "functionals", functional_json(result, i), varied);
     if (!study->settings.external)

@@ -37,6 +37,15 @@ static void read_functionals(struct study_result *result, struct study_level *le
     result->functional_count = i;
 }
 
+/* Of the worst replicate; first: there is none yet. */
+static void read_kept(struct study_level *level, const json_t *conservation, bool first)
+{
+    for (size_t k = 0; k < TRACE_FIGURES; k++) {
+        const double value = value_member(conservation, trace_figures[k]);
+        if (first || isnan(value) || value > level->kept[k]) level->kept[k] = value;
+    }
+}
+
 /* Means of squares and products over the replicates of a level: x = log(spacing), y = log(error).
  */
 struct moments {
@@ -48,6 +57,7 @@ static void read_run(struct study_result *result, struct study_level *level,
 {
     const size_t n = (size_t)value_member(run, "n");
     const double x = log(value_member(run, "spacing"));
+    read_kept(level, json_object_get(run, "conservation"), !level->n);
     if (!level->n) level->n = level->n_range[0] = n;
     if (n < level->n_range[0]) level->n_range[0] = n;
     if (n > level->n_range[1]) level->n_range[1] = n;

@@ -36,7 +36,20 @@ if mode == "exit":
     sys.exit(7)
 if mode == "killed":
     os.kill(os.getpid(), 9)
-if mode == "early":
+if mode == "wound":
+    run()
+    lines = open("ic.csv").read().replace("# time = 0", "# time = " + repr(float(t_end) / 2)).splitlines()
+    names = lines[0].split(",")
+    with open(out + "_0.csv", "w") as file:
+        for line in lines:
+            words = line.split(",")
+            if line[0] not in "#x":
+                for name in "vx", "vy":
+                    words[names.index(name)] = repr(1.1 * float(words[names.index(name)]))
+            print(",".join(words), file=file)
+elif mode == "viscous":
+    run(t_end, n, out + "_1.csv", "alpha=2")
+elif mode == "early":
     run(t=repr(0.998 * float(t_end)))
 elif mode == "late":
     run(t=repr(1.0005 * float(t_end)))
@@ -135,7 +148,8 @@ BAD = ((GOOD, "", "is empty"), ("title", "titel", "did you mean 'title'"), ("[ca
        ("n = 16^2", "n = 16^2 12^2", "rising"), ("velocity_l1 = 0.5 10", "velocity_l1 = 3", "least order"),
        ("velocity_l1", "velocity_l9", "no key in [case gresho]"), ("n = 16^2", "title = x", "title"),
        ("snapshot = @OUT@_*.csv\n", "", "key snapshot is missing"), ("[code]\n", "", "before the first section"),
-       ("[case gresho]", "[fault slow]\nmemory = 1 GB\n[case gresho]", "key command is missing in [fault slow]"),
+       ("[case gresho]", "[fault slow]\n[case gresho]", "[fault slow] has no key"),
+       ("[case gresho]", "[fault slow]\ncommand = ./none.py\n[case gresho]", "command = ./none.py"),
        ("velocity_l1", "shock_radius", "exclude each other"))
 
 
@@ -316,6 +330,82 @@ def test_ladder(draw):
     assert abs(bounds[0]["bound"] / bounds[1]["bound"] - 1) < 1e-12, bounds
 
 
+def test_motion():
+    """A code that winds a vortex up on the way: neither its last snapshot nor its total energy shows it, all of them do."""
+    shown = {}
+    for mode in "good", "wound":
+        write("wound.ini", GOOD.replace("good gresho", mode + " gresho"))
+        run = document("run", "gresho", "n=14^2", "--code", "wound.ini")
+        shown[mode] = run["conservation"]
+        assert len(run["through_time"]["time"]) == (3 if mode == "wound" else 2), run["through_time"]
+    gained = document("run", "gresho", "n=14^2")["conservation"]
+    assert shown["good"]["ke_rebound"] == 0 and shown["good"]["centre"] < 1e-9 and gained["ke_rebound"] < 0.1, (shown, gained)
+    assert 0.2 < shown["wound"]["ke_rebound"] < 0.22 and shown["wound"]["energy"] > 100 * shown["good"]["energy"], shown
+    assert document("run", "sod", "n=60", "--code", "good.ini")["conservation"]["ke_rebound"] is None
+    write("tight.ini", GOOD.replace("velocity_l1 = 0.5 10", "ke_rebound = 0 0.1").replace("good gresho", "wound gresho"))
+    failed = document("converge", "gresho", "--code", "tight.ini", status=1)
+    assert [order["field"] for order in failed["orders"] if order["status"] == "fail"] == ["ke_rebound"], failed["orders"]
+
+
+def test_calibrate():
+    """Bounds lie between what starts change and what faults change; the file that is written passes the code, and fails each
+    fault that it is said to see; what is too good fails as well. Written anew from itself it is the same."""
+    ladder = "10^2 12^2 14^2 16^2"
+    command = "command = ./code.py %s gresho @N@ @T_END@ @SEED@ @OUT@"
+    faults = "".join("[fault %s]\n%s\n" % (name, command % mode)
+                     for name, mode in (("viscous", "viscous"), ("same", "good"), ("dead", "exit")))
+    write("mine.ini", "[code]\n; my own\ntitle = Stand-in\n%s\nsnapshot = @OUT@_*.csv\n\n[case sod]\ndensity_l1 = 0 1\n\n"
+          "[case gresho]\nn = %s\nvelocity_l1 = 0.5 10\n\n[fault late]\nsnapshot = late_*.csv\n%s" % (command % "good", ladder, faults))
+    keep = ("--cache", "calibrated", "--jobs", "2")
+    found = document("calibrate", "mine.ini", "gresho", "--runs", "3", *keep, status=1)
+    assert (found["runs"], found["out"], found["status"]) == (3, "mine.calibrated.ini", "fail"), found
+    case = found["cases"][0]
+    assert {fault["name"]: fault["status"] for fault in case["faults"]} == {
+        "late": "failed", "viscous": "seen", "same": "unseen", "dead": "failed"}, case["faults"]
+    gates = {gate["name"]: gate for gate in case["gates"]}
+    assert gates["velocity_l1"]["status"] == "sees" and gates["mass"]["status"] == "blind", gates
+    for gate in gates.values():
+        assert (gate["status"] == "sees") == bool(gate["sees"]) == (gate["bound"] is not None), gate
+        if gate["status"] != "sees":
+            continue
+        assert gate["sees"] == ["viscous"] and gate["smallest"] == "viscous", gate
+        width = gate["bound"] - (gate["value"] if gate["name"] not in ("mass", "momentum", "angular_momentum", "energy") else 0)
+        assert 2.99 * gate["floor"] < width < 0.34 * max(gate["change"], 9 * gate["floor"]), gate
+        assert abs(width**2 / gate["floor"] / gate["change"] - 1) < 1e-6, gate
+        assert gate["least"] == 0 or gate["least"] == max(gate["value"] / 2, 2 * gate["value"] - gate["bound"]), gate
+    assert gates["velocity_l1"]["least"] > 0 and not gates["momentum"]["least"], gates
+    with open("mine.calibrated.ini", encoding="ascii") as file:
+        text = file.read()
+    assert "; my own" in text and "density_l1 = 0 1\n\n" in text and "velocity_l1 = 0.5 10" not in text, text
+    assert "mass = " not in text.replace("angular_momentum", ""), text
+
+    def converge(change, status, *words):
+        write("theirs.ini", change(text))
+        return document("converge", "gresho", *words, "--code", "theirs.ini", *keep, status=status)
+
+    converge(lambda said: said, 0)
+    converge(lambda said: said.replace("code.py good", "code.py viscous", 1), 1)
+    line = [line for line in text.splitlines() if line.startswith("velocity_l1")][0]
+    least, bound = (float(word) for word in line.split()[3].split(":"))
+    for factor in 1.2, 0.8:
+        wrong = converge(lambda said: said.replace(line, "velocity_l1 = 0 %.9g:%.9g" % (factor * least, factor * bound)), 1)
+        why = [order["why"] for order in wrong["orders"] if order["status"] == "fail"]
+        assert len(why) == 1 and ("strangely below" if factor > 1 else "exceeds") in why[0], why
+    document("calibrate", "mine.calibrated.ini", "gresho", "--runs", "3", *keep, "--out", "again.ini", status=1)
+    with open("again.ini", encoding="ascii") as file:
+        assert file.read() == text
+    write("free.ini", text.split("[fault")[0].replace(ladder, ladder.replace("10", "11")))
+    free = document("calibrate", "free.ini", "gresho", "--runs", "2", *keep)
+    assert {gate["status"] for gate in free["cases"][0]["gates"]} == {"free"} and not free["cases"][0]["faults"], free
+    os.mkdir("elsewhere")
+    for words, told in ((("--runs", "1"), "from 2 to 16"), (("--out", "elsewhere/a.ini"), "in the folder of mine.ini"),
+                        (("sedd",), "sedd"), (("gresho", "gresho"), "given twice"), (("--jobs", "0"), "--jobs")):
+        said = call("calibrate", "mine.ini", *words, status=2)
+        assert told in said[1] and not said[0], (words, said)
+    assert not os.listdir("elsewhere")
+    assert "sees no fault" in call("calibrate", "mine.ini", "gresho", "--runs", "3", *keep, status=1)[0]
+
+
 def test_shares():
     """Three shares into one folder, and the plain command that finds everything there."""
     words = ("converge", "gresho", "--code", "good.ini", "--work", "shared_runs", "--cache", "shared")
@@ -439,6 +529,8 @@ with tempfile.TemporaryDirectory() as work:
     test_work()
     test_no_errors()
     test_ladder(random.Random(seed))
+    test_motion()
+    test_calibrate()
     test_shares()
     test_report()
     test_corner()

@@ -84,6 +84,7 @@ const struct problem problem_gresho = {
     .least_dim = 2,
     .most_dim = 2,
     .carried = true,
+    .steady = true,
     .circular = CIRCULAR_ROUND,
     .smooth = true,
     .ends = {{.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)},

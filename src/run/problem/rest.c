@@ -44,6 +44,7 @@ const struct problem problem_rest = {
     .least_dim = 2,
     .most_dim = 3,
     .carried = true,
+    .steady = true,
     .smooth = true,
     .ends = {{.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)},
              {.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)},

@@ -115,6 +115,7 @@ const struct problem problem_shear = {
     .least_dim = 2,
     .most_dim = 3,
     .carried = true,
+    .steady = true,
     .smooth = true,
     .keys = keys,
     .key_count = sizeof keys / sizeof *keys,

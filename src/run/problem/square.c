@@ -131,6 +131,7 @@ const struct problem problem_square = {
     .least_dim = 2,
     .most_dim = 3,
     .carried = true,
+    .steady = true,
     .ends = {{.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)},
              {.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)},
              {.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)}},

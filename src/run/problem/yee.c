@@ -39,6 +39,7 @@ const struct problem problem_yee = {
     .least_dim = 2,
     .most_dim = 2,
     .carried = true,
+    .steady = true,
     .circular = CIRCULAR_ROUND,
     .smooth = true,
     .keys = keys,

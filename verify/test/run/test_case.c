@@ -89,8 +89,10 @@ static void begins(const char *text, const char *message)
     "[initial]\nkind = gresho\n[run]\nt_end = 1\n"
 #define ERROR_GATE      "order for shorter ladders, bound of the finest error"
 #define KNOWN           "; `known: WHY` after them, if it is known to fail"
-#define FUNCTIONAL_GATE ERROR_GATE "; or order, least and greatest error" KNOWN
-#define GATE            "least order, greatest order, bound of the finest error; or " ERROR_GATE KNOWN
+#define TWO_SIDES       " or LEAST:BOUND"
+#define FUNCTIONAL_GATE ERROR_GATE TWO_SIDES KNOWN
+#define ORDER_GATE      "least order, greatest order, bound; or "
+#define GATE            ORDER_GATE ERROR_GATE TWO_SIDES KNOWN
 
 /* A gate of a functional: the order that raises its bound, and the bound. */
 TEST(functionals)
@@ -112,22 +114,42 @@ TEST(functionals)
     assert_string_equal(c->functional, "disc_error");
     assert_true(c->gate.low == 0 && c->gate.bound == 2e-2 && !c->known.why[0]);
     assert_true(a->least == 0 && b->least == 0 && c->least == 0);
-    if (parse(&file, FLAT "[converge]\ndisc_error = 0 2 3 known: slow\n", &error))
+    if (parse(&file, FLAT "[converge]\ndisc_error = 0 2:3 known: slow\n", &error))
         fail_msg("%s", error.message);
     assert_true(a->gate.low == 0 && isinf(a->gate.high) && a->gate.bound == 3 && a->least == 2);
     assert_string_equal(a->known.why, "slow");
     refused(FLAT "[converge]\ndisc_error = 1 3 3\n",
             AT("13") "disc_error = 1 3 3; allowed: " FUNCTIONAL_GATE);
-    refused(FLAT "[converge]\ndisc_error = 1 0 3\n",
-            AT("13") "disc_error = 1 0 3; allowed: " FUNCTIONAL_GATE);
-    refused(FLAT "[converge]\ndisc_error = -1 1 3\n",
-            AT("13") "disc_error = -1 1 3; allowed: " FUNCTIONAL_GATE);
+    refused(FLAT "[converge]\ndisc_error = 1 3:3\n",
+            AT("13") "disc_error = 1 3:3; allowed: " FUNCTIONAL_GATE);
+    refused(FLAT "[converge]\ndisc_error = 1 0:3\n",
+            AT("13") "disc_error = 1 0:3; allowed: " FUNCTIONAL_GATE);
+    refused(FLAT "[converge]\ndisc_error = 1 2:3:4\n",
+            AT("13") "disc_error = 1 2:3:4; allowed: " FUNCTIONAL_GATE);
+    refused(FLAT "[converge]\ndisc_error = 1:2 3\n",
+            AT("13") "disc_error = 1:2 3; allowed: " FUNCTIONAL_GATE);
+    refused(FLAT "[converge]\ndisc_error = -1 1:3\n",
+            AT("13") "disc_error = -1 1:3; allowed: " FUNCTIONAL_GATE);
     refused(FLAT "[converge]\ndisc_error = 1 0\n",
             AT("13") "disc_error = 1 0; allowed: " FUNCTIONAL_GATE);
     refused(FLAT "[converge]\ndisc_error = -1 1\n",
             AT("13") "disc_error = -1 1; allowed: " FUNCTIONAL_GATE);
     refused(FLAT "[converge]\ndisc_error = 1 1\n\ndisc_error = 1 1\n",
             AT("15") "key disc_error is given twice, first in line 13");
+    if (parse(&file,
+              HEAD "[converge]\ndensity_l1 = 0.7 1.3 0.015:0.02\nvelocity_l1 = 0 1e-3:1\n"
+                   "momentum = 0 1e-9\nangular_momentum = 0 2\n",
+              &error))
+        fail_msg("%s", error.message);
+    assert_true(a->gate.low == 0.7 && a->gate.high == 1.3 && a->gate.bound == 0.02);
+    assert_true(a->least == 0.015 && b->least == 1e-3 && b->gate.bound == 1 && c->least == 0);
+    assert_string_equal(c->functional, "momentum");
+    assert_true(c->gate.bound == 1e-9 && file.gate_count == 4);
+    refused(HEAD "[converge]\ndensity_l1 = 0.7 1.3 0.02:0.02\n",
+            AT("13") "density_l1 = 0.7 1.3 0.02:0.02; allowed: " GATE);
+    refused(HEAD "[converge]\ndensity_l1 = 0.7 1.3 0.02\n[compared]\ndensity_l1 = 1:2\n",
+            AT("15") "density_l1 = 1:2; allowed: bound of the finest error, or none where there is "
+                     "nothing to be measured" KNOWN);
     refused(FLAT "[converge]\n\nplateau = 1 1\n",
             AT("14") "key plateau and kind = gresho exclude each other");
     refused(HEAD "[converge]\nmean_pressure = 1 1\n",

@@ -38,6 +38,7 @@ static void make(struct run_settings *settings, struct run_result *result, const
         .momentum = 46,
         .angular_momentum = 47,
         .energy = 48,
+        .motion = {66, 67, 68},
         .cost = {49, 50, 51, 52, 53, 54, 55, 56, 65, 66},
         .matrix = {57, 58, 59, 60, 61},
         .peak_rss = 62,
@@ -114,8 +115,11 @@ static void common(const json_t *document, const struct run_result *result)
     is(document, "warnings", json_string("take care"));
     is(document, "suspicion", json_string("too good"));
     is(document, "conservation",
-       json_pack("{s:f, s:f, s:o, s:f}", "mass", 45., "momentum", 46., "angular_momentum",
-                 line ? json_null() : json_real(47), "energy", 48.));
+       json_pack("{s:f, s:f, s:o, s:f, s:o, s:o, s:f}", "mass", 45., "momentum", 46.,
+                 "angular_momentum", line ? json_null() : json_real(47), "energy", 48.,
+                 "ke_rebound", result->problem.problem->steady ? json_real(66) : json_null(),
+                 "ke_asymmetry", result->problem.problem->steady ? json_real(67) : json_null(),
+                 "centre", 68 / 43.));
     is(document, "regularity",
        json_pack("{s:f, s:f, s:f, s:f, s:f}", "nearest", 32., "spread", 33., "paired", 34.,
                  "density", 35., "gradient", 36.));

@@ -81,6 +81,7 @@ static struct conservation sums_at(double k)
                                  .momentum_scale = 100 + k,
                                  .sound_scale = 7,
                                  .energy = -4 - k,
+                                 .kinetic = 3 - 0.5 * k,
                                  .angular_momentum = {0, 5, 6 - 2 * k},
                                  .angular_scale = 1000,
                                  .turning_scale = 9};
@@ -188,6 +189,65 @@ static void is(const json_t *lists, const char *name, size_t k, double value)
         fail_msg("%s %zu: %.17g, not %.17g", name, k, got, value);
 }
 
+/* Kinetic energies and momenta at uneven times, beside what follows from them by hand. */
+TEST(motion_is_told)
+{
+    static const struct {
+        double kinetic[5], momentum[5], rebound, asymmetry, centre;
+    } rows[] = {
+        {{8, 8, 8, 8, 8}, {1, 1, 1, 1, 1}, 0, 0, 0},
+        {{8, 7, 6, 5, 4}, {0, 0, 0, 0, 0}, 0, 0.5, 0}, /* what is dissipated is no rebound */
+        {{8, 6, 7, 5, 5.5}, {1, 1, 1, 1, 1}, 0.125, 0.3125, 0},
+        {{8, 9, 10, 9, 8}, {0, 2, 0, -2, 0}, 0.25, 0, 1}, /* there and back */
+        {{8, 8, 8, 8, 9}, {2, 2, 2, 2, 3}, 0.125, 0.125, 0.25},
+        {{0, 1, 2, 3, 4}, {0, 1, 2, 3, 4}, (double)NAN, (double)NAN, 4},
+    };
+    static const double times[] = {0, 1, 2, 3, 4};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        static struct trace trace;
+        trace = (struct trace){0};
+        assert_true(isnan(trace_motion(&trace).centre));
+        for (size_t k = 0; k < 5; k++) {
+            const struct conservation sums = {.mass = 2,
+                                              .momentum = {0, rows[r].momentum[k], 0},
+                                              .momentum_scale = 1,
+                                              .energy = 10 + 1e-3 * (double)(k == 2),
+                                              .kinetic = rows[r].kinetic[k]};
+            trace_add(&trace, times[k], &sums);
+        }
+        const struct trace_motion motion = trace_motion(&trace);
+        if (isnan(rows[r].rebound)) {
+            assert_true(isnan(motion.rebound) && isnan(motion.asymmetry));
+        } else {
+            near_absolute(motion.rebound, rows[r].rebound, 1e-14);
+            near_absolute(motion.asymmetry, rows[r].asymmetry, 1e-14);
+        }
+        near_absolute(motion.centre, rows[r].centre, 1e-14);
+        /* of all entries, not of the last */
+        near_relative(trace_worst(&trace).energy, 1e-4, 1e-10);
+        assert_true(trace_worst(&trace).mass == 0);
+    }
+}
+
+/* A vortex that is wound up while it runs keeps its energy as a whole, and is told. */
+TEST(a_run_tells_its_motion)
+{
+    char *const keys[] = {"n=12^2", "t_end=0.5"}, *const boosted[] = {"n=12^2", "t_end=0.5",
+                                                                      "boost=1 0.5"};
+    struct run_result result, moving, tube;
+    run(&result, NULL, "gresho", 2, keys);
+    run(&moving, NULL, "gresho", 3, boosted);
+    run(&tube, NULL, "sod", 1, (char *const[]){"n=40"});
+    assert_true(result.motion.rebound >= 0 && result.motion.asymmetry > 1e-4);
+    assert_true(result.motion.centre < 1e-12 && result.motion.asymmetry < 1);
+    /* the boost is no motion of the flow */
+    assert_true(fabs(moving.motion.asymmetry / result.motion.asymmetry - 1) < 0.2);
+    assert_true(isnan(tube.motion.rebound));
+    run_free(&result);
+    run_free(&moving);
+    run_free(&tube);
+}
+
 TEST(says_it_all)
 {
     static struct trace trace;
@@ -202,7 +262,7 @@ TEST(says_it_all)
     }
     json_t *json = trace_json(&trace, 2);
     const json_t *regularity = json_object_get(json, "regularity");
-    assert_int_equal(json_object_size(json), 6);
+    assert_int_equal(json_object_size(json), 8);
     assert_int_equal(json_object_size(regularity), 6);
     for (size_t k = 0; k < 3; k++) {
         const double x = (double)k;
@@ -211,6 +271,8 @@ TEST(says_it_all)
         is(json, "momentum", k, x / 102);
         is(json, "angular_momentum", k, 2 * x / 1000);
         is(json, "energy", k, x / 4);
+        is(json, "kinetic", k, -0.125 * x);
+        is(json, "potential", k, -0.125 * x);
     }
     static const char *const names[] = {"nearest", "spread", "paired", "density", "gradient"};
     for (size_t k = 0; k < 2; k++) {

@@ -324,6 +324,99 @@ TEST(small_errors_are_strange)
     }
 }
 
+/* Of a gate of two sides with an order: both sides count. */
+TEST(ordered_gates_have_two_sides)
+{
+    static const struct {
+        double least, bound; /* over the finest error */
+        enum finding_status outcome;
+    } rows[] = {{0.99, 1.01, FINDING_PASS}, {1.01, 1.02, FINDING_FAIL}, {0.98, 0.99, FINDING_FAIL}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct study study;
+        struct pool pool;
+        struct error error;
+        factor = 0.01;
+        make(&study, &pool, "sod", NULL, 1, times_factor, &error);
+        struct study_result *result = &study.results[0];
+        struct case_file *file = &study.settings.file;
+        const struct settings settings = result->settings;
+        const struct scheme scheme = result->scheme;
+        const double finest = factor * pow(spacing_of(3, 0), 0.5);
+        *result = (struct study_result){.settings = settings, .scheme = scheme};
+        for (int i = 0; i < SETTINGS; i++) result->settings.value[i].source = SOURCE_CASE;
+        file->gates[0] = (struct case_gate){
+            .gate = {.low = 0.4, .high = 0.6, .bound = rows[k].bound * finest},
+            .norm = NORM_L1,
+            .known = {.bound = (double)INFINITY},
+            .least = rows[k].least * finest,
+        };
+        file->gate_count = 1;
+        file->ladder[0] = 5, file->ladder[1] = study.ladder[study.level_count - 1];
+        file->ladder_count = 2;
+        study.status = STATUS_OK;
+        assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
+        assert_int_equal(result->orders[0][0].status, rows[k].outcome);
+        study_free(&study);
+        pool_free(&pool);
+    }
+}
+
+/* What is conserved: the worst replicate of the finest level counts, and it is known in one. */
+static double drifts[LEVELS][2];
+
+static void set_drifts(json_t *run, size_t c, size_t l, size_t r)
+{
+    (void)c;
+    json_object_set_new(run, "conservation",
+                        json_pack("{s:f, s:n}", "momentum", drifts[l][r], "angular_momentum"));
+}
+
+TEST(what_is_conserved_has_gates)
+{
+    static const struct {
+        double first, second, bound;
+        enum finding_status outcome;
+    } rows[] = {{1e-9, 2e-9, 3e-9, FINDING_PASS},
+                {1e-9, 4e-9, 3e-9, FINDING_FAIL},
+                {4e-9, 1e-9, 3e-9, FINDING_FAIL},
+                {(double)NAN, 1e-9, 3e-9, FINDING_FAIL},
+                {0, 0, 3e-9, FINDING_PASS}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct study study;
+        struct pool pool;
+        struct error error;
+        const bool nothing = isnan(rows[k].first);
+        drifts[LEVELS - 1][0] = rows[k].first, drifts[LEVELS - 1][1] = rows[k].second;
+        make(&study, &pool, "sod", NULL, 2, nothing ? NULL : set_drifts, &error);
+        struct study_result *result = &study.results[0];
+        struct case_file *file = &study.settings.file;
+        const struct settings settings = result->settings;
+        const struct scheme scheme = result->scheme;
+        *result = (struct study_result){.settings = settings, .scheme = scheme};
+        file->gates[0] = (struct case_gate){
+            .functional = trace_figures[1],
+            .gate = {.low = 0, .high = (double)INFINITY, .bound = rows[k].bound}};
+        file->gates[1] =
+            (struct case_gate){.functional = trace_figures[2],
+                               .gate = {.low = 0, .high = (double)INFINITY, .bound = 1}};
+        file->gate_count = 2;
+        study.status = STATUS_OK;
+        assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
+        assert_int_equal(result->kept[1].status, rows[k].outcome);
+        assert_int_equal(result->kept[2].status, FINDING_FAIL); /* null is no number */
+        assert_int_equal(result->kept[0].status, FINDING_NONE);
+        json_t *run = json_pack("{s:i, s:{s:f}}", "n", 320, "conservation", "momentum",
+                                fmax(rows[k].first, rows[k].second));
+        json_t *gate = gates_error(file, &file->gates[0], run);
+        assert_string_equal(json_string_value(json_object_get(gate, "status")),
+                            finding_words[nothing ? FINDING_PASS : rows[k].outcome]);
+        json_decref(gate);
+        json_decref(run);
+        study_free(&study);
+        pool_free(&pool);
+    }
+}
+
 static double exact_errors[LEVELS];
 
 static void set_errors(json_t *run, size_t c, size_t l, size_t r)

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Bounds for a code's gates that are measured: each case is run several times, with starts that
+ * differ by 2 units in the last place, other seeds and other numbers of threads; then with each
+ * [fault] of the code file. A bound lies between the floor, which is what the former change, and
+ * the smallest fault that stands out from it. What has no such fault is no gate.
+ *
+ * Of an error e0 with floor F (at least 1e-4 e0, as another compiler may change that much) and the
+ * smallest change A of a fault with A >= 9 F, the gate allows e0 - D to e0 + D, D = sqrt(F A): D is
+ * as many times F as A is times D, and at least three times. What is conserved has its own size as
+ * floor (at least 1e-14), and no lower bound. Without any fault in the code file D = 10 F. */
+#ifndef SPHPROOF_CALIBRATE_H
+#define SPHPROOF_CALIBRATE_H
+
+#include "code_run.h"
+#include "study.h"
+
+enum {
+    CALIBRATE_RUNS_MAX = 16,
+    CALIBRATE_GATES_MAX = FIELDS + PROBLEM_FUNCTIONALS_MAX + TRACE_FIGURES
+};
+
+/* BLIND: no fault stands out from the floor; FREE: the file has no faults. */
+enum calibrate_sight { CALIBRATE_SEES, CALIBRATE_BLIND, CALIBRATE_FREE };
+extern const char *const calibrate_sights[]; /* as results write them */
+
+struct calibrate_gate {
+    char name[64];       /* the key in the code file */
+    double value;        /* of the first run */
+    double spread;       /* the largest change by the other runs; of what is conserved its size */
+    double floor;        /* the same, and not less than what is always allowed for */
+    double least, bound; /* NaN: it is blind; least 0: there is none */
+    double low, high;    /* of the order, as the code file has it; NaN: none is asked for */
+    bool order_lost;     /* it asks for one, which not all runs have: left out */
+    double change[CODE_FAULTS_MAX]; /* from the value; INFINITY: no number */
+    bool sees[CODE_FAULTS_MAX];
+    int smallest; /* the fault that changes it least and is seen; -1: none */
+    enum calibrate_sight sight;
+};
+
+struct calibrate_case {
+    const struct code_case *of;
+    struct code_case *faulty;        /* code->fault_count */
+    struct code_external *externals; /* runs, then faults; so are the studies */
+    struct study *studies;
+    size_t gate_count;
+    struct calibrate_gate gates[CALIBRATE_GATES_MAX];
+    bool breaks[CODE_FAULTS_MAX]; /* no result: seen without a gate */
+    bool seen[CODE_FAULTS_MAX];
+    char trouble[SUSPICION_TEXT]; /* why a report fails whatever gates say; "" */
+};
+
+struct calibrate {
+    const struct code *code;
+    size_t runs, count;
+    struct calibrate_case *cases;
+};
+
+/* Adds all runs to a pool. names: of cases of the code; count 0: all of them. STATUS_BAD_INPUT: no
+ * such case, or one without a ladder. Free it in any case; it and the code must stay where they are
+ * until then. */
+enum status calibrate_plan(struct calibrate *calibrate, const struct code *code, size_t runs,
+                           size_t count, char *const *names, struct pool *pool,
+                           struct error *error);
+
+/* After pool_run: finds the gates. STATUS_CHECK_FAILED: a fault is seen by no gate, or a report
+ * would fail; STATUS_BROKE_DOWN: a run without a fault has no result. */
+enum status calibrate_judge(struct calibrate *calibrate, const struct pool *pool,
+                            struct error *error);
+
+/* The code file with these gates in place of those of the same cases; malloced. STATUS_BAD_INPUT:
+ * it has changed. */
+enum status calibrate_text(const struct calibrate *calibrate, char **text, struct error *error);
+
+/* Adds "code", "runs" and "cases". */
+void calibrate_add_json(const struct calibrate *calibrate, json_t *document);
+
+void calibrate_free(struct calibrate *calibrate);
+
+#endif
