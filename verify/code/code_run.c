@@ -348,7 +348,8 @@ static enum status execute(struct course *course, struct error *error)
                          : "%.200s: there is no such file",
                      course->external->of->way.value[CODE_snapshot]);
     }
-    if (!status && course->is_judged && !course->reason) follow(course, &now, &before, start.st_mtime);
+    if (!status && course->is_judged && !course->reason)
+        follow(course, &now, &before, start.st_mtime);
     code_matches_free(&before);
     code_matches_free(&now);
     free(pattern);
