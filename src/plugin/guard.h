@@ -41,10 +41,10 @@ void guard_free(struct guard_verdict *verdict);
 
 /* From here on this process is the child of one that only waits for it: which ends as this one
  * does, but where foreign code has crashed, ended the process or does not come back from a call for
- * GUARD_WATCH_LIMIT seconds, says so of the kernel called subject and ends with
+ * GUARD_WATCH_LIMIT seconds, says so of the subject ("kernel", "./mine.so") and ends with
  * STATUS_CHECK_FAILED. Before there are threads and open files; calls after the first one add their
  * subjects. STATUS_ENVIRONMENT: no process, no memory. */
 enum { GUARD_WATCH_LIMIT = 5 };
-enum status guard_watch(const char *subject, struct error *error);
+enum status guard_watch(const char *what, const char *path, struct error *error);
 
 #endif

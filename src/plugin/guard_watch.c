@@ -36,7 +36,7 @@ static void say(const struct watch *watch, const struct trace *seen, const char 
 {
     char place[200];
     guard_place(seen, place, sizeof place);
-    fprintf(stderr, "sphproof: kernel %s %s%s\n", watch->subject, what, place);
+    fprintf(stderr, "sphproof: %s %s%s\n", watch->subject, what, place);
 }
 
 /* The thread that is in foreign code, if there is one. */
@@ -136,18 +136,18 @@ static void end_with_parent(void)
 #endif
 }
 
-enum status guard_watch(const char *subject, struct error *error)
+enum status guard_watch(const char *what, const char *path, struct error *error)
 {
     static struct watch *mine;
     int ends[2];
     if (mine) { /* it is watched already */
         const size_t used = strlen(mine->subject);
-        snprintf(mine->subject + used, sizeof mine->subject - used, ", %s", subject);
+        snprintf(mine->subject + used, sizeof mine->subject - used, ", %s %s", what, path);
         return STATUS_OK;
     }
     if (!(mine = guard_watch_make(error))) return error->status;
     if (pipe(ends)) return error_set(error, STATUS_ENVIRONMENT, "no pipe: %s", strerror(errno));
-    snprintf(mine->subject, sizeof mine->subject, "%s", subject);
+    snprintf(mine->subject, sizeof mine->subject, "%s %s", what, path);
     fflush(NULL);
     const pid_t parent = getpid(), pid = fork();
     if (pid < 0) return error_set(error, STATUS_ENVIRONMENT, "no process: %s", strerror(errno));

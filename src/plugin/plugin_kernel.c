@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "cache.h"
 #include "guard.h"
@@ -44,6 +45,11 @@ static const char *hash_of(const char *word)
     return at + 1;
 }
 
+bool plugin_allowed(void)
+{
+    return certificate != NULL;
+}
+
 bool plugin_is_path(const char *word)
 {
     const char *hash = hash_of(word);
@@ -55,20 +61,13 @@ bool plugin_is_path(const char *word)
 /* The hash of the file's content. */
 static enum status hash_file(const char *path, char digits[HASH_DIGITS + 1], struct error *error)
 {
-    unsigned char bytes[4096];
-    uint64_t hash = CACHE_HASH;
     struct stat is;
-    FILE *file = stat(path, &is) ? NULL : fopen(path, "rb");
-    if (!file) return error_set(error, STATUS_BAD_INPUT, "kernel '%s': %s", path, strerror(errno));
-    if (!S_ISREG(is.st_mode)) {
-        fclose(file);
+    if (stat(path, &is) || access(path, R_OK))
+        return error_set(error, STATUS_BAD_INPUT, "kernel '%s': %s", path, strerror(errno));
+    if (!S_ISREG(is.st_mode))
         return error_set(error, STATUS_BAD_INPUT,
                          "kernel '%s' is no file; allowed: a shared object", path);
-    }
-    for (size_t n; (n = fread(bytes, 1, sizeof bytes, file)) > 0;)
-        hash = cache_hash(hash, bytes, n);
-    fclose(file);
-    snprintf(digits, HASH_DIGITS + 1, "%016" PRIx64, hash);
+    snprintf(digits, HASH_DIGITS + 1, "%016" PRIx64, cache_hash_file(path));
     return STATUS_OK;
 }
 
@@ -96,7 +95,7 @@ enum status plugin_find(const char *word, int *index, struct error *error)
     strcpy(plugin->path, path);
     strcpy(plugin->name, name);
     plugin->kernel.member = (struct member){plugin->name, "user's kernel", ""};
-    if (guard_watch(plugin->path, error)) return error->status;
+    if (guard_watch("kernel", plugin->path, error)) return error->status;
     plugin_count++;
     *index = kernel_add(&plugin->kernel);
     return STATUS_OK;

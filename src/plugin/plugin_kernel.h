@@ -12,14 +12,17 @@
 
 #include "pieces.h"
 
-/* Measures the certificate of a kernel in dim dimensions on these terms; failing: the names of the checks that fail, a
- * new array. STATUS_ENVIRONMENT: no memory. */
+/* Measures the certificate of a kernel in dim dimensions on these terms; failing: the names of the
+ * checks that fail, a new array. STATUS_ENVIRONMENT: no memory. */
 typedef enum status plugin_certify(const struct kernel *kernel, int dim, const struct terms *terms,
                                    json_t **failing, struct error *error);
 
 /* Plug-ins may be used from here on, if their certificate passes; without this (tests, fuzzing) no
  * path is looked at. uncertified: also those whose certificate fails. */
 void plugin_allow(plugin_certify *certify, bool uncertified);
+
+/* Has plugin_allow been called? Nothing else of a user's is loaded before that either. */
+bool plugin_allowed(void);
 
 /* Is word a path (PATH or PATH@HASH), not the name of a kernel? */
 bool plugin_is_path(const char *word);
@@ -35,6 +38,6 @@ enum status plugin_prepare(int index, int dim, struct error *error);
 
 /* plugin_prepare, then kernel_select, of the kernel at that place. */
 enum status plugin_select(struct kernel *kernel, int index, int sinc_order, int dim,
-                         struct error *error);
+                          struct error *error);
 
 #endif

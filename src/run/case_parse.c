@@ -8,6 +8,7 @@
 
 #include "ini_text.h"
 #include "list.h"
+#include "own_reference.h"
 #include "problem.h"
 #include "problem_list.h"
 #include "problem_prepare.h"
@@ -93,6 +94,13 @@ static void set_flag(struct parser *parser, const char *name, const char *value,
 static void set_reference(struct parser *parser, const char *value)
 {
     char where[256];
+    struct error reason;
+    if (own_is_meant(value)) {
+        snprintf(parser->reference, sizeof parser->reference, "%s", "");
+        if (own_load(value, parser->at.path, &parser->file->settings.reference, &reason))
+            ini_text_fail(&parser->at, reason.message, "");
+        return;
+    }
     const char **names = NULL;
     size_t n = 0;
     bool known = false;
@@ -470,12 +478,30 @@ static enum status check_gates(struct parser *parser)
 
 static enum status check_complete(struct parser *parser)
 {
-    find_judge(parser);
+    if (!parser->file->settings.reference) find_judge(parser);
     if (check_keys(parser) || check_gates(parser)) return parser->at.error->status;
     const char *reference = problem_of(&parser->file->settings)->reference;
-    if (strcmp(parser->reference, reference) == 0) return STATUS_OK;
+    if (parser->file->settings.reference || strcmp(parser->reference, reference) == 0)
+        return STATUS_OK;
     parser->at.line = parser->seen_extras[EXTRA_reference];
     return ini_text_fail_value(&parser->at, "reference", parser->reference, reference);
+}
+
+/* Fields that are asked for have to be known; without a word of fields all that are known count. */
+static enum status check_fields(struct parser *parser, const struct problem *problem)
+{
+    struct case_file *file = parser->file;
+    for (int f = 0; f < FIELDS; f++) {
+        char what[120];
+        if (!file->fields[f] || !problem->unknown[f]) continue;
+        file->fields[f] = false;
+        if (!parser->seen_extras[EXTRA_fields]) continue;
+        parser->at.line = parser->seen_extras[EXTRA_fields];
+        snprintf(what, sizeof what, "fields: the reference says nothing of %s",
+                 field_family.members[f]->name);
+        return ini_text_fail(&parser->at, what, "");
+    }
+    return STATUS_OK;
 }
 
 enum status case_parse(struct case_file *file, const char *path, const char *text, size_t length,
@@ -504,7 +530,7 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
     if (problem_prepare(&problem, &trial, file->dimension, &reason) ||
         settings_scheme(&trial, file->dimension, &scheme, &reason))
         return error_set(error, STATUS_BAD_INPUT, "%.160s: %.340s", path, reason.message);
-    return STATUS_OK;
+    return check_fields(&parser, problem.problem);
 }
 
 bool case_amend(struct case_file *file, struct ini_text *at, const char *name, const char *value)

@@ -25,7 +25,8 @@ size_t judged_names(const struct case_file *file, size_t functional_count,
     }
     for (int gated = 1; gated >= 0 && !problem->fieldless; gated--)
         for (int f = 0; f < FIELDS; f++)
-            if (file->fields[f] && has_gate(file, f) == gated)
+            if (file->fields[f] && problem_knows(problem, (enum field)f) &&
+                has_gate(file, f) == gated)
                 names[n++] = field_family.members[f]->name;
     for (size_t i = 0; i < functional_count && problem->fieldless; i++)
         if (isfinite(exact[i])) names[n++] = functionals[i];

@@ -38,6 +38,11 @@ void problem_sample(const struct prepared *p, const double x[3], double t,
         if (p->boost[d] != 0) state->v[d] += p->boost[d];
 }
 
+bool problem_knows(const struct problem *problem, enum field field)
+{
+    return !problem->fieldless && !problem->unknown[field];
+}
+
 double problem_field(const struct problem_state *state, enum field field)
 {
     const double values[FIELDS] = {state->rho, state->v[0], state->P, state->u};

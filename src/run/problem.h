@@ -90,17 +90,22 @@ struct problem_ends {
 /* Flows with azimuthal and radial errors: round the middle of the domain, and to it or from it. */
 enum circular { CIRCULAR_NOT, CIRCULAR_ROUND, CIRCULAR_RADIAL };
 
+/* Solutions of users (own_reference.h); only functions know other times, the start too. */
+enum own_kind { OWN_NOT, OWN_TABLE, OWN_FUNCTION };
+
 struct problem {
     struct member member;  /* in cases: kind = NAME */
     const char *reference; /* exact solution, as case files name it */
     int least_dim, most_dim;
     bool carried; /* exact everywhere in the periodic box, so that it may be boosted */
     enum circular circular;
-    bool fieldless; /* of t > 0 only functionals are known: there are no errors of fields */
-    bool filed;     /* its particles come from a file, always */
-    bool heavy;     /* it takes gravity: any other has no solution in it */
+    bool fieldless;       /* of t > 0 only functionals are known: there are no errors of fields */
+    bool unknown[FIELDS]; /* nor of these, although others are known; their samples are NaN */
+    enum own_kind own;    /* whose its sample is */
+    bool filed;           /* its particles come from a file, always */
+    bool heavy;           /* it takes gravity: any other has no solution in it */
     bool steady; /* the exact flow is the same at all times, but for where the boost carries it */
-    bool smooth; /* neither jumps nor shocks, for as long as it is solved */
+    bool smooth;          /* neither jumps nor shocks, for as long as it is solved */
     struct problem_ends ends[3];
     /* NULL, but where energy starts in the middle of the window: the sample at t = 0 does not show
      * it, and later u has no bound there. Energy over mass of the ball of radius r round it. */
@@ -136,6 +141,9 @@ struct problem {
 
 void problem_sample(const struct prepared *p, const double x[3], double t,
                     struct problem_state *state);
+
+/* Are there errors of that field? */
+bool problem_knows(const struct problem *problem, enum field field);
 
 /* A field of a state; velocity: along x. */
 double problem_field(const struct problem_state *state, enum field field);

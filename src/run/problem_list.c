@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "own_reference.h"
+
 #define PROBLEM(name) extern const struct problem problem_##name;
 #include "problems.def"
 #undef PROBLEM
@@ -18,7 +20,9 @@ const struct family problem_family = {"problems", "initial states and what they 
 
 const struct problem *problem_of(const struct settings *settings)
 {
-    return (const struct problem *)members[settings_choice(settings, SETTING_kind)];
+    const struct problem *problem =
+        (const struct problem *)members[settings_choice(settings, SETTING_kind)];
+    return settings->reference > 0 ? own_problem(settings->reference, problem) : problem;
 }
 
 static bool calls_its_own(const struct problem *problem, enum setting key)

@@ -103,6 +103,7 @@ struct run_result {
                                     in 2D and 3D: |v - exact| */
     struct norms azimuthal, radial; /* of the velocity of a circular flow */
     double binned_density_l1;       /* in 1D */
+    double interpolation[FIELDS];   /* what a user's table may be off (own_miss); NaN: none is */
     struct regularity regularity;   /* of the final state, with the scheme's kernel */
     struct estimate estimate;       /* before the run */
     struct relax_quality start;     /* of a glass; NaN: it is none */
@@ -159,6 +160,9 @@ void run_free(struct run_result *result);
 
 /* "errors" of a result document: {"density": {"l1", ...}, ..., "binned_density_l1"}. */
 json_t *run_errors_json(const struct run_result *result);
+
+/* What interpolation in a user's table may be off, in a line; "" where there is no table. */
+void run_interpolation_text(const double interpolation[FIELDS], char *text, size_t size);
 
 /* [{"name", "value", "reference"}]; owned by the caller. */
 json_t *run_functionals_json(const struct run_result *result);

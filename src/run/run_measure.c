@@ -6,6 +6,7 @@
 
 #include "functional.h"
 #include "growth.h"
+#include "own_reference.h"
 
 /* What errors are measured of, n numbers each. */
 struct comparison {
@@ -88,7 +89,10 @@ static enum status suspect(struct run_result *result, const double *const *measu
         value[field] = inside + field * s->n;
         exact[field] = inside + (FIELDS + field) * s->n;
     }
-    for (size_t i = 0; i < s->n; i++) {
+    bool all = true;
+    for (int field = 0; field < FIELDS; field++)
+        all &= problem_knows(result->problem.problem, (enum field)field);
+    for (size_t i = 0; i < s->n && all; i++) {
         if (of->place[i] > 0) continue;
         for (size_t field = 0; field < FIELDS; field++) {
             inside[field * s->n + n] = measured[field][i];
@@ -98,7 +102,7 @@ static enum status suspect(struct run_result *result, const double *const *measu
     }
     /* about a point-like explosion the energy a mass has grows without bound */
     const size_t bounded = result->problem.problem->mean_energy ? FIELD_INTERNAL_ENERGY : FIELDS;
-    suspicion_swapped(bounded, names, n, volume, value, exact, result->suspicion);
+    if (all) suspicion_swapped(bounded, names, n, volume, value, exact, result->suspicion);
     free(inside);
     return STATUS_OK;
 }
@@ -127,7 +131,9 @@ static void measure_line(struct run_result *result, const double *const *measure
     const double window[2] = {result->problem.window.lo[0], result->problem.window.hi[0]};
     double means[NORM_BINS];
     for (int field = 0; field < FIELDS; field++)
-        result->errors[field] = norms_of(s, of, measured[field], of->exact[field]);
+        if (problem_knows(result->problem.problem, (enum field)field))
+            result->errors[field] = norms_of(s, of, measured[field], of->exact[field]);
+    if (!problem_knows(result->problem.problem, FIELD_DENSITY)) return;
     problem_means(&result->problem, FIELD_DENSITY, result->time, NORM_BINS, means);
     result->binned_density_l1 =
         norm_binned_l1(s->n, s->x[0], window, s->volume, s->rho, NORM_BINS, means);
@@ -139,6 +145,7 @@ static void measure_cloud(struct run_result *result, const double *const *measur
     const struct snapshot *s = &result->snapshot;
     for (int field = 0; field < FIELDS; field++) {
         const bool vector = field == FIELD_VELOCITY;
+        if (!problem_knows(result->problem.problem, (enum field)field)) continue;
         result->errors[field] = norms_of(s, of, vector ? of->jump : measured[field],
                                          vector ? of->none : of->exact[field]);
     }
@@ -152,6 +159,7 @@ void run_measure_nothing(struct run_result *result)
     result->azimuthal = result->radial = no_norms;
     for (int field = 0; field < FIELDS; field++) result->errors[field] = no_norms;
     result->binned_density_l1 = (double)NAN;
+    for (int field = 0; field < FIELDS; field++) result->interpolation[field] = (double)NAN;
 }
 
 enum status run_measure_errors(struct run_result *result, struct error *error)
@@ -161,6 +169,7 @@ enum status run_measure_errors(struct run_result *result, struct error *error)
     struct comparison of;
     run_measure_nothing(result);
     if (result->problem.problem->fieldless) return STATUS_OK;
+    own_miss(&result->problem, s, result->interpolation);
     if (!compare(&of, result))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
     (result->problem.domain.dim == 1 ? measure_line : measure_cloud)(result, measured, &of);

@@ -3,6 +3,8 @@
 #include "run.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "description_output.h"
 #include "judged.h"
@@ -25,20 +27,56 @@ static json_t *norms_json(const struct norms *of, bool known)
     return norms;
 }
 
+static bool is_interpolated(const double interpolation[FIELDS])
+{
+    bool any = false;
+    for (int field = 0; field < FIELDS; field++) any |= isfinite(interpolation[field]) != 0;
+    return any;
+}
+
+void run_interpolation_text(const double interpolation[FIELDS], char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    if (!is_interpolated(interpolation)) return;
+    for (int field = 0; field < FIELDS && used < size; field++)
+        if (isfinite(interpolation[field]))
+            used += (size_t)snprintf(text + used, size - used, "%s%s %.2g",
+                                     used ? ", "
+                                          : "the reference is a table: with every second "
+                                            "row left out it misses the others by a mean of ",
+                                     field_family.members[field]->name, interpolation[field]);
+}
+
+/* {"density": {"l1", ...}, ..., "interpolation": what a table may be off, by field, or absent} */
+static void add_interpolation(json_t *errors, const double interpolation[FIELDS])
+{
+    if (!is_interpolated(interpolation)) return;
+    json_t *object = json_object();
+    for (int field = 0; field < FIELDS; field++)
+        json_object_set_new(object, field_family.members[field]->name,
+                            isnan(interpolation[field]) ? json_null()
+                                                        : result_number(interpolation[field]));
+    json_object_set_new(errors, "interpolation", object);
+}
+
 json_t *run_errors_json(const struct run_result *result)
 {
     const struct problem *problem = result->problem.problem;
     json_t *errors = json_object();
     for (int field = 0; field < FIELDS; field++)
-        json_object_set_new(errors, field_family.members[field]->name,
-                            norms_json(&result->errors[field], !problem->fieldless));
+        json_object_set_new(
+            errors, field_family.members[field]->name,
+            norms_json(&result->errors[field], problem_knows(problem, (enum field)field)));
     if (problem_is_circular(&result->problem)) {
         json_object_set_new(errors, "azimuthal", norms_json(&result->azimuthal, true));
         json_object_set_new(errors, "radial", norms_json(&result->radial, true));
     }
     json_object_set_new(errors, "binned_density_l1",
-                        result->problem.domain.dim == 1 ? result_number(result->binned_density_l1)
-                                                        : json_null());
+                        result->problem.domain.dim == 1 && problem_knows(problem, FIELD_DENSITY)
+                            ? result_number(result->binned_density_l1)
+                            : json_null());
+    add_interpolation(errors, result->interpolation);
     return errors;
 }
 

@@ -60,6 +60,7 @@ struct settings {
     int dim; /* of the case; 0: not known yet */
     struct setting_value value[SETTINGS];
     char file[SETTING_TEXT_MAX]; /* the SETTING_PATH; "": none */
+    int reference;               /* own_reference.h's number of a user's solution; 0: none */
 };
 
 enum lattice {
@@ -86,8 +87,8 @@ int setting_find(const char *name);
 /* "an integer from 3 to 12", "one of a b c" ...: what a value of this key may be. */
 void setting_allowed(const struct setting_key *key, char *text, size_t size);
 
-/* Refuses a number of particles that is written as 64^3 where the case has another dimension than 3;
- * exponent 0 stands for a plain number, dim 0 for a dimension that is not known yet. The message
+/* Refuses a number of particles that is written as 64^3 where the case has another dimension than
+ * 3; exponent 0 stands for a plain number, dim 0 for a dimension that is not known yet. The message
  * begins with `before` and the text. */
 enum status setting_check_power(const char *before, const char *text, int exponent, int dim,
                                 struct error *error);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "settings_output.h"
 
+#include "own_reference.h"
 #include "problem_list.h"
 
 static json_t *choices_json(const struct setting_key *key, const struct setting_value *value)
@@ -46,5 +47,7 @@ json_t *settings_json(const struct settings *settings)
         }
         json_object_set_new(object, key->name, item);
     }
+    if (settings->reference > 0)
+        json_object_set_new(object, "reference", json_string(own_name(settings->reference)));
     return object;
 }

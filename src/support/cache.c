@@ -28,6 +28,18 @@ uint64_t cache_hash(uint64_t hash, const void *bytes, size_t n)
     return hash;
 }
 
+uint64_t cache_hash_file(const char *path)
+{
+    char bytes[4096];
+    uint64_t hash = CACHE_HASH;
+    FILE *file = fopen(path, "rb");
+    if (!file) return 0;
+    for (size_t got; (got = fread(bytes, 1, sizeof bytes, file)) > 0;)
+        hash = cache_hash(hash, bytes, got);
+    fclose(file);
+    return hash;
+}
+
 static FILE *open_program(void)
 {
 #ifdef __APPLE__

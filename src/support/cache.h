@@ -58,4 +58,7 @@ enum status cache_prune(const char *folder, double seconds, struct cache_census 
 #define CACHE_HASH UINT64_C(0xcbf29ce484222325)
 uint64_t cache_hash(uint64_t hash, const void *bytes, size_t n);
 
+/* The same of a whole file; 0: it cannot be read. */
+uint64_t cache_hash_file(const char *path);
+
 #endif

@@ -187,7 +187,8 @@ static enum status read_figures(struct side *side, const struct run_result *r, s
                                 struct error *error)
 {
     side->count = 0;
-    for (int f = 0; f < FIELDS && !r->problem.problem->fieldless; f++) {
+    for (int f = 0; f < FIELDS; f++) {
+        if (!problem_knows(r->problem.problem, (enum field)f)) continue;
         side->figures[side->count] = (char *)field_family.members[f]->name;
         side->error[side->count++][draw] = r->errors[f].l1;
     }

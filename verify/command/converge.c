@@ -190,6 +190,7 @@ static void print_study(const struct study *study, const struct study_result *re
 {
     const struct table_style style = table_style(options->color);
     const struct case_file *file = &study->settings.file;
+    char interpolation[400];
     printf("%s%s%s: %s%s%s\n", style.bold, file->name, style.end, file->title, *label ? ", " : "",
            label);
     print_ladder(study, result, &style);
@@ -198,6 +199,8 @@ static void print_study(const struct study *study, const struct study_result *re
     print_functionals(result, &style);
     print_kept(result, &style);
     print_budget(result, &style);
+    run_interpolation_text(result->interpolation, interpolation, sizeof interpolation);
+    if (interpolation[0]) printf("%s\n", interpolation);
     if (result->suspicion[0])
         printf("%ssuspicious: %s%s\n", style.bad, result->suspicion, style.end);
     printf("\n");

@@ -136,7 +136,7 @@ static void print_one(const struct judged *judged, const struct table_style *sty
 {
     const struct run_result *r = &judged->result;
     const struct snapshot_notes *notes = &judged->file.notes;
-    char text[2][CELL];
+    char text[2][CELL], interpolation[400];
     printf("%s%s%s: %s, %s, %zu particles in %dD at t = %.6g\n", style->bold, judged->path,
            style->end, judged->file.layout, judged->file.code, r->n, judged->file.dim, r->time);
     printf("\nassumed:\n");
@@ -146,9 +146,13 @@ static void print_one(const struct judged *judged, const struct table_style *sty
     print_kernels(&judged->conventions);
     if (!r->problem.problem->fieldless) {
         printf("\n%-16s %12s %12s %12s %14s\n", "errors", "l1", "l2", "linf", "particle_mean");
-        for (int f = 0; f < FIELDS; f++) print_norms(field_family.members[f]->name, &r->errors[f]);
+        for (int f = 0; f < FIELDS; f++)
+            if (problem_knows(r->problem.problem, (enum field)f))
+                print_norms(field_family.members[f]->name, &r->errors[f]);
         if (r->problem.problem->circular) print_norms("azimuthal", &r->azimuthal);
     }
+    run_interpolation_text(r->interpolation, interpolation, sizeof interpolation);
+    if (interpolation[0]) printf("%s\n", interpolation);
     if (r->problem.problem->fieldless) printf("\n");
     for (size_t k = 0; k < r->functional_count; k++)
         printf("%-24s %s (exact %s)\n", r->functionals[k].name,

@@ -95,7 +95,7 @@ static void print_errors(const struct run_settings *settings, const struct run_r
 {
     const int dim = result->problem.domain.dim;
     const struct problem *problem = result->problem.problem;
-    char window[160];
+    char window[160], interpolation[400];
     describe_window(&result->problem.window, window, sizeof window);
     if (problem->fieldless) {
         printf("\nno errors of fields: after the start nothing is exact\n");
@@ -105,16 +105,18 @@ static void print_errors(const struct run_settings *settings, const struct run_r
            "particle mean", "unit", style->end);
     for (int field = 0; field < FIELDS; field++) {
         const struct norms *e = &result->errors[field];
-        if (!settings->file.fields[field]) continue;
+        if (!settings->file.fields[field] || !problem_knows(problem, (enum field)field)) continue;
         print_norms(field_family.members[field]->name, e, field_unit((enum field)field, dim));
     }
     if (problem_is_circular(&result->problem)) {
         print_norms("  azimuthal", &result->azimuthal, field_unit(FIELD_VELOCITY, dim));
         print_norms("  radial", &result->radial, field_unit(FIELD_VELOCITY, dim));
     }
-    if (dim == 1)
+    if (dim == 1 && problem_knows(problem, FIELD_DENSITY))
         printf("%-16s %12.4e  mean over %d bins of |mean density - mean exact density|\n",
                "density, binned", result->binned_density_l1, NORM_BINS);
+    run_interpolation_text(result->interpolation, interpolation, sizeof interpolation);
+    if (interpolation[0]) printf("%s\n", interpolation);
     printf("%sL1 = sum V|q - exact|/sum V, L2 = sqrt(sum V (q - exact)^2/sum V), Linf = max "
            "|q - exact|,\nparticle mean = sum |q - exact|/N: over the %zu particles in %s at "
            "t = %g; V = volume; code units%s\n",

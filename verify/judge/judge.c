@@ -369,6 +369,7 @@ static enum status measure_wrong(struct judged *judged, struct error *error)
     if (!errors) return error_set(error, STATUS_ENVIRONMENT, "no memory for errors");
     for (int f = 0; f < FIELDS; f++) {
         double range = INFINITY;
+        if (!problem_knows(judged->run.problem.problem, (enum field)f)) continue;
         const double median = median_error(judged, f, errors, &range);
         const double mean = judged->result.errors[f].l1 / range;
         double part = fmax(median, mean * JUDGE_FOREIGN / JUDGE_FOREIGN_MEAN);

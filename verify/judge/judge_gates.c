@@ -48,8 +48,9 @@ static json_t *figures_of(const struct judged *judged, size_t n)
     json_t *figures = json_object(), *conserved = judge_conservation(judged, n, &trace),
            *orders = judge_orders(judged, n), *order;
     size_t i;
-    for (int f = 0; f < FIELDS && !problem->fieldless; f++)
-        add_norms(figures, field_family.members[f]->name, &r->errors[f]);
+    for (int f = 0; f < FIELDS; f++)
+        if (problem_knows(problem, (enum field)f))
+            add_norms(figures, field_family.members[f]->name, &r->errors[f]);
     if (problem->circular) {
         add_norms(figures, "azimuthal", &r->azimuthal);
         add_norms(figures, "radial", &r->radial);

@@ -9,28 +9,16 @@
 #include "result.h"
 #include "settings_output.h"
 
-/* What a file of particles holds decides the result, not its name alone; 0: it cannot be read, and
- * neither will the run. */
-static uint64_t content(const char *path)
-{
-    char bytes[4096];
-    uint64_t hash = CACHE_HASH;
-    FILE *file = fopen(path, "rb");
-    if (!file) return 0;
-    for (size_t got; (got = fread(bytes, 1, sizeof bytes, file)) > 0;)
-        hash = cache_hash(hash, bytes, got);
-    fclose(file);
-    return hash;
-}
-
 char *run_job_key(const struct run *run, const char *kind, struct error *error)
 {
     const struct case_file *file = &run->asked.file;
     json_t *key = json_pack("{s:s, s:s, s:s, s:i, s:b, s:o}", "kind", kind, "case", file->name,
                             "title", file->title, "dimension", file->dimension, "any_window",
                             run->asked.any_window, "settings", settings_json(&run->settings));
+    /* what a file of particles holds decides the result, not its name alone */
     if (key && run->settings.file[0])
-        json_object_set_new(key, "content", json_integer((json_int_t)content(run->settings.file)));
+        json_object_set_new(key, "content",
+                            json_integer((json_int_t)cache_hash_file(run->settings.file)));
     const struct run_external *external = run->asked.external;
     if (key && external && external->add_key(external, run, key, error)) {
         json_decref(key);

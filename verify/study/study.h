@@ -72,6 +72,7 @@ struct study_result {
     double still;                           /* largest of the levels' budgets; NaN: none */
     enum finding_status still_status;
     char suspicion[SUSPICION_TEXT]; /* "" if nothing is too good to be true */
+    double interpolation[FIELDS];   /* of the run; NaN: the reference is no table of a user's */
 };
 
 /* Undisturbed gas may move at this part of the sound speed. */

@@ -209,7 +209,8 @@ static void suspect(struct study_result *result, const struct case_file *file)
     double errors[CASE_LADDER_MAX];
     char why[SUSPICION_TEXT];
     for (int field = 0; field < FIELDS && !result->suspicion[0]; field++) {
-        if (file->exact[field] || problem_of(&result->settings)->fieldless) continue;
+        if (file->exact[field] || !problem_knows(problem_of(&result->settings), (enum field)field))
+            continue;
         for (size_t i = 0; i < result->level_count; i++)
             errors[i] = result->levels[i].errors[field][NORM_L1];
         if (suspicion_zero(result->level_count, errors, why) ||

@@ -24,20 +24,24 @@ static json_t *norms_json(const double values[NORMS], bool known)
 
 static json_t *level_json(const struct study *study, const struct study_level *level)
 {
-    const bool known = !problem_of(&study->settings.settings)->fieldless;
+    const struct problem *problem = problem_of(&study->settings.settings);
     const bool line = study->settings.file.dimension == 1;
     json_t *errors = json_object(), *spread = json_object();
     for (int f = 0; f < FIELDS; f++) {
         const char *name = field_family.members[f]->name;
-        json_object_set_new(errors, name, norms_json(level->errors[f], known));
-        json_object_set_new(spread, name, norms_json(level->spread[f], known));
+        json_object_set_new(errors, name,
+                            norms_json(level->errors[f], problem_knows(problem, (enum field)f)));
+        json_object_set_new(spread, name,
+                            norms_json(level->spread[f], problem_knows(problem, (enum field)f)));
     }
     for (int part = 0; part < STUDY_PARTS; part++)
         if (isfinite(level->parts[part][NORM_L1]))
             json_object_set_new(errors, study_part_names[part],
                                 norms_json(level->parts[part], true));
     json_object_set_new(errors, "binned_density_l1",
-                        line ? result_number(level->binned_density_l1) : json_null());
+                        line && problem_knows(problem, FIELD_DENSITY)
+                            ? result_number(level->binned_density_l1)
+                            : json_null());
     json_t *item = json_pack("{s:I, s:o, s:o, s:o, s:o, s:o}", "n", (json_int_t)level->n, "h",
                              result_number(level->h), "spacing", result_number(level->spacing),
                              "errors", errors, "cpu_s", result_number(level->cpu_s), "budget",
@@ -157,8 +161,9 @@ static void add_result(const struct study *study, const struct study_result *res
     for (size_t l = 0; l < result->level_count; l++)
         add(document, "levels", level_json(study, &result->levels[l]), varied);
     if (result->status == STATUS_BROKE_DOWN) return;
-    for (int f = 0; f < FIELDS && !problem_of(&result->settings)->fieldless; f++)
-        for (int m = 0; m < NORMS; m++)
+    for (int f = 0; f < FIELDS; f++)
+        for (int m = 0; m < NORMS && problem_knows(problem_of(&result->settings), (enum field)f);
+             m++)
             add(document, "orders",
                 order_json(&result->orders[f][m], field_family.members[f]->name,
                            field_norm_family.members[m]->name),

@@ -80,6 +80,10 @@ static void read_run(struct study_result *result, struct study_level *level,
     budget_add(&level->budget, problem_of(&result->settings)->regions,
                json_object_get(run, "budget"), weight);
     read_functionals(result, level, run, weight);
+    const json_t *errors = json_object_get(run, "errors");
+    for (int f = 0; f < FIELDS; f++)
+        result->interpolation[f] =
+            value_member(json_object_get(errors, "interpolation"), field_family.members[f]->name);
     const char *suspicion = value_text(run, "suspicion");
     if (*suspicion && !result->suspicion[0])
         snprintf(result->suspicion, sizeof result->suspicion, "%s", suspicion);

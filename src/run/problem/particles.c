@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Particles from a file, as they are: nothing is known of their later state, so that a run reports
  * what it conserves and draws maps. (Any other problem, too, takes its particles from a file if it
- * is given one, and is then judged by its own solution.) */
+ * is given one, and is then judged by its own solution.) Without a file they are laid with the
+ * state that a user's own reference has at t = 0. */
 #include <math.h>
 
-#include "initial.h"
+#include "initial_fill.h"
 #include "problem.h"
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
-    (void)p;
-    if (settings->file[0]) return STATUS_OK;
+    if (settings->file[0] || p->problem->own == OWN_FUNCTION) return STATUS_OK;
     return error_set(error, STATUS_BAD_INPUT,
-                     "an initial state of kind particles needs a file of them: file = "
-                     "PARTICLES.csv in [initial]");
+                     "an initial state of kind particles needs a file of them, file = "
+                     "PARTICLES.csv in [initial], or a shared object that knows the state at t = "
+                     "0, reference = ./mine.so in [case]");
 }
 
 /* Unknown, at the start, too: between particles there is nothing to say. */
@@ -25,19 +26,18 @@ static void sample(const struct prepared *p, const double x[3], double t,
     *state = (struct problem_state){unknown, {unknown, unknown, unknown}, unknown, unknown};
 }
 
-/* initial_create reads the file instead. */
+/* Where there is a file, initial_create reads it instead. */
 static enum status fill(const struct prepared *p, const struct settings *settings,
                         struct initial *initial, struct error *error)
 {
-    (void)settings, (void)initial;
+    if (p->problem->own == OWN_FUNCTION) return initial_fill(p, settings, initial, error);
     return error_set(error, STATUS_BAD_INPUT, "%s: no particles but those of a file",
                      p->problem->member.name);
 }
 
-static bool never(const struct settings *settings)
+static bool is_random(const struct settings *settings)
 {
-    (void)settings;
-    return false;
+    return !settings->file[0] && initial_is_shaken(settings);
 }
 
 #define ANY                                                                                        \
@@ -57,5 +57,5 @@ const struct problem problem_particles = {
     .prepare = prepare,
     .sample = sample,
     .fill = fill,
-    .random = never,
+    .random = is_random,
 };

@@ -312,8 +312,9 @@ TEST(nothing_is_known_of_a_file)
     struct initial initial = {0};
     struct error error = {0};
     prepared_refused(2, "kind=particles",
-                     "an initial state of kind particles needs a file of them: file = "
-                     "PARTICLES.csv in [initial]");
+                     "an initial state of kind particles needs a file of them, file = "
+                     "PARTICLES.csv in [initial], or a shared object that knows the state at t = "
+                     "0, reference = ./mine.so in [case]");
     const struct prepared p = prepared_of(&s, 1, "kind=particles|file=a");
     const struct problem_state have = sampled(&p, 0.1, 0.2, 0.3, 0.4);
     assert_true(isnan(have.rho) && isnan(have.P) && isnan(have.u));

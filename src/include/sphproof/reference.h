@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/** @file
+ * An exact solution of your own, for a case file of yours. Write one C file with the function
+ * below, then
+ *
+ *     cc -O2 -shared -fPIC -I DIR_OF_THIS_HEADER F.c -o mine.so -lm
+ *
+ * and in the case file, in [case]
+ *
+ *     reference = ./mine.so speed=0.5 k=2
+ *
+ * where words after the path are parameters, numbers with names of your choice. Every command then
+ * measures errors against this function. The initial state stays that of the case's kind; with
+ * kind = particles and no file, particles are laid with the state of the function at t = 0.
+ *
+ * The function must be pure: same arguments, same state, however often it is called. It is first
+ * tried in a process of its own: one that crashes, ends the process or does not return within a
+ * second is refused. A crash later on, or a call that lasts 5 seconds, ends the command with a
+ * message. With --threads several threads may call it at once. */
+#ifndef SPHPROOF_REFERENCE_H
+#define SPHPROOF_REFERENCE_H
+
+#include <string.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** What the case says, in code units; arrays have dim entries. */
+struct sphproof_reference_case {
+    int dim;                           /**< 1, 2 or 3 */
+    double gamma;                      /**< ratio of specific heats */
+    const double *lo, *hi;             /**< ends of the box */
+    const double *gravity;             /**< constant acceleration */
+    int parameter_count;               /**< words after the path */
+    const char *const *parameter_name; /**< parameter_count names */
+    const double *parameter_value;     /**< parameter_count numbers */
+};
+
+/** The gas at one place and time, in code units. All are not a number (NaN) at the call, and what
+ * stays so is unknown: a field that is unknown everywhere is not compared. With rho and P known, u
+ * that is left out is P/((gamma - 1) rho). */
+struct sphproof_reference_state {
+    double rho, v[3], P, u;
+};
+
+/** Required: the state at x (dim coordinates in the box) and t >= 0. Returns 0; anything else says
+ * that nothing is known there, which is an error inside of the window where errors are measured. */
+int sphproof_reference(const double *x, double t, const struct sphproof_reference_case *of,
+                       struct sphproof_reference_state *state);
+
+/** The parameter called name, or fallback where the case file gives none. */
+static inline double sphproof_reference_parameter(const struct sphproof_reference_case *of,
+                                                  const char *name, double fallback)
+{
+    for (int i = 0; i < of->parameter_count; i++)
+        if (strcmp(of->parameter_name[i], name) == 0) return of->parameter_value[i];
+    return fallback;
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

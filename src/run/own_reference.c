@@ -1,0 +1,348 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "own_reference.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cache.h"
+#include "guard.h"
+#include "own_table.h"
+#include "plugin_kernel.h"
+#include "text.h"
+#include "user_kernel.h"
+#include "user_reference.h"
+
+enum {
+#define PROBLEM(name) PROBLEM_##name,
+#include "problems.def"
+#undef PROBLEM
+    PROBLEMS
+};
+
+struct own;
+
+/* A problem of problem_family with another sample; begins with what is handed out. */
+struct own_problem {
+    struct problem problem;
+    const struct problem *base;
+    struct own *own;
+};
+
+struct own {
+    char path[512], name[1024];
+    struct own_table *table; /* NULL: a shared object */
+    struct user_reference user;
+    int parameter_count;
+    char words[OWN_PARAMETERS_MAX][32];
+    const char *parameter_names[OWN_PARAMETERS_MAX];
+    double parameters[OWN_PARAMETERS_MAX];
+    bool unknown[FIELDS];
+    bool tried; /* the shared object has been, and is loaded */
+    struct own_problem problems[PROBLEMS];
+};
+
+static struct own *owns[OWN_MAX + 1];
+static int own_count;
+
+static const char table_word[] = "table ";
+
+bool own_is_meant(const char *text)
+{
+    char first[512];
+    snprintf(first, sizeof first, "%.*s", (int)strcspn(text, " \t"), text);
+    return strncmp(text, table_word, strlen(table_word)) == 0 || strcmp(text, "table") == 0 ||
+           user_kernel_is_path(first);
+}
+
+const char *own_name(int number)
+{
+    return owns[number]->name;
+}
+
+/* ---- values ---- */
+
+static const struct own_problem *own_of(const struct prepared *p)
+{
+    return p->problem->own ? (const struct own_problem *)p->problem : NULL;
+}
+
+static void sample_user(const struct own *own, const struct prepared *p, const double x[3],
+                        double t, struct problem_state *state)
+{
+    const struct sphproof_reference_case of = {.dim = p->domain.dim,
+                                               .gamma = p->gamma,
+                                               .lo = p->domain.lo,
+                                               .hi = p->domain.hi,
+                                               .gravity = p->gravity,
+                                               .parameter_count = own->parameter_count,
+                                               .parameter_name = own->parameter_names,
+                                               .parameter_value = own->parameters};
+    struct sphproof_reference_state s;
+    user_reference_state(&own->user, x, t, &of, &s);
+    *state = (struct problem_state){s.rho, {0}, s.P, s.u};
+    for (int d = 0; d < p->domain.dim; d++) state->v[d] = s.v[d];
+    if (isnan(s.u)) state->u = s.P / ((p->gamma - 1) * s.rho);
+}
+
+static void sample(const struct prepared *p, const double x[3], double t,
+                   struct problem_state *state)
+{
+    const struct own_problem *of = own_of(p);
+    if (!(t > 0) && !(of->base->filed && !of->own->table))
+        of->base->sample(p, x, t, state);
+    else if (of->own->table)
+        own_table_sample(of->own->table, p, x, state);
+    else
+        sample_user(of->own, p, x, t, state);
+}
+
+void own_miss(const struct prepared *p, const struct snapshot *s, double miss[FIELDS])
+{
+    const struct own_problem *of = own_of(p);
+    for (int f = 0; f < FIELDS; f++) miss[f] = (double)NAN;
+    if (of && of->own->table) own_table_miss(of->own->table, p, s, miss);
+}
+
+/* ---- at which times ---- */
+
+static bool holds(const struct prepared *p, double t)
+{
+    const struct own_table *table = own_of(p)->own->table;
+    return !table || !(t > 0) || fabs(t / own_table_time(table) - 1) <= 1e-6;
+}
+
+static enum status refuse(const struct prepared *p, double t, double longest, struct error *error)
+{
+    const struct own *own = own_of(p)->own;
+    (void)longest;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "t_end=%.10g: the table %.200s is of t = %.10g, and nothing is known at other "
+                     "times",
+                     t, own->path, own_table_time(own->table));
+}
+
+/* ---- trying a shared object ---- */
+
+struct errand {
+    struct own *own;
+    const struct prepared *p;
+    double t;
+};
+
+/* A place in the window; the same for the same k. */
+static void place_in(const struct prepared *p, int k, double x[3])
+{
+    /* multiples of irrational numbers: nowhere on a symmetry */
+    static const double steps[3] = {0.7548776662466927, 0.5698402909980532, 0.3819660112501051};
+    for (int d = 0; d < 3; d++) x[d] = 0;
+    for (int d = 0; d < p->domain.dim; d++) {
+        const bool round = p->window.radius > 0;
+        const double lo = round ? p->window.centre[d] - 0.5 * p->window.radius : p->window.lo[d];
+        const double hi = round ? p->window.centre[d] + 0.5 * p->window.radius : p->window.hi[d];
+        x[d] = lo + (hi - lo) * fmod((k + 1) * steps[d], 1);
+    }
+}
+
+enum { TRIES = 64 };
+
+/* {"field": [number or null, ...], ...} of the samples at t: how many are known of each field. */
+static enum status try_calls(const void *context, json_t **reply, struct error *error)
+{
+    const struct errand *errand = context;
+    int known[FIELDS] = {0};
+    if (user_reference_load(&errand->own->user, errand->own->path, error)) return error->status;
+    guard_begun();
+    for (int k = 0; k < TRIES; k++) {
+        struct problem_state state;
+        double x[3];
+        place_in(errand->p, k, x);
+        sample_user(errand->own, errand->p, x, errand->t, &state);
+        for (int f = 0; f < FIELDS; f++) known[f] += isfinite(problem_field(&state, (enum field)f));
+    }
+    *reply = json_array();
+    for (int f = 0; f < FIELDS; f++) json_array_append_new(*reply, json_integer(known[f]));
+    return STATUS_OK;
+}
+
+static enum status judge_tries(struct own *own, const json_t *known, double t, struct error *error)
+{
+    bool any = false;
+    for (int f = 0; f < FIELDS; f++) {
+        const int count = (int)json_integer_value(json_array_get(known, (size_t)f));
+        if (count && count < TRIES)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "reference '%.150s': at t = %.6g %s is not finite at %d of %d places "
+                             "in the window; allowed: finite values there, or NaN everywhere of a "
+                             "field that is unknown",
+                             own->path, t, field_family.members[f]->name, TRIES - count, TRIES);
+        any |= count > 0;
+        own->unknown[f] = !count;
+        for (int k = 0; k < PROBLEMS; k++) own->problems[k].problem.unknown[f] = !count;
+    }
+    if (any) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT, "reference '%.150s': nothing is known at t = %.6g",
+                     own->path, t);
+}
+
+/* In a process of its own first, then it is loaded into this one. */
+static enum status try_user(struct own *own, const struct prepared *p, double t,
+                            struct error *error)
+{
+    const struct errand errand = {own, p, t};
+    struct guard_verdict verdict;
+    if (own->tried) return STATUS_OK;
+    enum status status = guard_run(try_calls, &errand, GUARD_LIMIT, &verdict, error);
+    if (!verdict.ended && verdict.reason[0])
+        status = error_set(error, STATUS_BAD_INPUT, "reference '%.150s' is refused: it %s",
+                           own->path, verdict.reason);
+    if (!status && verdict.printed_bytes)
+        status = error_set(error, STATUS_BAD_INPUT,
+                           "reference '%.150s' is refused: it prints, which would mix with "
+                           "results: %.80s",
+                           own->path, verdict.printed);
+    if (!status) status = judge_tries(own, verdict.reply, t, error);
+    guard_free(&verdict);
+    if (!status) status = guard_watch("reference", own->path, error);
+    if (!status) status = user_reference_load(&own->user, own->path, error);
+    own->tried = !status;
+    return status;
+}
+
+static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
+{
+    const struct own_problem *of = own_of(p);
+    const double t = settings_real(settings, SETTING_t_end);
+    if (of->own->table ? own_table_check(of->own->table, p, error) : try_user(of->own, p, t, error))
+        return error->status;
+    return of->base->prepare(p, settings, error);
+}
+
+/* ---- loading ---- */
+
+/* A problem as this reference solves it. */
+static void derive(struct own *own, const struct problem *base, struct own_problem *derived)
+{
+    struct problem *problem = &derived->problem;
+    derived->base = base;
+    derived->own = own;
+    memcpy(problem, base, sizeof *problem);
+    problem->own = own->table ? OWN_TABLE : OWN_FUNCTION;
+    problem->fieldless = false;
+    memcpy(problem->unknown, own->unknown, sizeof problem->unknown);
+    problem->prepare = prepare;
+    problem->sample = sample;
+    problem->holds = holds;
+    problem->refuse = refuse;
+    /* these are of the problem's own solution */
+    problem->mean_energy = NULL;
+    problem->ahead = NULL;
+    problem->regions = NULL;
+}
+
+const struct problem *own_problem(int number, const struct problem *base)
+{
+    struct own *own = owns[number];
+    int k = 0;
+    while (own->problems[k].base && own->problems[k].base != base) k++;
+    if (!own->problems[k].base) derive(own, base, &own->problems[k]);
+    return &own->problems[k].problem;
+}
+
+/* NAME=NUMBER */
+static enum status read_parameter(struct own *own, const char *word, struct error *error)
+{
+    const char *equals = strchr(word, '=');
+    const size_t length = equals ? (size_t)(equals - word) : 0;
+    const int i = own->parameter_count;
+    if (i == OWN_PARAMETERS_MAX || !length || length >= sizeof own->words[0] ||
+        !text_real(equals + 1, &own->parameters[i]))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "'%.40s' behind %.150s: allowed: up to %d parameters NAME=NUMBER", word,
+                         own->path, OWN_PARAMETERS_MAX);
+    snprintf(own->words[i], sizeof own->words[i], "%.*s", (int)length, word);
+    own->parameter_names[i] = own->words[i];
+    for (int k = 0; k < i; k++)
+        if (strcmp(own->words[k], own->words[i]) == 0)
+            return error_set(error, STATUS_BAD_INPUT, "parameter %s stands twice behind %.150s",
+                             own->words[i], own->path);
+    own->parameter_count++;
+    return STATUS_OK;
+}
+
+/* A path relative to the folder of another file. */
+static enum status take_path(struct own *own, const char *word, const char *beside,
+                             struct error *error)
+{
+    const char *slash = *word == '/' ? NULL : strrchr(beside, '/');
+    struct stat is;
+    const int length = snprintf(own->path, sizeof own->path, "%.*s%s",
+                                slash ? (int)(slash + 1 - beside) : 0, beside, word);
+    if (length >= (int)sizeof own->path)
+        return error_set(error, STATUS_BAD_INPUT, "a path of %d characters; allowed: up to %zu",
+                         length, sizeof own->path - 1);
+    if (stat(own->path, &is) == 0 && S_ISREG(is.st_mode) && cache_hash_file(own->path))
+        return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT, "'%.200s' is no file that can be read", own->path);
+}
+
+static enum status read_words(struct own *own, const char *text, const char *beside,
+                              struct error *error)
+{
+    char copy[1024], *rest = copy;
+    const bool table = strncmp(text, "table", 5) == 0;
+    if (snprintf(copy, sizeof copy, "%s", text) >= (int)sizeof copy)
+        return error_set(error, STATUS_BAD_INPUT, "it is too long");
+    if (table) strtok_r(rest, " \t", &rest);
+    char *word = strtok_r(rest, " \t", &rest);
+    if (!word) return error_set(error, STATUS_BAD_INPUT, "allowed: table FILE.csv");
+    if (take_path(own, word, beside, error)) return error->status;
+    size_t used = (size_t)snprintf(own->name, sizeof own->name, "%s%s@%016" PRIx64,
+                                   table ? table_word : "", own->path, cache_hash_file(own->path));
+    while ((word = strtok_r(rest, " \t", &rest))) {
+        if (table)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "'%.40s' behind the table's path; allowed: "
+                             "nothing",
+                             word);
+        if (read_parameter(own, word, error)) return error->status;
+        if (used < sizeof own->name)
+            used += (size_t)snprintf(own->name + used, sizeof own->name - used, " %s", word);
+    }
+    if (table && !(own->table = own_table_read(own->path, error))) return error->status;
+    return STATUS_OK;
+}
+
+static void discard(struct own *own)
+{
+    if (own && own->table) own_table_free(own->table);
+    free(own);
+}
+
+enum status own_load(const char *text, const char *beside, int *number, struct error *error)
+{
+    struct own *own = plugin_allowed() ? calloc(1, sizeof *own) : NULL;
+    if (!plugin_allowed())
+        return error_set(error, STATUS_BAD_INPUT, "files of a user's are not read here");
+    enum status status = own ? read_words(own, text, beside, error)
+                             : error_set(error, STATUS_ENVIRONMENT, "no memory for a reference");
+    for (int k = 1; k <= own_count && !status; k++) {
+        if (strcmp(owns[k]->name, own->name) != 0) continue;
+        *number = k;
+        discard(own);
+        return STATUS_OK;
+    }
+    if (!status && own_count == OWN_MAX)
+        status = error_set(error, STATUS_BAD_INPUT, "allowed: up to %d references", OWN_MAX);
+    if (status) {
+        discard(own);
+        return status;
+    }
+    for (int f = 0; f < FIELDS && own->table; f++)
+        own->unknown[f] = !own_table_knows(own->table, (enum field)f);
+    owns[ *number = ++own_count] = own;
+    return STATUS_OK;
+}
