@@ -30,7 +30,8 @@ enum status snapshot_csv(const char *path, struct snapshot_file *file, struct cs
 {
     const struct snapshot_options plain = {0};
     *csv = (struct csv){0};
-    if (snapshot_read(path, &plain, file, error) || scale_widths(file, why, error))
+    if (snapshot_read(path, &plain, file, error) || snapshot_check_gas(path, file, error) ||
+        scale_widths(file, why, error))
         return error->status;
     csv->line = calloc(file->gas + 1, sizeof *csv->line);
     if (!csv->line) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);

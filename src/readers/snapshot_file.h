@@ -82,11 +82,15 @@ extern const struct family snapshot_reader_family;
 
 /* Reads path (and the other files of the same snapshot). STATUS_BAD_INPUT: what was found, and what
  * would help; a file that is none of these, is cut off or hostile; values that are not finite, and
- * masses, densities, widths and energies that are not positive. STATUS_ENVIRONMENT: no memory. Free
+ * masses, densities, widths and energies that are not positive (pressures may be below 0, and both
+ * u and P may be missing: in liquids, see snapshot_check_gas). STATUS_ENVIRONMENT: no memory. Free
  * with snapshot_file_free, also after a failure. */
 enum status snapshot_read(const char *path, const struct snapshot_options *options,
                           struct snapshot_file *file, struct error *error);
 void snapshot_file_free(struct snapshot_file *file);
+
+/* STATUS_BAD_INPUT: it has neither u nor P, or a pressure below 0, which no gas has. */
+enum status snapshot_check_gas(const char *path, struct snapshot_file *file, struct error *error);
 
 /* ---- for readers ---- */
 

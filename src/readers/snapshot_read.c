@@ -235,13 +235,20 @@ static enum status read_parts(const char *path, const struct snapshot_options *o
     return STATUS_OK;
 }
 
+static void list_columns(const struct snapshot_file *file, char *text, size_t size)
+{
+    for (int c = 0; c < SNAPSHOT_COLUMNS; c++)
+        if (file->column[c])
+            snprintf(text + strlen(text), size - strlen(text), " %s", snapshot_column_names[c]);
+}
+
 /* ---- what no snapshot may hold ---- */
 
 static enum status check_values(const char *path, struct snapshot_file *file, struct error *error)
 {
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++) {
         const bool above = c == SNAPSHOT_M || c == SNAPSHOT_RHO || c == SNAPSHOT_H;
-        const bool below = c == SNAPSHOT_U || c == SNAPSHOT_P;
+        const bool below = c == SNAPSHOT_U;
         for (size_t i = 0; file->column[c] && i < file->n; i++) {
             const double value = file->column[c][i];
             if (isfinite(value) && fabs(value) < 1e100 && !(above && !(value > 0)) &&
@@ -259,23 +266,35 @@ static enum status check_values(const char *path, struct snapshot_file *file, st
     return STATUS_OK;
 }
 
+enum status snapshot_check_gas(const char *path, struct snapshot_file *file, struct error *error)
+{
+    const double *P = file->column[SNAPSHOT_P];
+    if (!P && !file->column[SNAPSHOT_U]) {
+        char there[120] = "";
+        list_columns(file, there, sizeof there);
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: neither u nor P; found:%s", path, there);
+    }
+    for (size_t i = 0; P && i < file->n; i++) {
+        if (P[i] >= 0) continue;
+        file->impossible = true;
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: P of particle %zu is %g; allowed: 0 or above", path, i, P[i]);
+    }
+    return STATUS_OK;
+}
+
 static enum status check_columns(const char *path, const struct snapshot_file *file,
                                  struct error *error)
 {
     static const int needed[] = {SNAPSHOT_X, SNAPSHOT_VX, SNAPSHOT_M, SNAPSHOT_RHO};
     char there[120] = "";
-    for (int c = 0; c < SNAPSHOT_COLUMNS; c++)
-        if (file->column[c])
-            snprintf(there + strlen(there), sizeof there - strlen(there), " %s",
-                     snapshot_column_names[c]);
+    list_columns(file, there, sizeof there);
     for (size_t k = 0; k < sizeof needed / sizeof *needed; k++)
         if (!file->column[needed[k]])
             return error_set(error, STATUS_BAD_INPUT,
                              "%.200s: no %s; found:%s (in text, --map %s=NAME tells its column)",
                              path, snapshot_column_names[needed[k]], *there ? there : " nothing",
                              snapshot_column_names[needed[k]]);
-    if (!file->column[SNAPSHOT_U] && !file->column[SNAPSHOT_P])
-        return error_set(error, STATUS_BAD_INPUT, "%.200s: neither u nor P; found:%s", path, there);
     if (file->gas < 4)
         return error_set(error, STATUS_BAD_INPUT, "%.200s: %zu gas particles; allowed: at least 4",
                          path, file->gas);

@@ -109,6 +109,8 @@ static double part_along(const struct prepared *p, int d, double x, double side)
     const double lo = p->window.lo[d], hi = p->window.hi[d];
     const bool periodic = p->boundary[d] == BOUNDARY_PERIODIC;
     double sum = 0;
+    /* of a wall, or above a liquid's mean surface */
+    if (p->walled && !periodic && !(x >= p->domain.lo[d] && x <= p->domain.hi[d])) return 0;
     if (lo <= p->domain.lo[d] && hi >= p->domain.hi[d] && p->boundary[d] != BOUNDARY_OPEN) return 1;
     for (int image = periodic ? -1 : 0; image <= periodic; image++) {
         const double centre = x + image * domain_length(&p->domain, d);

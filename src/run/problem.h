@@ -30,6 +30,7 @@ struct prepared {
     struct window window; /* where errors are measured; its centre: the middle of the domain */
     double boost[3];      /* added to all velocities: the solution and the window move along */
     enum boundary boundary[3];
+    bool walled;       /* particles beyond ends that are not periodic are none of the gas */
     double gravity[3]; /* acceleration; prepare may set it where the key is automatic */
     double gamma;
     /* What the problem works out once and then works with (solved jumps, an eigenmode ...). */
@@ -102,6 +103,7 @@ struct problem {
     bool fieldless;       /* of t > 0 only functionals are known: there are no errors of fields */
     bool unknown[FIELDS]; /* nor of these, although others are known; their samples are NaN */
     enum own_kind own;    /* whose its sample is */
+    bool liquid;          /* weakly compressible: for snapshots and runs of other codes only */
     bool filed;           /* its particles come from a file, always */
     bool heavy;           /* it takes gravity: any other has no solution in it */
     bool steady; /* the exact flow is the same at all times, but for where the boost carries it */

@@ -210,7 +210,9 @@ static void set_domain(struct prepared *p, const struct settings *settings, int 
 enum status problem_prepare_as(struct prepared *p, const struct problem *problem,
                                struct settings *settings, int dim, struct error *error)
 {
-    *p = (struct prepared){.problem = problem, .gamma = settings_real(settings, SETTING_gamma)};
+    *p = (struct prepared){.problem = problem,
+                           .walled = problem->liquid,
+                           .gamma = settings_real(settings, SETTING_gamma)};
     settings->dim = dim;
     set_domain(p, settings, dim);
     if (check_together(p, settings, error) || check_file(p, settings, error) ||

@@ -455,6 +455,12 @@ static enum status simulate_otherwise(const struct run *run, struct run_result *
 enum status run_execute(const struct run *run, struct run_result *result, struct error *error)
 {
     struct initial initial;
+    if (run->problem.problem->liquid)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "an initial state of kind %s is of a weakly compressible liquid, which "
+                         "this solver of ideal gases does not run; allowed: judge, ic, and runs of "
+                         "other codes by --code",
+                         run->problem.problem->member.name);
     enum status status = begin(run, result, &initial, error);
     if (!status)
         status = (run->asked.solver ? simulate_otherwise : simulate)(run, result, &initial, error);

@@ -139,7 +139,8 @@ enum status run_resolve(struct run *run, const struct run_settings *asked, struc
 struct setup run_setup(const struct run *run, const struct initial *initial);
 
 /* Runs. STATUS_OK and STATUS_BROKE_DOWN leave a result (run_free it), anything else none:
- * STATUS_BAD_INPUT where the exact solution does not hold in the window up to t_end. */
+ * STATUS_BAD_INPUT where the exact solution does not hold in the window up to t_end, and for
+ * liquids. */
 enum status run_execute(const struct run *run, struct run_result *result, struct error *error);
 
 /* All but the simulation: plan, estimate and warnings filled; n is what it would be. STATUS_*: as

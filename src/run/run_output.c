@@ -51,7 +51,6 @@ void run_interpolation_text(const double interpolation[FIELDS], char *text, size
 /* {"density": {"l1", ...}, ..., "interpolation": what a table may be off, by field, or absent} */
 static void add_interpolation(json_t *errors, const double interpolation[FIELDS])
 {
-    if (!is_interpolated(interpolation)) return;
     json_t *object = json_object();
     for (int field = 0; field < FIELDS; field++)
         json_object_set_new(object, field_family.members[field]->name,
@@ -76,7 +75,7 @@ json_t *run_errors_json(const struct run_result *result)
                         result->problem.domain.dim == 1 && problem_knows(problem, FIELD_DENSITY)
                             ? result_number(result->binned_density_l1)
                             : json_null());
-    add_interpolation(errors, result->interpolation);
+    if (problem->own == OWN_TABLE) add_interpolation(errors, result->interpolation);
     return errors;
 }
 

@@ -252,6 +252,8 @@ static enum status judge(struct course *course, const char *path, struct error *
     struct error said = {0};
     char box[160];
     enum status status = snapshot_read(path, &request.options, &file, &said);
+    if (!status && !course->run->problem.problem->liquid)
+        status = snapshot_check_gas(path, &file, &said);
     if (status == STATUS_BAD_INPUT)
         course->reason = file.impossible ? REASON_not_a_number : REASON_truncated;
     if (!status)

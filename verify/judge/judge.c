@@ -39,11 +39,29 @@ static void sharpen_pressure(struct snapshot_file *file, double gamma)
     snapshot_note(&file->notes, "pressure", value, "the stored one differs by at most %.2g", worst);
 }
 
+/* Of liquids u means nothing, and P may be missing. */
+static enum status complete_liquid(struct judged *judged, struct error *error)
+{
+    struct snapshot_file *file = &judged->file;
+    static const enum snapshot_column columns[] = {SNAPSHOT_P, SNAPSHOT_U};
+    for (size_t k = 0; k < 2; k++) {
+        const bool pressure = columns[k] == SNAPSHOT_P;
+        if (file->column[columns[k]]) continue;
+        if (!snapshot_file_make(file, columns[k]))
+            return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", judged->path);
+        for (size_t i = 0; pressure && i < file->n; i++) file->column[SNAPSHOT_P][i] = (double)NAN;
+        if (pressure) snapshot_note(&file->notes, "pressure", "unknown", "the file stores none");
+    }
+    return STATUS_OK;
+}
+
 /* P and u, where one is missing. */
 static enum status complete(struct judged *judged, double gamma, struct error *error)
 {
     struct snapshot_file *file = &judged->file;
     const bool lacks_P = !file->column[SNAPSHOT_P], lacks_u = !file->column[SNAPSHOT_U];
+    if (judged->run.problem.problem->liquid) return complete_liquid(judged, error);
+    if (snapshot_check_gas(judged->path, file, error)) return error->status;
     if (!lacks_P && !lacks_u) {
         sharpen_pressure(file, gamma);
         return STATUS_OK;
@@ -173,10 +191,15 @@ void judge_sum(const struct prepared *problem, const struct snapshot *s, const d
 {
     double x[3] = {0}, v[3] = {0};
     for (size_t i = 0; i < s->n; i++) {
+        double square = problem->gamma * s->P[i] / s->rho[i];
         for (int d = 0; d < problem->domain.dim; d++)
             x[d] = s->x[d][i] + shift[d], v[d] = s->v[d][i];
-        add_to_sums(problem, x, v, s->m[i], s->u[i], sqrt(problem->gamma * s->P[i] / s->rho[i]),
-                    sums);
+        if (problem->problem->liquid) { /* whose P is not a gas's: the case's own */
+            struct problem_state state;
+            problem_sample(problem, x, s->time, &state);
+            square = problem->gamma * (problem->gamma - 1) * state.u;
+        }
+        add_to_sums(problem, x, v, s->m[i], s->u[i], sqrt(square), sums);
     }
 }
 
@@ -192,7 +215,7 @@ static void measure_sums(struct judged *judged)
     struct run start;
     double x[3] = {0}, v[3] = {0};
     judge_sum(p, s, x, &judged->sums);
-    if (!judged->boxed) return;
+    if (!judged->boxed || p->problem->liquid) return; /* plates and viscosity change a liquid's */
     plain.settings.value[SETTING_lattice] = plain.file.settings.value[SETTING_lattice];
     plain.settings.value[SETTING_equal_masses] = plain.file.settings.value[SETTING_equal_masses];
     if (!run_resolve(&start, &plain, &ignored) &&
@@ -448,18 +471,31 @@ static void write_verdict(struct judged *judged)
         snprintf(judged->verdict, sizeof judged->verdict, "%s%s%s = %.4g, the case says %.4g; %s",
                  gas, judged->wrong > JUDGE_FOREIGN ? "far from the solution of this case: " : "",
                  r->functionals[0].name, r->functionals[0].value, r->functionals[0].exact, kernel);
-    else
-        snprintf(judged->verdict, sizeof judged->verdict,
-                 "%s%sL1 of density %.3g, velocity %.3g, pressure %.3g; %s", gas,
+    else {
+        char errors[120] = "";
+        for (int f = 0; f < FIELD_INTERNAL_ENERGY; f++)
+            if (problem_knows(r->problem.problem, (enum field)f))
+                snprintf(errors + strlen(errors), sizeof errors - strlen(errors), "%s %s %.3g",
+                         *errors ? "," : "", field_family.members[f]->name, r->errors[f].l1);
+        snprintf(judged->verdict, sizeof judged->verdict, "%s%sL1 of%s; %s", gas,
                  judged->wrong > JUDGE_FOREIGN ? "far from the solution of this case: " : "",
-                 r->errors[FIELD_DENSITY].l1, r->errors[FIELD_VELOCITY].l1,
-                 r->errors[FIELD_PRESSURE].l1, kernel);
+                 errors, kernel);
+    }
     if (judged->wrong > JUDGE_FOREIGN && !r->problem.problem->fieldless)
         snapshot_note(&judged->file.notes, "solution", "far from this case's",
                       "%s is off also away from jumps, by %.2g times what a scheme may be: another "
                       "gamma, time, x0 or case, too few particles, or a scheme that fails",
                       field_family.members[judged->wrong_field]->name,
                       judged->wrong / JUDGE_FOREIGN);
+}
+
+/* Is there no particle that the field that is known best could be compared at? */
+static bool sees_nothing(const struct run_result *result)
+{
+    for (int f = 0; f < FIELDS; f++)
+        if (problem_knows(result->problem.problem, (enum field)f))
+            return isnan(result->errors[f].l1);
+    return false;
 }
 
 static enum status refuse_window(const struct judged *judged, struct error *error)
@@ -506,9 +542,7 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
                           ? "; --boundary open if the tube has ends"
                           : "");
     }
-    if (!status && judged->result.problem.problem->fieldless == false &&
-        isnan(judged->result.errors[FIELD_DENSITY].l1))
-        status = refuse_window(judged, error);
+    if (!status && sees_nothing(&judged->result)) status = refuse_window(judged, error);
     if (!status) measure_growth(judged);
     if (!status) status = measure_wrong(judged, error);
     if (!status) {

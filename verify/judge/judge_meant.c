@@ -97,7 +97,8 @@ static void find_meant(const char *path, const struct judge_request *request, st
         struct error ignored = {0};
         struct candidate found = {.name = c->name};
         if (strcmp(c->name, asked) == 0 || case_load(&file, c->name, &ignored) ||
-            file.dimension != judged->file.dim || !try_case(path, request, &file, &found))
+            file.dimension != judged->file.dim || problem_of(&file.settings)->liquid ||
+            !try_case(path, request, &file, &found))
             continue;
         if (nearer(&found, &best)) best = found;
     }

@@ -138,6 +138,30 @@ static bool fits_case(const struct snapshot_file *file, const struct settings *s
     return true;
 }
 
+/* Of a liquid between plates, or from a bottom up to a surface: as the file or --box says, else
+ * the case's. Particles of walls and of what rises above the surface may lie beyond it. */
+static void take_liquid_box(const struct judge_request *request, struct judged *judged,
+                            const struct settings *settings, struct box *box)
+{
+    struct snapshot_file *file = &judged->file;
+    const bool said = file->boxed && file->placed;
+    char value[80];
+    *box = (struct box){.known = true};
+    for (int d = 0; d < file->dim; d++) {
+        const double lo = settings_along(settings, SETTING_lo, d);
+        const double length = settings_along(settings, SETTING_hi, d) - lo;
+        box->lo[d] = said ? file->corner[d] : lo;
+        box->hi[d] = box->lo[d] + (said ? file->box[d] : length);
+        file->box[d] = box->hi[d] - box->lo[d];
+    }
+    file->boxed = true;
+    snprintf(value, sizeof value, "%.6g to %.6g along y", box->lo[1], box->hi[1]);
+    snapshot_note(&file->notes, "box", value, "%s",
+                  !said          ? "the case's: the file does not say where its own begins"
+                  : request->box ? "--box"
+                                 : "the file says so");
+}
+
 static enum status take_box(const struct judge_request *request, struct judged *judged,
                             const struct settings *settings, bool ends, struct box *box,
                             struct error *error)
@@ -145,6 +169,10 @@ static enum status take_box(const struct judge_request *request, struct judged *
     struct snapshot_file *file = &judged->file;
     char value[80];
     bool inside = true;
+    if (problem_of(settings)->liquid) {
+        take_liquid_box(request, judged, settings, box);
+        return STATUS_OK;
+    }
     *box = (struct box){.known = file->boxed};
     for (int d = 0; d < file->dim && file->boxed; d++) {
         double lo, hi;
@@ -394,7 +422,10 @@ enum status judge_place(const struct judge_request *given, struct judged *judged
     }
     if (request->boundary && !tube)
         snprintf(judged->file.boundary, sizeof judged->file.boundary, "%s", request->boundary);
-    for (int d = 0; d < 3; d++) period[d] = snapshot_period(&judged->file, d);
+    for (int d = 0; d < 3; d++)
+        period[d] = problem->liquid && problem->ends[d].usual != BOUNDARY_PERIODIC
+                        ? 0
+                        : snapshot_period(&judged->file, d);
     const int dim = judged->file.dim;
     judged->case_n = (double)judged->file.gas;
     for (int d = 0; d < dim; d++)

@@ -16,6 +16,7 @@
 #include "list.h"
 #include "pairing.h"
 #include "pool.h"
+#include "problem_list.h"
 #include "report_piece.h"
 #include "result.h"
 #include "stress.h"
@@ -185,6 +186,7 @@ static enum status find_cases(struct report *report, struct error *error)
     for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++) {
         struct case_file file;
         if (case_load(&file, builtin->name, error)) return error->status;
+        if (problem_of(&file.settings)->liquid) continue; /* our schemes stand beside every code */
         if (!list_grow(&report->cases, report->case_count, sizeof *report->cases))
             return error_set(error, STATUS_ENVIRONMENT, "no memory for the cases");
         struct reported *of = &report->cases[report->case_count++];

@@ -8,6 +8,7 @@
 
 #include "cases.h"
 #include "lattice_waves.h"
+#include "problem_list.h"
 #include "stress_noise.h"
 #include "stress_outcome.h"
 #include "stress_run.h"
@@ -25,7 +26,8 @@ const struct stress_entry *stress_clouds(void)
     for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++) {
         struct case_file file;
         struct error error;
-        if (n == CASES_MAX || case_load(&file, builtin->name, &error) || file.dimension == 1)
+        if (n == CASES_MAX || case_load(&file, builtin->name, &error) || file.dimension == 1 ||
+            problem_of(&file.settings)->liquid)
             continue;
         size_t size = (size_t)settings_real(&file.settings, SETTING_n);
         if (size > USUAL) size = USUAL;

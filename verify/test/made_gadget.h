@@ -158,7 +158,8 @@ static inline enum status read_bytes(size_t size, struct snapshot_file *file, st
     FILE *out = fopen(path_of("a.gadget"), "wb");
     assert_true(out && fwrite(bytes, 1, size, out) == size && fclose(out) == 0);
     *error = (struct error){0};
-    return snapshot_read(path_of("a.gadget"), &plain, file, error);
+    const enum status status = snapshot_read(path_of("a.gadget"), &plain, file, error);
+    return status ? status : snapshot_check_gas(path_of("a.gadget"), file, error);
 }
 
 static void is_noted(const struct binary *b, const struct snapshot_file *file)

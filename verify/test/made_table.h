@@ -184,7 +184,8 @@ static inline void refuses(const char *text, size_t size, const char *map, const
     struct snapshot_file file;
     struct error error = {0};
     put_file(text, size);
-    const enum status status = snapshot_read(path_of("a.txt"), &options, &file, &error);
+    enum status status = snapshot_read(path_of("a.txt"), &options, &file, &error);
+    if (!status) status = snapshot_check_gas(path_of("a.txt"), &file, &error);
     snapshot_file_free(&file);
     if (status != STATUS_BAD_INPUT || !strstr(error.message, says))
         fail_msg("'%s' is not in: %s\n%s", says, error.message, text);

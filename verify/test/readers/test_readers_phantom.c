@@ -176,7 +176,8 @@ static enum status read_bytes(size_t size, struct snapshot_file *file, struct er
     FILE *out = fopen(path_of("dump_00000"), "wb");
     assert_true(out && fwrite(bytes, 1, size, out) == size && fclose(out) == 0);
     *error = (struct error){0};
-    return snapshot_read(path_of("dump_00000"), &plain, file, error);
+    const enum status status = snapshot_read(path_of("dump_00000"), &plain, file, error);
+    return status ? status : snapshot_check_gas(path_of("dump_00000"), file, error);
 }
 
 static void refuses(size_t size, const char *says)
