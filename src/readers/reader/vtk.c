@@ -1,0 +1,294 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Legacy files of VTK (.vtk; The VTK User's Guide, "VTK File Formats"), as converters of
+ * DualSPHysics and PySPH write particles: POINTS of POLYDATA or of an UNSTRUCTURED_GRID with
+ * SCALARS, VECTORS and FIELD arrays of POINT_DATA, as text or binary, which is big-endian. They
+ * know no time, box or gamma; a FIELD array TimeValue or TIME before the points is one. */
+#include <ctype.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "text_table.h"
+
+enum { WORD = 64 };
+
+struct vtk {
+    const struct snapshot_source *source;
+    const char *at, *end;
+    bool binary;
+    struct error *error;
+};
+
+struct array {
+    char name[WORD], type[WORD];
+    size_t components, tuples;
+};
+
+static bool refuse(const struct vtk *vtk, const char *what, const char *name)
+{
+    error_set(vtk->error, STATUS_BAD_INPUT, "%.200s: legacy VTK: %s%.60s", vtk->source->path, what,
+              name);
+    return false;
+}
+
+/* The next word; "" at the end. */
+static const char *next_word(struct vtk *vtk, char word[WORD])
+{
+    size_t n = 0;
+    while (vtk->at < vtk->end && isspace((unsigned char)*vtk->at)) vtk->at++;
+    while (vtk->at < vtk->end && !isspace((unsigned char)*vtk->at)) {
+        if (n + 1 < WORD) word[n++] = *vtk->at;
+        vtk->at++;
+    }
+    word[n] = '\0';
+    status_clean(word);
+    return word;
+}
+
+/* A number of things, no more than the file has bytes. */
+static bool next_count(struct vtk *vtk, const char *what, size_t *count)
+{
+    char word[WORD];
+    double value;
+    if (!text_table_number(next_word(vtk, word), &value) || !(value >= 0) ||
+        value != floor(value) || value > (double)vtk->source->size || value > SNAPSHOT_ROWS_MAX)
+        return refuse(vtk, "no number that the file has room for stands behind ", what);
+    *count = (size_t)value;
+    return true;
+}
+
+static void skip_line(struct vtk *vtk)
+{
+    while (vtk->at < vtk->end && *vtk->at++ != '\n') {
+    }
+}
+
+/* ---- numbers ---- */
+
+#define KINDS                                                                                      \
+    KIND("double", double)                                                                         \
+    KIND("float", float)                                                                           \
+    KIND("char", int8_t)                                                                           \
+    KIND("unsigned_char", uint8_t)                                                                 \
+    KIND("short", int16_t)                                                                         \
+    KIND("unsigned_short", uint16_t)                                                               \
+    KIND("int", int32_t)                                                                           \
+    KIND("unsigned_int", uint32_t)                                                                 \
+    KIND("long", int64_t)                                                                          \
+    KIND("unsigned_long", uint64_t)                                                                \
+    KIND("vtktypeint64", int64_t)                                                                  \
+    KIND("vtkIdType", int32_t)
+
+static size_t width_of(const char *type)
+{
+#define KIND(word, c_type)                                                                         \
+    if (!strcmp(type, word)) return sizeof(c_type);
+    KINDS
+#undef KIND
+    return 0;
+}
+
+static double number_at(const char *type, const char *at)
+{
+    const uint16_t one = 1;
+    unsigned char bytes[8];
+    const size_t width = width_of(type);
+    const bool little = *(const unsigned char *)&one;
+    for (size_t k = 0; k < width; k++) bytes[k] = (unsigned char)at[little ? width - 1 - k : k];
+#define KIND(word, c_type)                                                                         \
+    if (!strcmp(type, word)) {                                                                     \
+        c_type value;                                                                              \
+        memcpy(&value, bytes, sizeof value);                                                       \
+        return (double)value;                                                                      \
+    }
+    KINDS
+#undef KIND
+    return NAN;
+}
+
+/* The numbers of an array; to: NULL skips them. */
+static bool take_numbers(struct vtk *vtk, const struct array *array, double *to)
+{
+    const size_t n = array->components * array->tuples, width = width_of(array->type);
+    char word[WORD];
+    double value;
+    if (!width) return refuse(vtk, "numbers of an unknown type: ", array->type);
+    if (!vtk->binary) {
+        for (size_t i = 0; i < n; i++) {
+            if (!text_table_number(next_word(vtk, word), &value))
+                return refuse(vtk, "is cut off, or has no number where one is due, in ",
+                              array->name);
+            if (to) to[i] = value;
+        }
+        return true;
+    }
+    skip_line(vtk);
+    if (n > (size_t)(vtk->end - vtk->at) / width) return refuse(vtk, "is cut off in ", array->name);
+    for (size_t i = 0; i < n && to; i++) to[i] = number_at(array->type, vtk->at + i * width);
+    vtk->at += n * width;
+    return true;
+}
+
+/* ---- what they mean ---- */
+
+static bool take_points(struct vtk *vtk, const struct array *array, int column,
+                        struct snapshot_file *file)
+{
+    const bool vector = column == SNAPSHOT_X || column == SNAPSHOT_VX || column == SNAPSHOT_AX;
+    if (column < 0 || array->components != (vector ? 3 : 1)) return take_numbers(vtk, array, NULL);
+    if (array->tuples != file->n)
+        return refuse(vtk, "another number of tuples than of points has ", array->name);
+    if (file->column[column]) return refuse(vtk, "there are two arrays for ", array->name);
+    double *all = malloc((3 * file->n + 1) * sizeof *all);
+    bool room = all != NULL;
+    for (size_t c = 0; c < array->components && room; c++)
+        room = snapshot_file_make(file, (enum snapshot_column)(column + (int)c));
+    if (!room) error_set(vtk->error, STATUS_ENVIRONMENT, "no memory for %.200s", vtk->source->path);
+    const bool well = room && take_numbers(vtk, array, all);
+    for (size_t i = 0; well && i < file->n; i++)
+        for (size_t c = 0; c < array->components; c++)
+            file->column[column + (int)c][i] = all[i * array->components + c];
+    free(all);
+    double *precision = &file->precision[column != SNAPSHOT_X];
+    *precision = fmax(*precision, strcmp(array->type, "float") ? 1.2e-16 : 6e-8);
+    return well;
+}
+
+/* FIELD name count, then arrays: of points, or of the whole file. */
+static bool take_field(struct vtk *vtk, bool points, struct snapshot_file *file)
+{
+    char word[WORD];
+    size_t count;
+    next_word(vtk, word);
+    if (!next_count(vtk, "FIELD", &count)) return false;
+    for (size_t k = 0; k < count; k++) {
+        struct array array;
+        next_word(vtk, array.name);
+        if (!next_count(vtk, array.name, &array.components) ||
+            !next_count(vtk, array.name, &array.tuples))
+            return false;
+        next_word(vtk, array.type);
+        if (array.components > 9) return refuse(vtk, "more than 9 components has ", array.name);
+        const bool time = !points && array.components * array.tuples == 1 &&
+                          (!strcmp(array.name, "TimeValue") || !strcmp(array.name, "TIME"));
+        if (time) {
+            file->time.known = true;
+            if (!take_numbers(vtk, &array, &file->time.value)) return false;
+        } else if (!take_points(vtk, &array, points ? snapshot_column_of(array.name) : -1, file)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* SCALARS name type [components] and a line LOOKUP_TABLE name; VECTORS name type. */
+static bool take_attribute(struct vtk *vtk, bool vectors, struct snapshot_file *file)
+{
+    struct array array = {.components = vectors ? 3 : 1, .tuples = file->n};
+    char word[WORD];
+    double value;
+    next_word(vtk, array.name), next_word(vtk, array.type);
+    if (!vectors) {
+        const char *before = vtk->at;
+        if (text_table_number(next_word(vtk, word), &value)) {
+            if (!(value >= 1 && value <= 4))
+                return refuse(vtk, "1 to 4 components are allowed for ", array.name);
+            array.components = (size_t)value;
+            before = vtk->at;
+        }
+        vtk->at = before;
+        if (strcmp(next_word(vtk, word), "LOOKUP_TABLE") != 0)
+            return refuse(vtk, "no LOOKUP_TABLE stands behind SCALARS ", array.name);
+        next_word(vtk, word);
+    }
+    return take_points(vtk, &array, snapshot_column_of(array.name), file);
+}
+
+/* CELLS, VERTICES ...: count and size; since version 5.1 two arrays with names of their own. */
+static bool skip_cells(struct vtk *vtk, bool types)
+{
+    struct array array = {.components = 1, .type = "int"};
+    size_t count;
+    if (!next_count(vtk, "cells", &count)) return false;
+    array.tuples = count;
+    if (!types && !next_count(vtk, "cells", &array.tuples)) return false;
+    return take_numbers(vtk, &array, NULL);
+}
+
+static bool take_section(struct vtk *vtk, const char *word, bool *points,
+                         struct snapshot_file *file)
+{
+    struct array array = {.components = 3};
+    char ignored[WORD];
+    size_t count;
+    if (!strcmp(word, "DATASET")) {
+        if (strcmp(next_word(vtk, ignored), "POLYDATA") && strcmp(ignored, "UNSTRUCTURED_GRID"))
+            return refuse(vtk, "allowed: POLYDATA or UNSTRUCTURED_GRID, not ", ignored);
+        return true;
+    }
+    if (!strcmp(word, "FIELD")) return take_field(vtk, *points, file);
+    if (!strcmp(word, "POINTS")) {
+        snprintf(array.name, sizeof array.name, "POINTS");
+        if (file->n || !next_count(vtk, word, &file->n) || file->n < 1)
+            return refuse(vtk, "allowed: one set of points, not ", word);
+        array.tuples = file->gas = file->n;
+        next_word(vtk, array.type);
+        return take_points(vtk, &array, SNAPSHOT_X, file);
+    }
+    if (!strcmp(word, "POINT_DATA")) {
+        *points = true;
+        if (!next_count(vtk, word, &count)) return false;
+        return count == file->n || refuse(vtk, "another number than of points has ", word);
+    }
+    if (!strcmp(word, "SCALARS") || !strcmp(word, "VECTORS"))
+        return take_attribute(vtk, *word == 'V', file);
+    if (!strcmp(word, "CELLS") || !strcmp(word, "VERTICES") || !strcmp(word, "LINES"))
+        return skip_cells(vtk, false);
+    if (!strcmp(word, "CELL_TYPES")) return skip_cells(vtk, true);
+    if (!strcmp(word, "METADATA")) { /* up to an empty line */
+        while (vtk->at + 1 < vtk->end && !(vtk->at[0] == '\n' && vtk->at[1] == '\n')) vtk->at++;
+        return true;
+    }
+    return refuse(vtk, "an unknown word: ", word);
+}
+
+static bool recognises(const struct snapshot_source *source)
+{
+    static const char start[] = "# vtk DataFile Version";
+    return !source->hdf5 && source->size > sizeof start &&
+           !memcmp(source->bytes, start, strlen(start));
+}
+
+static enum status read_vtk(const struct snapshot_source *source,
+                            const struct snapshot_options *options, struct snapshot_file *file,
+                            struct error *error)
+{
+    struct vtk vtk = {source, (const char *)source->bytes,
+                      (const char *)source->bytes + source->size, false, error};
+    char word[WORD];
+    bool points = false;
+    (void)options;
+    error->status = STATUS_OK;
+    skip_line(&vtk), skip_line(&vtk); /* version and title */
+    next_word(&vtk, word);
+    vtk.binary = !strcmp(word, "BINARY");
+    if (!vtk.binary && strcmp(word, "ASCII")) {
+        refuse(&vtk, "the third line is neither ASCII nor BINARY: ", word);
+        return error->status;
+    }
+    while (*next_word(&vtk, word) && strcmp(word, "CELL_DATA"))
+        if (!take_section(&vtk, word, &points, file)) return error->status;
+    if (!file->n) {
+        refuse(&vtk, "has no POINTS", "");
+        return error->status;
+    }
+    file->columns = 3;
+    file->parts = 1;
+    snprintf(file->code, sizeof file->code, "unknown");
+    return STATUS_OK;
+}
+
+const struct snapshot_reader reader_vtk = {
+    {"vtk", "legacy VTK: points of POLYDATA or UNSTRUCTURED_GRID", ""}, recognises, read_vtk};

@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""vtk.py SPHPROOF: legacy files of VTK, as text and binary, with arrays as SCALARS, VECTORS and FIELD, are judged as the
+table of the same particles is; every file that is cut off anywhere, or has another number, is told."""
+import json
+import os
+import random
+import struct
+import subprocess
+import sys
+import tempfile
+
+program = os.path.abspath(sys.argv[1])
+failures = []
+draw = random.Random(5)
+
+
+def check(good, *what):
+    if not good:
+        failures.append(" ".join(str(w) for w in what))
+
+
+def call(path):
+    r = subprocess.run([program, "judge", path, "--case", "taylor_green", "--time", "0", "--allow-far", "--json", "-"],
+                       capture_output=True, text=True, timeout=60, stdin=subprocess.DEVNULL)
+    return r.returncode, r.stdout, r.stderr
+
+
+def make(points, binary, field, grid, kind):
+    """As DualSPHysics (SCALARS, VECTORS) or PySPH's converter (FIELD) have it; names as theirs."""
+    def numbers(rows, of):
+        if binary:
+            return struct.pack(">%d%s" % (len(rows) * len(rows[0]), of[0]), *(v for row in rows for v in row)) + b"\n"
+        return "".join(" ".join(map(repr, row)) + "\n" for row in rows).encode()
+
+    n = len(points)
+    text = b"# vtk DataFile Version 3.0\nparticles\n" + (b"BINARY\n" if binary else b"ASCII\n")
+    text += b"DATASET UNSTRUCTURED_GRID\n" if grid else b"DATASET POLYDATA\n"
+    text += b"POINTS %d %s\n" % (n, kind) + numbers([(x, y, 0.0) for x, y, *_ in points], kind.decode())
+    text += (b"CELLS" if grid else b"VERTICES") + b" %d %d\n" % (n, 2 * n) + numbers([(1, i) for i in range(n)], "i")
+    if grid:
+        text += b"CELL_TYPES %d\n" % n + numbers([(1,)] * n, "i")
+    text += b"POINT_DATA %d\n" % n
+    arrays = [(b"Idp", b"unsigned_int", [(i,) for i in range(n)]), (b"Vel", kind, [(p[2], p[3], 0.0) for p in points]),
+              (b"Rhop", kind, [(p[5],) for p in points]), (b"Mass", kind, [(p[4],) for p in points])]
+    draw.shuffle(arrays)
+    if field:
+        text += b"FIELD FieldData %d\n" % len(arrays)
+    for name, type_, rows in arrays:
+        if field:
+            text += b"%s %d %d %s\n" % (name, len(rows[0]), n, type_)
+        elif len(rows[0]) == 3:
+            text += b"VECTORS %s %s\n" % (name, type_)
+        else:
+            text += b"SCALARS %s %s%s\nLOOKUP_TABLE default\n" % (name, type_, draw.choice((b"", b" 1")))
+        text += numbers(rows, {b"unsigned_int": "I"}.get(type_, type_.decode()))
+    return text
+
+
+def main():
+    points = [(draw.random(), draw.random(), draw.gauss(0, 1), draw.gauss(0, 1), 0.0025, draw.uniform(0.9, 1.1)) for _ in range(40)]
+    with open("a.csv", "w") as file:
+        file.write("x,y,vx,vy,m,rho\n" + "".join(",".join(map(repr, p)) + "\n" for p in points))
+    want = json.loads(call("a.csv")[1])["errors"]["velocity"]["l1"]
+    for binary in False, True:
+        for field in False, True:
+            for grid in False, True:
+                for kind in b"double", b"float":
+                    text = make(points, binary, field, grid, kind)
+                    with open("a.vtk", "wb") as file:
+                        file.write(text)
+                    code, out, err = call("a.vtk")
+                    have = json.loads(out)["errors"]["velocity"]["l1"] if out else 0
+                    bound = 1e-12 if kind == b"double" or not binary else 1e-6
+                    check(abs(have / want - 1) < bound, binary, field, grid, kind, have, want, err)
+        for cut in draw.sample(range(40, len(text) - 200), 12):
+            with open("cut.vtk", "wb") as file:
+                file.write(text[:cut])
+            code, out, err = call("cut.vtk")
+            check(code == 2 and "cut.vtk" in err and not out, "cut off at", cut, code, err)
+    for old, new in ((b"POINT_DATA 40", b"POINT_DATA 39"), (b"POINTS 40", b"POINTS 4e9"), (b"DATASET UNSTRUCTURED_GRID", b"DATASET RECTILINEAR_GRID"),
+                     (b"Vel 3 40", b"Vel 3 39"), (b"BINARY", b"BINARI"), (b"Mass 1", b"Maas 1")):
+        with open("bad.vtk", "wb") as file:
+            file.write(make(points, True, True, True, b"float").replace(old, new))
+        code, out, err = call("bad.vtk")
+        check(code == 2 and "bad.vtk" in err and not out, new, code, err)
+
+
+with tempfile.TemporaryDirectory() as place:
+    os.chdir(place)
+    main()
+    os.chdir("/")
+for failure in failures:
+    print(failure)
+sys.exit(bool(failures))
