@@ -313,14 +313,12 @@ static void follow(struct course *course, const struct code_matches *now,
         if (strcmp(now->path[i], course->snapshot) != 0 && code_is_new(now, i, before, began))
             add_moment(course, now->path[i]);
     if (course->trace.count) trace_add(&course->trace, result->time, &course->judged.sums);
-    const struct conservation *sums = course->trace.sums;
-    const size_t last = course->trace.count - 1;
-    struct trace_drift drift = {(double)NAN, (double)NAN, (double)NAN, (double)NAN};
-    if (course->trace.count > 1) drift = trace_drift(&sums[0], &sums[last], &sums[last]);
-    result->mass = drift.mass;
-    result->momentum = drift.momentum;
-    result->angular_momentum = drift.angular_momentum;
-    result->energy = drift.energy;
+    const struct trace_drift worst = trace_worst(&course->trace);
+    const bool known = course->trace.count > 1;
+    result->mass = known ? worst.mass : (double)NAN;
+    result->momentum = known ? worst.momentum : (double)NAN;
+    result->angular_momentum = known ? worst.angular_momentum : (double)NAN;
+    result->energy = known ? worst.energy : (double)NAN;
     result->motion = trace_motion(&course->trace);
 }
 
