@@ -99,7 +99,7 @@ def test_runs(run):
     gone = figures["conservation.energy"]
     expect("a figure that vanished", (gone["verdict"], gone["new"], got) == ("vanished", None, 1), gone)
     said = sphproof("diff", "old.json", "new.json").stdout.splitlines()[2]
-    expect("vanished, said first", said.startswith("NOT WELL") and "3 figures vanished" in said, said)
+    expect("vanished, said first", said.startswith("NOT WELL") and "4 figures vanished" in said, said)
     got, figures, document = diff(less, run)
     expect("a new figure", (figures["conservation.energy"]["verdict"], got) == ("new", 0), got)
     bare = {key: run[key] for key in ("schema", "command", "case", "n", "settings")}
