@@ -52,8 +52,9 @@ static const char table_word[] = "table ";
 
 bool own_is_meant(const char *text)
 {
-    char first[512];
-    snprintf(first, sizeof first, "%.*s", (int)strcspn(text, " \t"), text);
+    char first[512] = "";
+    const size_t length = strcspn(text, " \t");
+    memcpy(first, text, length < sizeof first ? length : sizeof first - 1);
     return strncmp(text, table_word, strlen(table_word)) == 0 || strcmp(text, "table") == 0 ||
            user_kernel_is_path(first);
 }
@@ -261,14 +262,15 @@ static enum status read_parameter(struct own *own, const char *word, struct erro
     if (i == OWN_PARAMETERS_MAX || !length || length >= sizeof own->words[0] ||
         !text_real(equals + 1, &own->parameters[i]))
         return error_set(error, STATUS_BAD_INPUT,
-                         "'%.40s' behind %.150s: allowed: up to %d parameters NAME=NUMBER", word,
-                         own->path, OWN_PARAMETERS_MAX);
+                         "'%.40s' after the shared object: allowed: up to %d parameters "
+                         "NAME=NUMBER",
+                         word, OWN_PARAMETERS_MAX);
     snprintf(own->words[i], sizeof own->words[i], "%.*s", (int)length, word);
     own->parameter_names[i] = own->words[i];
     for (int k = 0; k < i; k++)
         if (strcmp(own->words[k], own->words[i]) == 0)
-            return error_set(error, STATUS_BAD_INPUT, "parameter %s stands twice behind %.150s",
-                             own->words[i], own->path);
+            return error_set(error, STATUS_BAD_INPUT,
+                             "parameter %s stands twice after the shared object", own->words[i]);
     own->parameter_count++;
     return STATUS_OK;
 }
@@ -305,7 +307,7 @@ static enum status read_words(struct own *own, const char *text, const char *bes
     while ((word = strtok_r(rest, " \t", &rest))) {
         if (table)
             return error_set(error, STATUS_BAD_INPUT,
-                             "'%.40s' behind the table's path; allowed: "
+                             "'%.40s' after the table's path; allowed: "
                              "nothing",
                              word);
         if (read_parameter(own, word, error)) return error->status;

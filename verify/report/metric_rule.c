@@ -43,8 +43,24 @@ static const struct metric_rule rules[] = {
     {"score", "*", OUT},
     {"findings", "*", OUT}, /* named by files; the status is all of them */
     {"", "status", 0, READING_STATUS, 0, 0},
-    {"kernel", "*", OUT}, /* of a snapshot: found, not judged */
-    {"", "foreign", OUT}, /* its status says whether that passes */
+    {"kernel", "*", OUT},         /* of a snapshot: found, not judged */
+    {"", "foreign", OUT},         /* its status says whether that passes */
+    {"code", "exit_status", OUT}, /* reason says what it means for the run */
+    /* of an autopsy: what an error is made of is smaller or larger, as the error is */
+    {"power", "*", OUT},
+    {"parts", "size", 0, READING_PART, 0.1, 1e-12},
+    {"parts", "noise", OUT},
+    {"levels", "noise_rms", OUT},
+    {"levels", "acceleration", OUT},
+    {"levels", "regular", 0, READING_PART, 0.1, 1e-12},
+    {"levels", "own", 0, READING_PART, 0.1, 1e-12},
+    {"levels", "jittered", 0, READING_PART, 0.1, 1e-12},
+    {"levels", "density", 0, READING_PART, 0.1, 1e-12},
+    {"levels", "density_regular", 0, READING_PART, 0.1, 1e-12},
+    {"", "from", OUT},
+    {"", "lost", OUT},     /* the orders are compared */
+    {"", "floor", OUT},
+    {"printed", "*", OUT}, /* by a plug-in; its status says so */
     {"noise", "*", 0, READING_PART, 0.1, 1e-12},
     {"gates", "*", OUT}, /* bounds, and errors that are read where they stand */
     {"", "detected", 0, READING_STATUS, 0, 0},
@@ -78,7 +94,7 @@ static const struct metric_rule rules[] = {
     {"checks", "value", 0, READING_CHECK, 0, 0},
     {"checks", "*", OUT},
     {"mutants", "*", OUT},
-    {"skips", "possible_fraction", OUT},
+    {"skips", "*_fraction", OUT},
     {"skips", "without_*", OUT},
     {"skips", "asleep", OUT},
     {"skips", "difference", 0, READING_CHECK, 0, 1e-9},

@@ -142,7 +142,7 @@ def check_program(stage, work, commands):
         if shutil.which(shell):
             must(shell, "-n", os.path.join(moved, "share", file))
     if shutil.which("bash"):
-        for words, wanted in (("sphproof conv", {"converge"}), ("sphproof run so", {"sod", "sod_2d", "sod_3d", "sod_standard", "sound_wave",
+        for words, wanted in (("sphproof conv", {"converge"}), ("sphproof run so", {"sod", "sod_2d", "sod_3d", "sod_standard", "sound=", "sound_wave",
                                "sound_wave_2d", "sound_wave_3d"}), ("sphproof run sod kernel = cub", {"cubic_spline"}),
                               ("sphproof run sod --sn", {"--snapshot", "--snapshot-every"}), ("sphproof judge a --case gre", {"gresho"}),
                               ("sphproof list --color ne", {"never"})):

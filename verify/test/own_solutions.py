@@ -47,12 +47,21 @@ def result(*words):
     return json.loads(out) if out else {}
 
 
+missing = set()
+
+
 def library(name):
-    return os.path.join(folder, name + ".so")
+    """In this folder: messages hold paths of any length only in part."""
+    built, link = os.path.join(folder, name + ".so"), "./%s.so" % name
+    if not os.path.exists(built):
+        missing.add(link)
+    elif not os.path.exists(link):
+        os.symlink(built, link)
+    return link
 
 
 def refused(reference, *words, fields="", status=2, line=4):
-    if not sys.argv[2:] and reference.startswith(folder) and not os.path.exists(reference.split()[0]):
+    if not sys.argv[2:] and reference.split()[0] in missing:
         return  # it has not been built
     with open("bad.ini", "w") as file:
         file.write(CASE % (reference, fields))

@@ -62,6 +62,9 @@ PLACES = {
         "printf 'x,vx,m,u\\n0.1,0,1,1\\n0.4,0,1,1\\n0.6,0,1,1\\n0.9,0,1,1\\n' >try/particles.csv; "
         "sphproof rates try/particles.csv lo=0 hi=1 --csv try/theirs.csv; "
         "sphproof rates try/particles.csv lo=0 hi=1 --check try/theirs.csv",
+    "sphproof autopsy yee": "sphproof autopsy yee --n 16^2,24^2,32^2,48^2 t_end=0.5",
+    "sphproof bench --kernels": "sphproof bench --kernels --vary kernel=cubic_spline --samples 1",
+    "sphproof report --code swift.ini --code pysph.ini --out page": None,  # tests `small codes`, `PySPH`
     "python3 verify/test/faults.py build/sphproof PART": None,  # test `faults`
     "reports/run": None, "reports/run --nightly": None, "reports/compare main": None,  # tests `README: scripts`, `reports/compare`
     "verify/run --only valgrind,threads": None, "verify/run --full": None, "verify/run --nightly": None,

@@ -2,7 +2,7 @@
 """schema.py SPHPROOF SCHEMA: result documents against the committed JSON Schema.
 
 A validator of the part of JSON Schema (2020-12) that the schema uses; a word that it does not know
-is an error, so that nothing in the schema goes unchecked."""
+is an error, so that nothing in the schema goes unchecked. `diff` reads each document as well."""
 import json
 import os
 import re
@@ -172,6 +172,15 @@ def main():
                 faults = ["no JSON (exit %d): %s; %s" % (done.returncode, error, done.stderr)]
             for fault in faults[:5]:
                 print("%s: %s" % (" ".join(words), fault))
+            # diff knows the kind of every figure
+            if not faults and words[0] not in ("list", "compare") and "--explain" not in words:
+                with open(os.path.join(folder, "same.json"), "w", encoding="ascii") as text:
+                    json.dump(document, text)
+                same = subprocess.run([program, "diff", "same.json", "same.json"], capture_output=True, text=True,
+                                      cwd=folder)
+                if same.returncode == 2:
+                    faults = ["diff: " + same.stderr]
+                    print("%s: %s" % (" ".join(words), faults[0]))
             bad += bool(faults)
             # the validator must be able to fail: each document without its parts is wrong
             for name in () if faults else ("schema", "machine", "date"):
