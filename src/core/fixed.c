@@ -63,11 +63,12 @@ void fixed_state(struct simulation *simulation)
         a->P[i] = (gamma - 1) * rho * u;
         a->c[i] = sqrt(gamma * (gamma - 1) * u);
         a->h[i] = width_of(&rule, a->m[i], rho);
-        a->h_inverse[i] = a->h_inverse_found[i] = a->h_inverse_old[i] = 1 / a->h[i];
+        a->h_inverse[i] = a->h_inverse_found[i] = 1 / a->h[i];
+        if (!simulation->plan.newton) a->h_inverse_old[i] = a->h_inverse[i];
         const double Z = element == VOLUME_NUMBER   ? 1
                          : element == VOLUME_ENERGY ? a->U[i]
                                                     : a->m[i];
-        a->b[i] = a->P[i] * (a->V[i] * a->V[i] / Z);
+        if (simulation->plan.grad_h) a->b[i] = a->P[i] * (a->V[i] * a->V[i] / Z);
         if (simulation->plan.own_gradient)
             a->g[i] = simulation->scheme.kernel.constant[a->dim] / pow(a->h[i], a->dim + 1);
     }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "particles.h"
 
-#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,23 +8,30 @@
 
 enum { LINE = 8 /* doubles in a cache line */, LARGE_PAGE = 1 << 21 /* bytes */ };
 
-#define SCALAR(name, meaning) +1
-#define VECTOR(name, meaning) +3
+#define SCALAR(name, use, meaning) +1
+#define VECTOR(name, use, meaning) +3
 enum { ARRAYS_MAX = 0 PARTICLE_FIELDS(SCALAR, VECTOR) };
 #undef SCALAR
 #undef VECTOR
 
-/* Lists where the particles' pointers to arrays stand; returns their number. */
-static size_t list_arrays(struct particles *particles, double **arrays[ARRAYS_MAX])
+/* Lists where the particles' pointers to arrays of these uses stand; returns their number. */
+static size_t list_arrays(struct particles *particles, unsigned uses, double **arrays[ARRAYS_MAX])
 {
     size_t count = 0;
-#define SCALAR(name, meaning) arrays[count++] = &particles->name;
-#define VECTOR(name, meaning)                                                                      \
-    for (int k = 0; k < particles->dim; k++) arrays[count++] = &particles->name[k];
+#define SCALAR(name, use, meaning)                                                                 \
+    if (uses & (use)) arrays[count++] = &particles->name;
+#define VECTOR(name, use, meaning)                                                                 \
+    for (int k = 0; k < particles->dim && uses & (use); k++) arrays[count++] = &particles->name[k];
     PARTICLE_FIELDS(SCALAR, VECTOR)
 #undef SCALAR
 #undef VECTOR
     return count;
+}
+
+size_t particles_arrays(int dim, unsigned uses)
+{
+    double **arrays[ARRAYS_MAX];
+    return list_arrays(&(struct particles){.dim = dim}, uses, arrays);
 }
 
 static ptrdiff_t stride(ptrdiff_t n, ptrdiff_t ghosts)
@@ -53,7 +59,7 @@ static void ask_for_large_pages(double *block, size_t bytes, ptrdiff_t length)
 static enum status allocate(struct particles *particles, struct error *error)
 {
     double **arrays[ARRAYS_MAX];
-    const size_t count = list_arrays(particles, arrays);
+    const size_t count = list_arrays(particles, USE_ALL, arrays);
     particles->ghosts = (particles->ghosts + LINE - 1) / LINE * LINE;
     const ptrdiff_t length = stride(particles->n, particles->ghosts);
     const size_t bytes = ((size_t)length * (count + 1) + LINE) * sizeof(double);
@@ -73,7 +79,7 @@ static enum status allocate(struct particles *particles, struct error *error)
 enum status particles_create(struct particles *particles, int dim, ptrdiff_t n, ptrdiff_t ghosts,
                              struct error *error)
 {
-    *particles = (struct particles){.dim = dim, .n = n, .ghosts = ghosts};
+    *particles = (struct particles){.dim = dim, .n = n, .ghosts = ghosts, .uses = USE_ALL};
     const enum status status = allocate(particles, error);
     if (status) return status;
     particles->id = malloc((size_t)n * sizeof *particles->id);
@@ -99,8 +105,8 @@ enum status particles_grow_ghosts(struct particles *particles, ptrdiff_t ghosts,
     const enum status status = allocate(&grown, error);
     if (status) return status;
     double **from[ARRAYS_MAX], **to[ARRAYS_MAX];
-    const size_t count = list_arrays(particles, from);
-    list_arrays(&grown, to);
+    const size_t count = list_arrays(particles, particles->uses, from);
+    list_arrays(&grown, particles->uses, to);
     for (size_t k = 0; k < count; k++)
         memcpy(*to[k], *from[k], (size_t)particles->n * sizeof(double));
     free(particles->block);
@@ -108,38 +114,18 @@ enum status particles_grow_ghosts(struct particles *particles, ptrdiff_t ghosts,
     return STATUS_OK;
 }
 
-/* Is the array still as it was allocated? Reading untouched pages does not make them take memory.
- */
-static bool is_blank(const double *array, ptrdiff_t n)
-{
-    static const unsigned char zero[512];
-    const unsigned char *bytes = (const unsigned char *)array;
-    size_t left = (size_t)n * sizeof *array;
-    for (; left >= sizeof zero; left -= sizeof zero, bytes += sizeof zero)
-        if (memcmp(bytes, zero, sizeof zero) != 0) return false;
-    return memcmp(bytes, zero, left) == 0;
-}
-
 void particles_serialise(struct particles *particles, struct serialiser *serialiser)
 {
     ptrdiff_t ghosts = particles->ghosts;
     double **arrays[ARRAYS_MAX];
-    const size_t count = list_arrays(particles, arrays);
+    const size_t count = list_arrays(particles, particles->uses, arrays);
     SERIALISE(serialiser, ghosts);
     if (serialiser->failed) return;
     if (ghosts > particles->ghosts && particles_grow_ghosts(particles, ghosts, NULL))
         serialiser->failed = true;
-    for (size_t k = 0; k < count; k++) {
-        double *first = *arrays[k] - ghosts;
-        const ptrdiff_t length = particles->n + 2 * ghosts;
-        bool blank = is_blank(first, length);
-        const bool was = blank;
-        SERIALISE(serialiser, blank);
-        if (!blank)
-            serialise(serialiser, first, (size_t)length * sizeof *first);
-        else if (serialiser->back && !was && !serialiser->failed)
-            memset(first, 0, (size_t)length * sizeof *first);
-    }
+    for (size_t k = 0; k < count; k++)
+        serialise(serialiser, *arrays[k] - ghosts,
+                  (size_t)(particles->n + 2 * ghosts) * sizeof(double));
     serialise(serialiser, particles->id, (size_t)particles->n * sizeof *particles->id);
 }
 
@@ -147,10 +133,9 @@ void particles_permute(struct particles *particles)
 {
     const ptrdiff_t n = particles->n;
     double **arrays[ARRAYS_MAX];
-    const size_t count = list_arrays(particles, arrays);
+    const size_t count = list_arrays(particles, particles->uses, arrays);
     for (size_t k = 0; k < count; k++) {
         double *array = *arrays[k];
-        if (is_blank(array, n)) continue;
         for (ptrdiff_t i = 0; i < n; i++) particles->spare[i] = array[particles->order[i]];
         memcpy(array, particles->spare, (size_t)n * sizeof *array);
     }

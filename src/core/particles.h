@@ -12,56 +12,75 @@
 #include "serialiser.h"
 #include "status.h"
 
-/* SCALAR(name, meaning) or VECTOR(name, meaning). The first group is the state, the rest is derived
- * in an evaluation or belongs to the integrator; a change of order permutes them all. */
+/* What an array is for. One that a run has no use for stays as it was allocated: whoever reads it
+ * may make it take memory, whoever writes to it loses what was written. */
+enum particle_use {
+    USE_ALWAYS = 1 << 0,
+    USE_START = 1 << 1, /* of a step, which the integrator keeps */
+    USE_PREDICTED_WIDTH = 1 << 2,
+    USE_GRAD_H = 1 << 3,
+    USE_ALPHA = 1 << 4,
+    USE_ALPHA_RATE = 1 << 5,
+    USE_PAIR_SCALE = 1 << 6,
+    USE_SLOPE = 1 << 7,
+    USE_SIGNAL = 1 << 8,
+    USE_LOCAL_STEPS = 1 << 9,
+    USE_ALL = (1 << 10) - 1,
+};
+
+/* SCALAR(name, use, meaning) or VECTOR(name, use, meaning). The first group is the state, the rest
+ * is derived in an evaluation or belongs to the integrator; a change of order permutes them all. */
 #define PARTICLE_FIELDS(SCALAR, VECTOR)                                                            \
-    VECTOR(x, "position")                                                                          \
-    VECTOR(x_old, "position kept by the integrator")                                               \
-    SCALAR(m, "mass")                                                                              \
-    SCALAR(m_inverse, "1/m")                                                                       \
-    VECTOR(p, "momentum")                                                                          \
-    SCALAR(e, "energy that is integrated: U = m u, or E = U + p^2/2m")                             \
-    SCALAR(alpha, "viscosity of the particle")                                                     \
-    VECTOR(p_old, "momentum kept by the integrator")                                               \
-    SCALAR(e_old, "energy kept by the integrator")                                                 \
-    SCALAR(alpha_old, "viscosity kept by the integrator")                                          \
-    VECTOR(v, "velocity")                                                                          \
-    SCALAR(U, "internal energy")                                                                   \
-    SCALAR(h, "smoothing length = support radius")                                                 \
-    SCALAR(h_inverse, "1/h")                                                                       \
-    SCALAR(h_inverse_found, "1/h by a Newton step from the last density sum")                      \
-    SCALAR(h_inverse_old, "and of the one before")                                                 \
-    SCALAR(grad_h, "1 - f of the grad-h factor")                                                   \
-    SCALAR(V, "volume Z/y")                                                                        \
-    SCALAR(rho, "density of the equation of state")                                                \
-    SCALAR(P, "pressure")                                                                          \
-    SCALAR(c, "sound speed")                                                                       \
-    SCALAR(b, "lagrangian: Z P/y^2")                                                               \
-    SCALAR(g, "scale of the pair gradient: C/h^(d+1) (standard); 1D: 1/sum V x^2 w (ia)")          \
-    SCALAR(dv, "1D: velocity gradient, linear_exact")                                              \
-    VECTOR(F, "dp/dt")                                                                             \
-    SCALAR(de, "de/dt")                                                                            \
-    SCALAR(dalpha, "dalpha/dt")                                                                    \
-    SCALAR(div_v, "divergence of v")                                                               \
-    SCALAR(signal, "largest signal speed")                                                         \
-    SCALAR(level, "local steps: of the particle")                                                  \
-    SCALAR(pace, "inverse of the time step that is asked for, times cfl")                          \
-    SCALAR(near_pace, "the largest one of its neighbours")                                         \
-    SCALAR(before, "its last step")                                                                \
-    SCALAR(ratio, "time since its last density sum, over that between the last two")               \
-    SCALAR(span, "from its last density sum but one to its last one")                              \
-    VECTOR(F_mean, "mean dp/dt, for predictions")                                                  \
-    SCALAR(de_mean, "mean de/dt")                                                                  \
-    VECTOR(impulse, "from pairs of finer levels, since the step began")                            \
-    SCALAR(heat, "and the energy")
+    VECTOR(x, USE_ALWAYS, "position")                                                              \
+    VECTOR(x_old, USE_ALWAYS, "position kept by the integrator")                                   \
+    SCALAR(m, USE_ALWAYS, "mass")                                                                  \
+    SCALAR(m_inverse, USE_ALWAYS, "1/m")                                                           \
+    VECTOR(p, USE_ALWAYS, "momentum")                                                              \
+    SCALAR(e, USE_ALWAYS, "energy that is integrated: U = m u, or E = U + p^2/2m")                 \
+    SCALAR(alpha, USE_ALPHA, "viscosity of the particle")                                          \
+    VECTOR(p_old, USE_START, "momentum kept by the integrator")                                    \
+    SCALAR(e_old, USE_START, "energy kept by the integrator")                                      \
+    SCALAR(alpha_old, USE_ALPHA, "viscosity kept by the integrator")                               \
+    VECTOR(v, USE_ALWAYS, "velocity")                                                              \
+    SCALAR(U, USE_ALWAYS, "internal energy")                                                       \
+    SCALAR(h, USE_ALWAYS, "smoothing length = support radius")                                     \
+    SCALAR(h_inverse, USE_ALWAYS, "1/h")                                                           \
+    SCALAR(h_inverse_found, USE_ALWAYS, "1/h by a Newton step from the last density sum")          \
+    SCALAR(h_inverse_old, USE_PREDICTED_WIDTH, "and of the one before")                            \
+    SCALAR(grad_h, USE_GRAD_H, "1 - f of the grad-h factor")                                       \
+    SCALAR(V, USE_ALWAYS, "volume Z/y")                                                            \
+    SCALAR(rho, USE_ALWAYS, "density of the equation of state")                                    \
+    SCALAR(P, USE_ALWAYS, "pressure")                                                              \
+    SCALAR(c, USE_ALWAYS, "sound speed")                                                           \
+    SCALAR(b, USE_GRAD_H, "lagrangian: Z P/y^2")                                                   \
+    SCALAR(g, USE_PAIR_SCALE,                                                                      \
+           "scale of the pair gradient: C/h^(d+1) (standard); 1D: 1/sum V x^2 w (ia)")             \
+    SCALAR(dv, USE_SLOPE, "1D: velocity gradient, linear_exact")                                   \
+    VECTOR(F, USE_ALWAYS, "dp/dt")                                                                 \
+    SCALAR(de, USE_ALWAYS, "de/dt")                                                                \
+    SCALAR(dalpha, USE_ALPHA_RATE, "dalpha/dt")                                                    \
+    SCALAR(div_v, USE_ALPHA_RATE, "divergence of v")                                               \
+    SCALAR(signal, USE_SIGNAL, "largest signal speed")                                             \
+    SCALAR(level, USE_LOCAL_STEPS, "local steps: of the particle")                                 \
+    SCALAR(pace, USE_LOCAL_STEPS, "inverse of the time step that is asked for, times cfl")         \
+    SCALAR(near_pace, USE_LOCAL_STEPS, "the largest one of its neighbours")                        \
+    SCALAR(before, USE_LOCAL_STEPS, "its last step")                                               \
+    SCALAR(ratio, USE_LOCAL_STEPS,                                                                 \
+           "time since its last density sum, over that between the last two")                      \
+    SCALAR(span, USE_LOCAL_STEPS, "from its last density sum but one to its last one")             \
+    VECTOR(F_mean, USE_LOCAL_STEPS, "mean dp/dt, for predictions")                                 \
+    SCALAR(de_mean, USE_LOCAL_STEPS, "mean de/dt")                                                 \
+    VECTOR(impulse, USE_LOCAL_STEPS, "from pairs of finer levels, since the step began")           \
+    SCALAR(heat, USE_LOCAL_STEPS, "and the energy")
 
 struct particles {
     int dim; /* components of vectors; the others are NULL */
     ptrdiff_t n;
     ptrdiff_t ghosts; /* images at each end */
+    unsigned uses;    /* of enum particle_use; at first all */
     double period[3]; /* lengths of the box */
-#define SCALAR(name, meaning) double *name;
-#define VECTOR(name, meaning) double *name[3];
+#define SCALAR(name, use, meaning) double *name;
+#define VECTOR(name, use, meaning) double *name[3];
     PARTICLE_FIELDS(SCALAR, VECTOR)
 #undef SCALAR
 #undef VECTOR
@@ -76,12 +95,15 @@ enum status particles_create(struct particles *particles, int dim, ptrdiff_t n, 
                              struct error *error);
 void particles_destroy(struct particles *particles);
 
+/* How many arrays particles of these uses have. */
+size_t particles_arrays(int dim, unsigned uses);
+
 /* Makes room for more ghosts, keeping all values. Invalidates pointers to arrays. */
 enum status particles_grow_ghosts(struct particles *particles, ptrdiff_t ghosts,
                                   struct error *error);
 
-/* All values, those of ghosts included. Back: may invalidate pointers to arrays; fails without
- * memory for as many ghosts. */
+/* All values that are of use, those of ghosts included. Back: to particles of the same uses; may
+ * invalidate pointers to arrays; fails without memory for as many ghosts. */
 void particles_serialise(struct particles *particles, struct serialiser *serialiser);
 
 /* Puts the particle at place order[i] to place i, all of its values. Ghosts are not touched. */

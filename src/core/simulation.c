@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "fixed.h"
+#include "memory.h"
 #include "solver.h"
 #include "width.h"
 
@@ -121,6 +122,7 @@ static enum status allocate(struct simulation *simulation, ptrdiff_t n, struct e
     const struct integrator *integrator = simulation->scheme.integrator;
     enum status status = simulation->plan.sums->create(simulation, n, error);
     if (status) return status;
+    simulation->particles.uses = memory_uses(simulation);
     bool there = (simulation->integrator_state = calloc(1, integrator->keeps + 1));
     for (int k = 0; k < simulation->plan.dim; k++)
         there &= (simulation->wrapped[k] = malloc((size_t)n * sizeof(double))) != NULL;

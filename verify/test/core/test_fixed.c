@@ -20,6 +20,7 @@ static void made(struct simulation *s, int dim, enum volume_element element, enu
     struct error error;
     memset(s, 0, sizeof *s);
     s->gamma = 1.4;
+    s->plan.grad_h = true;
     s->scheme.eta = 2;
     s->scheme.volume_element = element;
     s->scheme.energy = energy;

@@ -89,12 +89,14 @@ static struct simulation *created(const struct setup *setup)
     return simulation;
 }
 
-static size_t list(const struct particles *a, double *arrays[ARRAYS_MOST])
+/* Arrays of these uses. */
+static size_t list(const struct particles *a, unsigned uses, double *arrays[ARRAYS_MOST])
 {
     size_t count = 0;
-#define SCALAR(name, meaning) arrays[count++] = a->name;
-#define VECTOR(name, meaning)                                                                      \
-    for (int k = 0; k < a->dim; k++) arrays[count++] = a->name[k];
+#define SCALAR(name, use, meaning)                                                                 \
+    if (uses & (use)) arrays[count++] = a->name;
+#define VECTOR(name, use, meaning)                                                                 \
+    for (int k = 0; k < a->dim && uses & (use); k++) arrays[count++] = a->name[k];
     PARTICLE_FIELDS(SCALAR, VECTOR)
 #undef SCALAR
 #undef VECTOR
@@ -122,7 +124,7 @@ TEST(test_nothing_beyond)
             const struct particles *a = &simulation->particles;
             double *arrays[ARRAYS_MOST];
             struct error error;
-            const size_t count = list(a, arrays);
+            const size_t count = list(a, USE_ALL, arrays);
             for (size_t i = 0; i < count; i++) arrays[i][N] = 77;
             assert_int_equal(simulation_run(simulation, 1e-2, NULL, NULL, &error), STATUS_OK);
             for (size_t i = 0; i < count; i++)
@@ -187,9 +189,12 @@ TEST(test_arrays_that_are_counted)
                 double *arrays[ARRAYS_MOST];
                 struct error error;
                 assert_int_equal(simulation_run(simulation, 5e-3, NULL, NULL, &error), STATUS_OK);
-                const size_t count = list(&simulation->particles, arrays);
+                const struct particles *a = &simulation->particles;
+                const size_t count = list(a, a->uses, arrays);
                 size_t used = 3 + (size_t)dim;
                 for (size_t i = 0; i < count; i++) used += is_used(arrays[i], N);
+                for (size_t i = list(a, USE_ALL & ~a->uses, arrays); i-- > 0;)
+                    assert_false(is_used(arrays[i], N));
                 const double room = bare.plan.sums->bytes(&bare, N);
                 if (memory_bytes(&setup) - room != 8. * N * (double)used)
                     fail_msg("%dD %s %s %s %s%s: %g arrays, not %zu", dim, keys[0], keys[1],

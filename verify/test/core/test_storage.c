@@ -15,13 +15,15 @@
 
 enum { ARRAYS_MOST = 64, LINE = 8 };
 
+/* Arrays that are of use. */
 static size_t list(const struct particles *a, double *arrays[ARRAYS_MOST])
 {
     size_t count = 0;
-#define SCALAR(name, meaning) arrays[count++] = a->name;
-#define VECTOR(name, meaning)                                                                      \
+#define SCALAR(name, use, meaning)                                                                 \
+    if (a->uses & (use)) arrays[count++] = a->name;
+#define VECTOR(name, use, meaning)                                                                 \
     for (int k = 0; k < 3; k++)                                                                    \
-        if (a->name[k]) arrays[count++] = a->name[k];
+        if (a->name[k] && a->uses & (use)) arrays[count++] = a->name[k];
     PARTICLE_FIELDS(SCALAR, VECTOR)
 #undef SCALAR
 #undef VECTOR
@@ -105,30 +107,26 @@ TEST(room_for_more_ghosts)
 /* --- carried -----------------------------------------------------------------------------------
  */
 
-/* Those arrays that somebody has written to, wherever that was; the others take no room, and become
- * blank where they were not. */
+/* Those arrays that are of use; the others stay as they are. */
 TEST(carried_with_ghosts)
 {
     static struct made_bytes bag;
     for (int dim = 1; dim <= 3; dim++)
         for (ptrdiff_t n = 3; n < 300; n += 59)
-            for (int at = 0; at < 4; at++) {
+            for (unsigned uses = USE_ALWAYS; uses < USE_ALL; uses = 5 * uses + 2) {
                 struct particles a = made(dim, n, 16), b = made(dim, n, 8);
                 double *from[ARRAYS_MOST], *to[ARRAYS_MOST];
-                size_t written = 0;
+                fill(&a, 16);
+                a.uses = b.uses = uses;
                 const size_t count = list(&a, from);
-                const ptrdiff_t place = at == 0 ? -16 : at == 1 ? 0 : at == 2 ? n / 2 : n + 15;
-                for (size_t k = 0; k < count; k++)
-                    if (k % 3 != 1) from[k][place] = value(k, at), written++;
+                assert_int_equal(count, particles_arrays(dim, uses));
                 for (ptrdiff_t i = 0; i < n; i++) a.id[i] = (size_t)(2 * i + 1);
-                fill(&b, 8);
                 struct serialiser out = {.bytes = made_put, .context = &bag},
                                   back = {.bytes = made_take, .context = &bag, .back = true};
                 bag.used = bag.read = 0;
                 particles_serialise(&a, &out);
                 assert_false(out.failed);
-                assert_int_equal(bag.used, sizeof(ptrdiff_t) + count * sizeof(bool) +
-                                               8 * written * (size_t)(n + 32) +
+                assert_int_equal(bag.used, sizeof(ptrdiff_t) + 8 * count * (size_t)(n + 32) +
                                                (size_t)n * sizeof(size_t));
                 particles_serialise(&b, &back);
                 assert_false(back.failed);
@@ -136,9 +134,11 @@ TEST(carried_with_ghosts)
                 assert_int_equal(b.ghosts, 16);
                 list(&b, to);
                 for (size_t k = 0; k < count; k++)
-                    for (ptrdiff_t i = -16; i < n + 16; i++)
-                        assert_true(to[k][i] == from[k][i] &&
-                                    (to[k][i] == 0 || (i == place && k % 3 != 1)));
+                    assert_memory_equal(to[k] - 16, from[k] - 16, 8 * (size_t)(n + 32));
+                b.uses = USE_ALL & ~uses;
+                const size_t others = list(&b, to);
+                for (size_t k = 0; k < others; k++)
+                    for (ptrdiff_t i = -16; i < n + 16; i++) assert_true(to[k][i] == 0);
                 for (ptrdiff_t i = 0; i < n; i++) assert_int_equal(b.id[i], 2 * i + 1);
                 particles_destroy(&a);
                 particles_destroy(&b);
@@ -177,18 +177,17 @@ TEST(a_new_order)
             double *arrays[ARRAYS_MOST];
             const size_t count = list(&a, arrays);
             fill(&a, 8);
-            for (ptrdiff_t i = -8; i < n + 8; i++) a.P[i] = i < 0 || i >= n ? 3 : 0; /* blank */
             for (ptrdiff_t i = 0; i < n; i++)
                 a.order[i] = (size_t)(n - 1 - i), a.id[i] = (size_t)(10 + i);
             a.order[0] = (size_t)(n - 2), a.order[1] = (size_t)(n - 1);
             size_t order[200];
             memcpy(order, a.order, (size_t)n * sizeof *order);
+            a.uses = USE_ALL & ~USE_GRAD_H;
             particles_permute(&a);
             for (size_t k = 0; k < count; k++)
                 for (ptrdiff_t i = -8; i < n + 8; i++) {
-                    const bool ghost = i < 0 || i >= n;
-                    const double of = value(k, ghost ? i : (ptrdiff_t)order[i]);
-                    assert_true(arrays[k][i] == (arrays[k] == a.P ? (ghost ? 3 : 0) : of));
+                    const bool stays = i < 0 || i >= n || arrays[k] == a.b || arrays[k] == a.grad_h;
+                    assert_true(arrays[k][i] == value(k, stays ? i : (ptrdiff_t)order[i]));
                 }
             for (ptrdiff_t i = 0; i < n; i++) assert_int_equal(a.id[i], 10 + order[i]);
             particles_destroy(&a);
