@@ -80,9 +80,10 @@ static void ranges(struct layout_panel *at, const struct plot_panel *panel)
     at->y = (struct layout_axis){panel->y_log, INFINITY, -INFINITY};
     for (size_t k = 0; k < panel->series_count; k++) {
         const struct plot_series *series = &panel->series[k];
+        const bool filled = series->kind == PLOT_BAND || series->kind == PLOT_BARS;
         include_all(&at->x, series->x, series->n);
-        if (series->kind != PLOT_BAND) include_all(&at->y, series->y, series->n);
-        if (series->kind == PLOT_BAND || series->kind == PLOT_ERROR_BARS) {
+        if (!filled) include_all(&at->y, series->y, series->n);
+        if (filled || series->kind == PLOT_ERROR_BARS) {
             include_all(&at->y, series->low, series->n);
             include_all(&at->y, series->high, series->n);
         }
@@ -210,7 +211,7 @@ void layout_ends(const struct layout_panel *at, const struct plot_panel *panel, 
     for (size_t k = 0; k < n; k++) {
         const struct plot_series *series = &panel->series[k];
         pixels[k] = NAN;
-        for (size_t i = 0; series->label && series->kind != PLOT_BAND && i < series->n; i++)
+        for (size_t i = 0; series->label && series->kind < PLOT_BAND && i < series->n; i++)
             if (isfinite(series->y[i]) && series->x[i] <= at->x.max)
                 pixels[k] = layout_y(at, series->y[i]);
     }

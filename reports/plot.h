@@ -18,7 +18,8 @@ enum plot_kind {
     PLOT_POINTS,
     PLOT_LINES_POINTS,
     PLOT_ERROR_BARS, /* points with low..high */
-    PLOT_BAND        /* filled between low and high; y unused */
+    PLOT_BAND,       /* filled between low and high; y unused */
+    PLOT_BARS        /* the same, a bar at each x, from x/size to x*size */
 };
 
 enum { PLOT_AUTO = 0, PLOT_NEUTRAL = -1 }; /* colours: automatic, text colour, or 1..PLOT_COLORS */

@@ -86,7 +86,8 @@ void script_data(struct buffer *to, const struct plot *plot)
         if (panel->heat) heat_data(to, panel);
         for (size_t k = 0; k < panel->series_count; k++) {
             const struct plot_series *series = &panel->series[k];
-            bool band = series->kind == PLOT_BAND, bars = series->kind == PLOT_ERROR_BARS;
+            bool band = series->kind == PLOT_BAND || series->kind == PLOT_BARS,
+                 bars = series->kind == PLOT_ERROR_BARS;
             buffer_format(to, "# x y%s: ", band || bars ? " low high" : "");
             for (const char *c = series->label ? series->label : ""; *c; c++)
                 buffer_add_bytes(to, (unsigned char)*c < ' ' ? " " : c, 1);
@@ -324,6 +325,11 @@ static void curve(struct buffer *to, const struct plot_series *series, const cha
         break;
     case PLOT_BAND:
         buffer_add(to, "using 1:3:4 with filledcurves fillstyle transparent solid 0.22 noborder");
+        break;
+    case PLOT_BARS:
+        buffer_format(to,
+                      "using 1:3:($1/%g):($1*%g):3:4 with boxxyerror fillstyle solid 0.85 noborder",
+                      size, size);
         break;
     }
     buffer_format(to, " linecolor rgb '%s' ", color);

@@ -2,19 +2,25 @@
  * sphproof autopsy: which part of a scheme its order is lost to, over a ladder of resolutions. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "autopsy.h"
+#include "autopsy_plot.h"
 #include "command.h"
+#include "judge_autopsy.h"
+#include "picture.h"
 #include "result.h"
 #include "settings_output.h"
 #include "sweep.h"
 #include "table.h"
+#include "text.h"
+#include "value.h"
 
 enum { BAR = 40 };
 
 /* One letter for each part. */
-static const char letters[AUTOPSY_PARTS + 1] = "tmegrdv";
+static const char letters[AUTOPSY_PARTS + 1] = "tmegrdvnc";
 
 static void print_bar(const struct autopsy_level *level)
 {
@@ -48,22 +54,34 @@ static void print_order(const struct order_fit *order)
         printf(" %7s %14s", "-", "");
 }
 
+/* Parts that a snapshot does not show. */
+static bool unseen(size_t part)
+{
+    return part == AUTOPSY_TIME_STEP || part >= AUTOPSY_VISCOSITY;
+}
+
 static void print_parts(const struct autopsy *autopsy, const struct table_style *style)
 {
     const struct autopsy_level *finest = &autopsy->levels[autopsy->count - 1];
-    printf("\n%s  %-44s %10s %6s %22s%s\n", style->bold, "part, at the finest level", "size",
-           "share", "order, 95 % interval", style->end);
+    printf("\n%s  %-44s %10s %6s %6s %22s%s\n", style->bold, "part, at the finest level", "size",
+           "order", "share", "order, 95 % interval", style->end);
     for (size_t k = 0; k < AUTOPSY_PARTS; k++) {
-        printf("%c %-44s %10.2e %5.1f%%", letters[k], autopsy_part_family.members[k]->label,
-               finest->size[k].rms, 100 * finest->share[k]);
-        print_order(&autopsy->orders[k]);
+        const struct autopsy_split *size = &finest->size[k];
+        if (autopsy->theirs && unseen(k)) continue;
+        printf("%c %-44s %10.2e", letters[k], autopsy_part_family.members[k]->label, size->rms);
+        if (isfinite(autopsy->orders[k].order))
+            printf(" %6.2f", autopsy->orders[k].order);
+        else
+            printf(" %6s", "-");
+        printf(" %5.1f%%", 100 * finest->share[k]);
+        print_order(&autopsy->losses[k]);
         printf("\n");
     }
     printf(
         "%sthe time step and the measure: in L1 of the velocity; the others: rms of the "
         "acceleration, of\nwhich the exact one has %.3g. What the first two leave of the error the "
-        "others share as squares:\na smooth error as what is smooth in them, noise as their "
-        "noise%s\n",
+        "others share: noise as the\nsquares of their noise, a smooth error as what is smooth in "
+        "them and points along it. The order\nof the size, and that of what is lost%s\n",
         style->faint, finest->acceleration, style->end);
 }
 
@@ -114,20 +132,24 @@ static void print_operator(const struct autopsy *autopsy, const struct table_sty
     print_row("at regular positions", finest->regular, &autopsy->regular);
     print_row("at the run's own positions at t_end", finest->own, &autopsy->own);
     print_row("at positions of the start, moved by 0.2", finest->jittered, &autopsy->jittered);
-    printf("\n%s%10s %11s %11s %11s %11s %11s %8s %8s%s\n", style->bold, "n", "L1(v)", "dt/2",
-           "dt/4", "L1(rho)", "regular", "noise", "spread", style->end);
+    printf("\n%s%10s %10s %10s %10s %10s %10s %8s %8s %8s%s\n", style->bold, "n", "L1(v)", "dt/2",
+           "dt/4", "L1(rho)", "regular", "noise", "spread", "E0", style->end);
     for (size_t l = 0; l < autopsy->count; l++) {
         const struct autopsy_level *level = &autopsy->levels[l];
-        printf("%10zu %11.4e %11.4e %11.4e %11.4e %11.4e %6.1f %% %8.2e\n", level->n,
-               level->error[0], level->error[1], level->error[2], level->density,
-               level->density_regular, 100 * pow(level->velocity.noise / level->velocity.rms, 2),
-               level->regularity.spread);
+        printf("%10zu %10.3e", level->n, level->error[0]);
+        if (autopsy->theirs)
+            printf(" %10s %10s", "-", "-");
+        else
+            printf(" %10.3e %10.3e", level->error[1], level->error[2]);
+        printf(" %10.3e %10.3e %6.1f %% %8.2e %8.2e\n", level->density, level->density_regular,
+               100 * pow(level->velocity.noise / level->velocity.rms, 2), level->regularity.spread,
+               level->regularity.gradient);
     }
     printf(
         "%sregular: of the positions of the start; noise: of the square of the velocity's error, "
         "what "
         "differs\nbetween neighbours; spread: of distances to nearest neighbours over their mean, "
-        "at t_end%s\n",
+        "and E0, h |sum V\ngrad W|, at t_end%s\n",
         style->faint, style->end);
 }
 
@@ -150,80 +172,214 @@ static enum status take_ladder(const struct options *options, const struct run_s
     return STATUS_OK;
 }
 
-static enum status resolve(const struct run_settings *settings, size_t n, struct run *run,
-                           struct error *error)
-{
-    struct run_settings asked = *settings;
-    char text[32];
-    snprintf(text, sizeof text, "%zu", n);
-    enum status status = settings_set(&asked.settings, SETTING_n, text, SOURCE_USER, NULL, error);
-    if (!status) status = run_resolve(run, &asked, error);
-    return status ? status : autopsy_check(run, error);
-}
-
-static enum status write_json(const struct options *options, const struct run *run,
-                              const struct autopsy *autopsy, struct error *error)
+static json_t *document_of(const struct run *run, const struct autopsy *autopsy)
 {
     json_t *document = result_new("autopsy");
     json_object_set_new(document, "case", json_string(run->asked.file.name));
+    json_object_set_new(document, "title", json_string(run->asked.file.title));
     json_object_set_new(document, "settings", settings_json(&run->settings));
     autopsy_add_json(autopsy, document);
-    const enum status status = result_write(document, options->json, error);
+    return document;
+}
+
+/* files: of snapshots, finest last; NULL: the runs were ours. */
+static enum status tell(const struct options *options, const struct run *run,
+                        const struct autopsy *autopsy, json_t *files, struct error *error)
+{
+    const char *plot = options_value(options, "plot");
+    const struct table_style style = table_style(options->color);
+    json_t *document = document_of(run, autopsy);
+    enum status status = STATUS_OK;
+    if (files) json_object_set_new(document, "snapshots", files);
+    if (options->speak) {
+        printf("%s%s%s: %s\n", style.bold, run->asked.file.name, style.end, run->asked.file.title);
+        print_levels(autopsy, &style);
+        print_parts(autopsy, &style);
+        print_operator(autopsy, &style);
+        if (!files) {
+            print_power(&autopsy->levels[autopsy->count - 1], &style);
+            print_trace(&autopsy->trace, &style);
+        }
+        printf("\n");
+        table_wrap("", autopsy->sentence);
+    }
+    if (options->json) status = result_write(document, options->json, error);
+    if (!status && plot) status = autopsy_plot_write(document, plot, error);
     json_decref(document);
+    return status;
+}
+
+static enum status examine(const struct options *options, int n, char **arguments,
+                           struct error *error)
+{
+    struct run_settings settings;
+    struct run level;
+    struct autopsy autopsy;
+    size_t ladder[CASE_LADDER_MAX], count;
+    if (run_prepare(&settings, arguments[0], n - 1, arguments + 1, error) ||
+        take_ladder(options, &settings, ladder, &count, error))
+        return error->status;
+    settings.threads = options->threads;
+    return autopsy_ladder(&settings, ladder, count, &autopsy, &level, error)
+               ? error->status
+               : tell(options, &level, &autopsy, NULL, error);
+}
+
+/* ---- snapshots of another code ---- */
+
+/* By which kernel exact fields are evaluated where whose particles are. */
+static void print_files(const struct options *options, const json_t *files, const struct run *used)
+{
+    char gradient[SETTING_TEXT_MAX];
+    size_t k;
+    const json_t *file;
+    settings_text(&used->settings, SETTING_gradient, gradient);
+    json_array_foreach(files, k, file) {
+        if (!options->speak) return;
+        printf("%s: %s\n  looked at with gradient=%s kernel=%s eta=%.5s, %s\n",
+               value_text(file, "file"), value_text(file, "verdict"), gradient,
+               value_text(file, "kernel"), value_text(file, "eta"),
+               json_is_true(json_object_get(file, "proved")) ? "which the file proves"
+                                                             : "which the file does not show");
+    }
+    if (options->speak) printf("\n");
+}
+
+struct theirs {
+    struct run_settings settings;
+    struct judge_request request;
+    size_t count;
+    const char *path[CASE_LADDER_MAX];
+    struct judged *judged; /* count, by n */
+};
+
+static int by_number(const void *a, const void *b)
+{
+    const struct judged *one = a, *other = b;
+    return (one->result.n > other->result.n) - (one->result.n < other->result.n);
+}
+
+/* The first is the option's own, the others are all arguments that are no keys. */
+static enum status take_theirs(const struct options *options, int n, char **arguments,
+                               struct theirs *theirs, struct error *error)
+{
+    char *keys[SETTINGS];
+    int count = 0;
+    if (options_value(options, "n"))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "autopsy: --n and --rates exclude each other; allowed: as many snapshots "
+                         "as there are numbers of particles");
+    theirs->path[theirs->count++] = options_value(options, "rates");
+    for (int k = 1; k < n; k++)
+        if (strchr(arguments[k], '=') && !strchr(arguments[k], '/') && count < SETTINGS)
+            keys[count++] = arguments[k];
+        else if (theirs->count < CASE_LADDER_MAX)
+            theirs->path[theirs->count++] = arguments[k];
+        else
+            return error_set(error, STATUS_BAD_INPUT, "autopsy: --rates: allowed: up to %d files",
+                             CASE_LADDER_MAX);
+    theirs->request = (struct judge_request){.case_name = arguments[0],
+                                             .asked = &theirs->settings,
+                                             .kernel = -1,
+                                             .options = {.map = options_value(options, "map")}};
+    const char *time = options_value(options, "time");
+    theirs->request.time.known = time && text_real(time, &theirs->request.time.value);
+    if (time && !theirs->request.time.known)
+        return error_set(error, STATUS_BAD_INPUT, "autopsy: --time '%.40s': allowed: a number",
+                         time);
+    return run_prepare(&theirs->settings, arguments[0], count, keys, error);
+}
+
+static enum status read_theirs(struct theirs *theirs, struct error *error)
+{
+    enum status status = STATUS_OK;
+    theirs->judged = calloc(theirs->count, sizeof *theirs->judged);
+    if (!theirs->judged) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    for (size_t k = 0; k < theirs->count && !status; k++)
+        status = judge_snapshot(theirs->path[k], &theirs->request, &theirs->judged[k], error);
+    if (status) return status;
+    qsort(theirs->judged, theirs->count, sizeof *theirs->judged, by_number);
+    for (size_t k = 1; k < theirs->count; k++)
+        if (theirs->judged[k].result.n == theirs->judged[k - 1].result.n)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "autopsy: %.150s and %.150s have %zu particles each; allowed: one "
+                             "snapshot for each n",
+                             theirs->judged[k - 1].path, theirs->judged[k].path,
+                             theirs->judged[k].result.n);
+    return STATUS_OK;
+}
+
+static json_t *describe(const struct judged *judged, const struct run *used)
+{
+    char kernel[SETTING_TEXT_MAX], eta[SETTING_TEXT_MAX];
+    settings_text(&used->settings, SETTING_kernel, kernel);
+    settings_text(&used->settings, SETTING_eta, eta);
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:b}", "file", judged->path, "code",
+                     judged->file.code, "verdict", judged->verdict, "kernel", kernel, "eta", eta,
+                     "proved", judged->conventions.known);
+}
+
+static enum status examine_theirs(const struct options *options, int n, char **arguments,
+                                  struct error *error)
+{
+    struct theirs theirs = {0};
+    struct autopsy autopsy = {.theirs = true};
+    struct run used;
+    json_t *files = json_array();
+    enum status status = take_theirs(options, n, arguments, &theirs, error);
+    if (!status) status = read_theirs(&theirs, error);
+    for (; !status && autopsy.count < theirs.count; autopsy.count++) {
+        const struct judged *judged = &theirs.judged[autopsy.count];
+        status = judge_autopsy(judged, &autopsy.levels[autopsy.count], &used, error);
+        if (!status) json_array_append_new(files, describe(judged, &used));
+    }
+    autopsy.dim = theirs.count && !status ? theirs.judged[0].file.dim : 0;
+    if (!status) status = autopsy_judge(&autopsy, error);
+    if (!status) print_files(options, files, &used);
+    if (!status) status = tell(options, &used, &autopsy, json_incref(files), error);
+    for (size_t k = 0; theirs.judged && k < theirs.count; k++) judge_free(&theirs.judged[k]);
+    free(theirs.judged);
+    json_decref(files);
     return status;
 }
 
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
-    struct run_settings settings;
-    struct run level;
-    struct autopsy autopsy = {0};
-    size_t ladder[CASE_LADDER_MAX];
+    const char *plot = options_value(options, "plot");
     if (n < 1) return command_usage(options, error, "a case is needed (`sphproof list cases`)");
-    if (run_prepare(&settings, arguments[0], n - 1, arguments + 1, error) ||
-        take_ladder(options, &settings, ladder, &autopsy.count, error))
-        return error->status;
-    settings.threads = options->threads;
-    autopsy.dim = settings.file.dimension;
-    for (size_t l = 0; l < autopsy.count; l++)
-        if (resolve(&settings, ladder[l], &level, error)) return error->status;
-    for (size_t l = 0; l < autopsy.count; l++)
-        if (resolve(&settings, ladder[l], &level, error) ||
-            autopsy_measure(&level, &autopsy.levels[l],
-                            l + 1 == autopsy.count ? &autopsy.trace : NULL, error))
-            return error->status;
-    if (autopsy_judge(&autopsy, error)) return error->status;
-    if (options->speak) {
-        const struct table_style style = table_style(options->color);
-        printf("%s%s%s: %s\n", style.bold, settings.file.name, style.end, settings.file.title);
-        print_levels(&autopsy, &style);
-        print_parts(&autopsy, &style);
-        print_operator(&autopsy, &style);
-        print_power(&autopsy.levels[autopsy.count - 1], &style);
-        print_trace(&autopsy.trace, &style);
-        printf("\n");
-        table_wrap("", autopsy.verdict);
-    }
-    return options->json ? write_json(options, &level, &autopsy, error) : STATUS_OK;
+    if (plot && picture_probe(plot, error)) return error->status;
+    return (options_value(options, "rates") ? examine_theirs : examine)(options, n, arguments,
+                                                                        error);
 }
 
 static const struct command_option own_options[] = {
     {"n", "N1,N2,...", "numbers of particles, at least four distinct ones (default: the case's)"},
+    {"plot", "FILE.svg|.png", "draw the shares of the error, and how each falls (needs gnuplot)"},
+    {"rates", "SNAPSHOT",
+     "of another code, and further ones behind it: what its particles' positions make of exact "
+     "fields, beside its error; by the operator that the keys name"},
+    {"map", "NAME=THEIRS,...", "text: which column is x, vx, m, rho, u, P, h"},
+    {"time", "T", "of the snapshots; else the files'"},
     {NULL, NULL, NULL},
 };
 
 const struct command command_autopsy = {
     .name = "autopsy",
-    .synopsis = "CASE [KEY=VALUE ...]",
+    .synopsis = "CASE [KEY=VALUE ...] [--rates SNAPSHOT ...]",
     .help = "which part of a scheme its order is lost to, on flows without jumps\n"
             "Each resolution is run with the time step, half and a quarter of it; then the "
             "acceleration is\nevaluated where every particle has the exact velocity and energy: at "
             "regular positions, at those\nof the run at its end, at jittered ones, with and "
             "without viscosity. The error of the velocity is\nshared among the parts, each with "
-            "its own order, and a sentence names the one that costs the order.",
+            "its own order, and a sentence names the one that costs the order.\n"
+            "Snapshots of another code, one for each number of particles, are read as `sphproof "
+            "judge` does;\nwhat they show are positions and densities, so time step and viscosity "
+            "have no share.",
     .run = run,
     .options = own_options,
     .examples = "sphproof autopsy yee\n"
                 "sphproof autopsy gresho gradient=standard --n 16^2,24^2,32^2,48^2\n"
-                "sphproof autopsy sound_wave --json autopsy.json",
+                "sphproof autopsy sound_wave --json autopsy.json --plot autopsy.png\n"
+                "sphproof autopsy gresho --rates theirs_16.hdf5 theirs_24.hdf5 theirs_32.hdf5 "
+                "theirs_48.hdf5",
 };

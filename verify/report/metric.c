@@ -24,7 +24,7 @@ static const char *const closed[] = {"machine",  "profile",  "plan",        "set
 static const char *const words[] = {
     "case",    "label", "scheme", "group",  "row",      "column",   "check", "name",
     "subject", "fault", "mutant", "kernel", "operator", "gradient", "of",    "what",
-    "skip",    "field", "norm",   "region", "against",  "quantity"};
+    "skip",    "field", "norm",   "region", "against",  "quantity", "part"};
 static const char *const numbers[] = {"dim", "eta", "alpha", "n", "q", "x", "target", "threads"};
 #define LENGTH(list) (sizeof(list) / sizeof *(list))
 

@@ -50,6 +50,9 @@ static const struct metric_rule rules[] = {
     {"power", "*", OUT},
     {"parts", "size", 0, READING_PART, 0.1, 1e-12},
     {"parts", "noise", OUT},
+    {"parts", "along", OUT},
+    {"shares", "error", 0, READING_PART, 0.1, 1e-12},
+    {"snapshots", "proved", OUT},
     {"levels", "noise_rms", OUT},
     {"levels", "acceleration", OUT},
     {"levels", "regular", 0, READING_PART, 0.1, 1e-12},
@@ -58,7 +61,7 @@ static const struct metric_rule rules[] = {
     {"levels", "density", 0, READING_PART, 0.1, 1e-12},
     {"levels", "density_regular", 0, READING_PART, 0.1, 1e-12},
     {"", "from", OUT},
-    {"", "lost", OUT},     /* the orders are compared */
+    {"", "lost", OUT}, /* the orders are compared */
     {"", "floor", OUT},
     {"printed", "*", OUT}, /* by a plug-in; its status says so */
     {"noise", "*", 0, READING_PART, 0.1, 1e-12},

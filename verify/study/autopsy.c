@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "result.h"
+#include "settings.h"
 
 #define MEMBER(name, label)                                                                        \
     &(const struct member)                                                                         \
@@ -19,11 +20,39 @@ const struct family autopsy_part_family = {
         MEMBER("measure", "the measure of the error"),
         MEMBER("reference", "the exact solution itself"),
         MEMBER("operator", "the gradient at regular positions"),
-        MEMBER("density", "the density at regular positions"),
+        MEMBER("density", "volume elements at regular positions"),
         MEMBER("disorder", "disorder"),
         MEMBER("viscosity", "viscosity"),
+        MEMBER("noise_term", "the viscosity's term against noise"),
+        MEMBER("conductivity", "conductivity"),
     },
     AUTOPSY_PARTS};
+
+const struct family autopsy_share_family = {"shares", "what an error is shared among",
+                                            (const struct member *const[]){
+                                                MEMBER("operator", "gradient"),
+                                                MEMBER("disorder", "disorder"),
+                                                MEMBER("viscosity", "viscosity"),
+                                                MEMBER("time_step", "time step"),
+                                                MEMBER("volume", "volume elements"),
+                                                MEMBER("measure", "measure"),
+                                            },
+                                            AUTOPSY_SHARES};
+
+static const enum autopsy_share share_of[AUTOPSY_PARTS] = {
+    [AUTOPSY_TIME_STEP] = AUTOPSY_OF_TIME_STEP, [AUTOPSY_MEASURE] = AUTOPSY_OF_MEASURE,
+    [AUTOPSY_REFERENCE] = AUTOPSY_OF_MEASURE,   [AUTOPSY_OPERATOR] = AUTOPSY_OF_OPERATOR,
+    [AUTOPSY_DENSITY] = AUTOPSY_OF_VOLUME,      [AUTOPSY_DISORDER] = AUTOPSY_OF_DISORDER,
+    [AUTOPSY_VISCOSITY] = AUTOPSY_OF_VISCOSITY, [AUTOPSY_NOISE_TERM] = AUTOPSY_OF_VISCOSITY,
+    [AUTOPSY_CONDUCTION] = AUTOPSY_OF_VISCOSITY};
+
+double autopsy_share(const struct autopsy_level *level, enum autopsy_share share)
+{
+    double sum = 0;
+    for (size_t k = 0; k < AUTOPSY_PARTS; k++)
+        if (share_of[k] == share) sum += level->share[k];
+    return sum;
+}
 
 const struct family autopsy_term_family = {"terms", "what moves energy between flow and heat",
                                            (const struct member *const[]){
@@ -46,19 +75,46 @@ enum status autopsy_check(const struct run *run, struct error *error)
 
 /* ---- orders ---- */
 
-/* Of a figure of each level that stands `at` bytes behind its beginning. */
-static enum status fit(const struct autopsy *autopsy, size_t at, struct order_fit *order,
-                       struct error *error)
+/* Of one figure of each level. Few levels have no order, and what is 0 at all has none. */
+static enum status fit_sizes(const struct autopsy *autopsy, const double *size,
+                             struct order_fit *order, struct error *error)
 {
-    double spacing[CASE_LADDER_MAX], size[CASE_LADDER_MAX];
+    double spacing[CASE_LADDER_MAX];
     bool any = false;
     for (size_t l = 0; l < autopsy->count; l++) {
         spacing[l] = autopsy->levels[l].spacing;
-        size[l] = *(const double *)((const char *)&autopsy->levels[l] + at);
         any |= size[l] != 0;
     }
     *order = (struct order_fit){.order = (double)NAN, .low = (double)NAN, .high = (double)NAN};
-    return any ? order_fit(autopsy->count, spacing, size, NULL, order, error) : STATUS_OK;
+    if (!any || autopsy->count < ORDER_LEVELS_MIN) return STATUS_OK;
+    return order_fit(autopsy->count, spacing, size, NULL, order, error);
+}
+
+/* Of a figure that stands `at` bytes behind the beginning of each level. */
+static enum status fit(const struct autopsy *autopsy, size_t at, struct order_fit *order,
+                       struct error *error)
+{
+    double size[CASE_LADDER_MAX];
+    for (size_t l = 0; l < autopsy->count; l++)
+        size[l] = *(const double *)((const char *)&autopsy->levels[l] + at);
+    return fit_sizes(autopsy, size, order, error);
+}
+
+static enum status fit_shares(struct autopsy *autopsy, struct error *error)
+{
+    for (int k = 0; k < AUTOPSY_PARTS; k++) {
+        double part[CASE_LADDER_MAX], share[CASE_LADDER_MAX];
+        for (size_t l = 0; l < autopsy->count; l++) {
+            const struct autopsy_level *level = &autopsy->levels[l];
+            part[l] = level->share[k] * level->error[0];
+            if (k < AUTOPSY_SHARES)
+                share[l] = autopsy_share(level, (enum autopsy_share)k) * level->error[0];
+        }
+        if (fit_sizes(autopsy, part, &autopsy->losses[k], error) ||
+            (k < AUTOPSY_SHARES && fit_sizes(autopsy, share, &autopsy->share_orders[k], error)))
+            return error->status;
+    }
+    return STATUS_OK;
 }
 
 /* ---- what is to blame ---- */
@@ -79,7 +135,7 @@ static void suspect(const struct autopsy *autopsy, bool suspected[AUTOPSY_PARTS]
 {
     bool any = false;
     for (size_t k = 0; k < AUTOPSY_PARTS; k++) {
-        suspected[k] = !autopsy->lost || autopsy->orders[k].order < AUTOPSY_ORDER;
+        suspected[k] = !autopsy->lost || autopsy->losses[k].order < AUTOPSY_ORDER;
         any |= suspected[k];
     }
     for (size_t k = 0; !any && k < AUTOPSY_PARTS; k++) suspected[k] = true;
@@ -115,21 +171,30 @@ static void speak(struct autopsy *autopsy)
     const char *cause = autopsy->floor ? "the kernel's lattice sums, a floor at regular positions,"
                                        : autopsy_part_family.members[autopsy->cause]->label;
     const double part = 100 * finest->share[autopsy->cause],
-                 own = autopsy->orders[autopsy->cause].order;
+                 own = autopsy->losses[autopsy->cause].order;
     char from[32], at[32], order[48] = "";
+    const char *seen = autopsy->theirs ? ", as far as snapshots tell, which do not show the time "
+                                         "step and the viscosity"
+                                       : "";
     number_text(autopsy->levels[autopsy->from].n, autopsy->dim, from);
     number_text(finest->n, autopsy->dim, at);
     if (isfinite(own)) snprintf(order, sizeof order, " and falls with order %.2f itself", own);
-    if (autopsy->lost)
-        snprintf(autopsy->verdict, sizeof autopsy->verdict,
-                 "The order, %.2f, is lost to %s from %s on: it is %.0f %% of the error at %s%s.",
-                 autopsy->order.order, cause, from, part, at, order);
+    if (autopsy->theirs && !isfinite(autopsy->order.order))
+        snprintf(autopsy->sentence, sizeof autopsy->sentence,
+                 "The largest part of the error from %s on that a snapshot can tell is %s: %.0f %% "
+                 "at %s (it shows neither the time step nor the viscosity; orders need %d of "
+                 "different n).",
+                 from, cause, part, at, ORDER_LEVELS_MIN);
+    else if (autopsy->lost)
+        snprintf(autopsy->sentence, sizeof autopsy->sentence,
+                 "The order, %.2f, is lost to %s from %s on: it is %.0f %% of the error at %s%s%s.",
+                 autopsy->order.order, cause, from, part, at, order, seen);
     else
-        snprintf(autopsy->verdict, sizeof autopsy->verdict,
+        snprintf(autopsy->sentence, sizeof autopsy->sentence,
                  "No order is lost: it is %.2f. The largest part of the error from %s on is %s: "
-                 "%.0f %% at %s%s%s.",
+                 "%.0f %% at %s%s%s%s.",
                  autopsy->order.order, from, cause, part, at, *order ? "; it" : "",
-                 *order ? order + 4 : "");
+                 *order ? order + 4 : "", seen);
 }
 
 enum status autopsy_judge(struct autopsy *autopsy, struct error *error)
@@ -148,10 +213,38 @@ enum status autopsy_judge(struct autopsy *autopsy, struct error *error)
                 offsetof(struct autopsy_level, size[0].rms) + k * sizeof(struct autopsy_split),
                 &autopsy->orders[k], error))
             return error->status;
+    if (fit_shares(autopsy, error)) return error->status;
     autopsy->lost = !(autopsy->order.order >= AUTOPSY_ORDER);
     blame(autopsy);
     speak(autopsy);
     return STATUS_OK;
+}
+
+/* ---- a ladder ---- */
+
+static enum status resolve(const struct run_settings *settings, size_t n, struct run *run,
+                           struct error *error)
+{
+    struct run_settings asked = *settings;
+    char text[32];
+    snprintf(text, sizeof text, "%zu", n);
+    enum status status = settings_set(&asked.settings, SETTING_n, text, SOURCE_USER, NULL, error);
+    if (!status) status = run_resolve(run, &asked, error);
+    return status ? status : autopsy_check(run, error);
+}
+
+enum status autopsy_ladder(const struct run_settings *settings, const size_t *ladder, size_t count,
+                           struct autopsy *autopsy, struct run *last, struct error *error)
+{
+    *autopsy = (struct autopsy){.dim = settings->file.dimension, .count = count};
+    for (size_t l = 0; l < count; l++)
+        if (resolve(settings, ladder[l], last, error)) return error->status;
+    for (size_t l = 0; l < count; l++)
+        if (resolve(settings, ladder[l], last, error) ||
+            autopsy_measure(last, &autopsy->levels[l], l + 1 == count ? &autopsy->trace : NULL,
+                            error))
+            return error->status;
+    return autopsy_judge(autopsy, error);
 }
 
 /* ---- output ---- */
@@ -167,8 +260,10 @@ static json_t *parts_json(const struct autopsy_level *level)
     json_t *parts = json_object();
     for (size_t k = 0; k < AUTOPSY_PARTS; k++)
         json_object_set_new(parts, autopsy_part_family.members[k]->name,
-                            json_pack("{s:o, s:o, s:o}", "size", result_number(level->size[k].rms),
-                                      "noise", result_number(level->size[k].noise), "share",
+                            json_pack("{s:o, s:o, s:o, s:o}", "size",
+                                      result_number(level->size[k].rms), "noise",
+                                      result_number(level->size[k].noise), "along",
+                                      result_number(level->size[k].along), "share",
                                       result_number(level->share[k])));
     return parts;
 }
@@ -209,6 +304,26 @@ static json_t *level_json(const struct autopsy_level *level)
     return object;
 }
 
+/* One after the other, by n; of snapshots without what they do not show. */
+static json_t *shares_json(const struct autopsy *autopsy)
+{
+    json_t *shares = json_array();
+    for (size_t l = 0; l < autopsy->count; l++)
+        for (int k = 0; k < AUTOPSY_SHARES; k++) {
+            const struct autopsy_level *level = &autopsy->levels[l];
+            const double share = autopsy_share(level, (enum autopsy_share)k);
+            if (autopsy->theirs && (k == AUTOPSY_OF_VISCOSITY || k == AUTOPSY_OF_TIME_STEP))
+                continue;
+            json_t *entry = order_json(&autopsy->share_orders[k]);
+            json_object_set_new(entry, "part", json_string(autopsy_share_family.members[k]->name));
+            json_object_set_new(entry, "n", json_integer((json_int_t)level->n));
+            json_object_set_new(entry, "share", result_number(share));
+            json_object_set_new(entry, "error", result_number(share * level->error[0]));
+            json_array_append_new(shares, entry);
+        }
+    return shares;
+}
+
 void autopsy_add_json(const struct autopsy *autopsy, json_t *document)
 {
     json_t *levels = json_array(), *orders = json_object();
@@ -221,14 +336,17 @@ void autopsy_add_json(const struct autopsy *autopsy, json_t *document)
     for (size_t k = 0; k < AUTOPSY_PARTS; k++)
         json_object_set_new(orders, autopsy_part_family.members[k]->name,
                             order_json(&autopsy->orders[k]));
+    json_object_set_new(document, "dim", json_integer(autopsy->dim));
+    json_object_set_new(document, "shares", shares_json(autopsy));
     json_object_set_new(document, "levels", levels);
     json_object_set_new(document, "orders", orders);
-    json_object_set_new(document, "trace", trace_json(&autopsy->trace, autopsy->dim));
+    if (!autopsy->theirs)
+        json_object_set_new(document, "trace", trace_json(&autopsy->trace, autopsy->dim));
     json_object_set_new(document, "lost", json_boolean(autopsy->lost));
     json_object_set_new(document, "cause",
                         json_string(autopsy_part_family.members[autopsy->cause]->name));
     json_object_set_new(document, "floor", json_boolean(autopsy->floor));
     json_object_set_new(document, "from",
                         json_integer((json_int_t)autopsy->levels[autopsy->from].n));
-    json_object_set_new(document, "verdict", json_string(autopsy->verdict));
+    json_object_set_new(document, "sentence", json_string(autopsy->sentence));
 }

@@ -125,8 +125,8 @@ static void scene_free(struct scene *s)
 
 /* One evaluation of the scene's particles with the energies u: in the table accelerations stand in
  * place of forces. */
-static enum status evaluate(const struct scene *s, double *u, bool viscous,
-                            struct rate_table *table, struct error *error)
+static enum status evaluate_as(const struct scene *s, const struct scheme *scheme, double *u,
+                               struct rate_table *table, struct error *error)
 {
     const struct initial initial = {.n = s->n,
                                     .x = {s->x[0], s->x[1], s->x[2]},
@@ -134,7 +134,7 @@ static enum status evaluate(const struct scene *s, double *u, bool viscous,
                                     .m = s->m,
                                     .u = u};
     struct setup setup = run_setup(s->run, &initial);
-    if (!viscous) setup.scheme.viscosity = VISCOSITY_NONE;
+    setup.scheme = *scheme;
     setup.skip = false;
     const enum status status = rate_table_make(table, &setup, error);
     for (int d = 0; !status && d < setup.dim; d++)
@@ -142,12 +142,21 @@ static enum status evaluate(const struct scene *s, double *u, bool viscous,
     return status;
 }
 
+/* Without viscosity. */
+static enum status evaluate(const struct scene *s, double *u, struct rate_table *table,
+                            struct error *error)
+{
+    struct scheme scheme = s->run->scheme;
+    scheme.viscosity = VISCOSITY_NONE;
+    return evaluate_as(s, &scheme, u, table, error);
+}
+
 /* What one field has more than another that is independent of it. */
 static struct autopsy_split more(struct autopsy_split one, struct autopsy_split other)
 {
     const double noise = fmax(0, one.noise * one.noise - other.noise * other.noise),
                  whole = fmax(noise, one.rms * one.rms - other.rms * other.rms);
-    return (struct autopsy_split){sqrt(whole), sqrt(noise)};
+    return (struct autopsy_split){sqrt(whole), sqrt(noise), fmax(0, one.along - other.along)};
 }
 
 /* ---- positions of the start ---- */
@@ -193,11 +202,11 @@ static enum status look_at_regular(struct scene *s, struct autopsy_level *level,
                                    struct error *error)
 {
     struct rate_table table = {0}, corrected = {0};
-    enum status status = evaluate(s, s->u, false, &table, error);
+    enum status status = evaluate(s, s->u, &table, error);
     if (!status) {
         look_at_density(s, &table, &level->compression, &level->density_regular);
         correct_energy(s, &table, level->compression);
-        status = evaluate(s, s->u, false, &corrected, error);
+        status = evaluate(s, s->u, &corrected, error);
     }
     if (!status) {
         level->size[AUTOPSY_DENSITY] = autopsy_split(&s->cells, table.force, corrected.force);
@@ -215,13 +224,13 @@ static enum status look_at_positions(struct scene *s, double compression, struct
                                      struct autopsy_split *size, struct error *error)
 {
     struct rate_table first = {0}, second = {0};
-    enum status status = evaluate(s, s->u, false, &first, error);
+    enum status status = evaluate(s, s->u, &first, error);
     for (size_t i = 0; !status && i < s->n; i++) s->m[i] *= compression * s->rho[i] / first.rho[i];
-    if (!status) status = evaluate(s, s->u, false, &second, error);
+    if (!status) status = evaluate(s, s->u, &second, error);
     if (!status) correct_energy(s, &second, compression);
     rate_table_free(&first);
     rate_table_free(&second);
-    if (!status) status = evaluate(s, s->u, false, table, error);
+    if (!status) status = evaluate(s, s->u, table, error);
     if (!status) *size = autopsy_split(&s->cells, table->force, s->exact);
     return status;
 }
@@ -276,36 +285,73 @@ static enum status judge_exact(const struct scene *s, const struct snapshot *end
 /* Parts of the acceleration: what is less is round-off, of sums and of difference quotients. */
 static const double round_off = 1e-9, quotient = 1e-6;
 
-/* Mean of P/rho. */
-static double energy(const struct scene *s)
+static double mean_energy(const struct scene *s)
 {
     double sum = 0;
     for (size_t i = 0; i < s->n; i++) sum += s->u[i];
-    return (s->run->problem.gamma - 1) * sum / (double)s->n;
+    return sum / (double)s->n;
+}
+
+/* How fast conductivity, in which two evaluations differ, changes pressures, over rho c: a wave
+ * whose pressure changes so loses velocity at this rate, whichever way it runs. */
+static enum status look_at_conductivity(const struct scene *s, const struct rate_table *with,
+                                        const struct rate_table *without,
+                                        struct autopsy_level *level, struct error *error)
+{
+    const double gamma = s->run->problem.gamma, c = sqrt(gamma * (gamma - 1) * mean_energy(s));
+    double *rate = calloc(2 * s->n, sizeof *rate), *none = rate + s->n;
+    double *const rates[3] = {rate, none, none};
+    struct autopsy_split *size = &level->size[AUTOPSY_CONDUCTION];
+    if (!rate) return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", s->n);
+    for (size_t i = 0; i < s->n; i++)
+        rate[i] = (gamma - 1) * (with->dU[i] - without->dU[i]) / (s->m[i] * c);
+    *size = autopsy_split(&s->cells, rates, NULL);
+    size->along = sqrt(size->rms * size->rms - size->noise * size->noise);
+    free(rate);
+    return STATUS_OK;
+}
+
+/* What dissipates, term by term. plain: without any of it. */
+static enum status look_at_dissipation(const struct scene *s, const struct rate_table *plain,
+                                       struct autopsy_level *level, struct error *error)
+{
+    struct scheme scheme = s->run->scheme;
+    const bool conducts = scheme.alpha_u > 0;
+    struct rate_table whole = {0}, calm = {0}, quiet = {0};
+    enum status status = evaluate_as(s, &scheme, s->u, &whole, error);
+    scheme.alpha_u = 0;
+    if (!status && conducts) status = evaluate_as(s, &scheme, s->u, &calm, error);
+    if (!status && conducts) status = look_at_conductivity(s, &whole, &calm, level, error);
+    scheme.noise = 0;
+    if (!status) status = evaluate_as(s, &scheme, s->u, &quiet, error);
+    if (!status) {
+        level->size[AUTOPSY_VISCOSITY] = autopsy_split(&s->cells, plain->force, quiet.force);
+        level->size[AUTOPSY_NOISE_TERM] = autopsy_split(&s->cells, quiet.force, whole.force);
+    }
+    rate_table_free(&whole);
+    rate_table_free(&calm);
+    rate_table_free(&quiet);
+    return status;
 }
 
 static enum status look_at_own(struct scene *s, const struct snapshot *end,
                                struct autopsy_level *level, struct error *error)
 {
-    struct rate_table table = {0}, viscous = {0};
-    struct autopsy_split own = {0};
+    struct rate_table table = {0};
+    struct autopsy_split own = {0}, *reference = &level->size[AUTOPSY_REFERENCE];
     double *const v[3] = {(double *)end->v[0], (double *)end->v[1], (double *)end->v[2]};
     enum status status = judge_exact(s, end, &level->size[AUTOPSY_MEASURE].rms, error);
+    level->velocity = autopsy_split(&s->cells, v, s->v);
+    level->round_off = 1e-13 * mean_energy(s) / s->spacing;
+    level->acceleration = autopsy_split(&s->cells, s->exact, NULL).rms;
+    *reference = autopsy_split(&s->cells, s->inertia, s->exact);
+    if (reference->rms < quotient * level->acceleration) *reference = (struct autopsy_split){0};
+    autopsy_cells_aim(&s->cells, v, s->v);
     if (!status) status = look_at_positions(s, level->compression, &table, &own, error);
-    if (!status) status = evaluate(s, s->u, true, &viscous, error);
-    if (!status) {
-        level->own = own.rms;
-        level->velocity = autopsy_split(&s->cells, v, s->v);
-        level->round_off = 1e-13 * energy(s) / s->spacing;
-        level->acceleration = autopsy_split(&s->cells, s->exact, NULL).rms;
-        level->size[AUTOPSY_DISORDER] = more(own, level->size[AUTOPSY_OPERATOR]);
-        level->size[AUTOPSY_VISCOSITY] = autopsy_split(&s->cells, table.force, viscous.force);
-        level->size[AUTOPSY_REFERENCE] = autopsy_split(&s->cells, s->inertia, s->exact);
-        if (level->size[AUTOPSY_REFERENCE].rms < quotient * level->acceleration)
-            level->size[AUTOPSY_REFERENCE] = (struct autopsy_split){0};
-    }
+    if (!status) status = look_at_dissipation(s, &table, level, error);
+    level->own = own.rms;
+    level->size[AUTOPSY_DISORDER] = more(own, level->size[AUTOPSY_OPERATOR]);
     rate_table_free(&table);
-    rate_table_free(&viscous);
     return status;
 }
 
@@ -322,14 +368,14 @@ static enum status look_at_end(const struct run *run, const struct run_result *r
 }
 
 static enum status look_at_result(const struct run *run, const struct run_result *result,
-                                  struct autopsy_level *level, struct error *error)
+                                  const struct regularity *regularity, struct autopsy_level *level,
+                                  struct error *error)
 {
     level->n = result->n;
     level->spacing = result->spacing;
     level->density = result->errors[FIELD_DENSITY].l1;
-    level->regularity = result->regularity;
-    enum status status = autopsy_power(run, &result->snapshot, level->power, error);
-    if (!status) status = look_at_start(run, "0", look_at_regular, level, error);
+    level->regularity = *regularity;
+    enum status status = look_at_start(run, "0", look_at_regular, level, error);
     if (!status) status = look_at_start(run, "0.2", look_at_jittered, level, error);
     return status ? status : look_at_end(run, result, level, error);
 }
@@ -337,8 +383,8 @@ static enum status look_at_result(const struct run *run, const struct run_result
 /* ---- a level ---- */
 
 /* Time step and measure have their shares of the error itself. What is left the others share: noise
- * of the error as the squares of their noise, a smooth error as the squares of what is smooth in
- * them, as independent errors do. */
+ * of the error as the squares of their noise, as independent errors do; a smooth error as what is
+ * smooth in them, and points along it where it moves with the flow, as errors do that add up. */
 static void divide(struct autopsy_level *level)
 {
     double *share = level->share, noise = 0, smooth = 0;
@@ -352,7 +398,7 @@ static void divide(struct autopsy_level *level)
     for (int k = AUTOPSY_REFERENCE; k < AUTOPSY_PARTS; k++) {
         if (size[k].rms < least) size[k] = (struct autopsy_split){0};
         noise += size[k].noise * size[k].noise;
-        smooth += size[k].rms * size[k].rms - size[k].noise * size[k].noise;
+        smooth += size[k].along;
     }
     const double rest = 1 - share[AUTOPSY_MEASURE] - share[AUTOPSY_TIME_STEP],
                  part = level->velocity.noise / level->velocity.rms,
@@ -360,9 +406,9 @@ static void divide(struct autopsy_level *level)
                          : !(smooth > 0) ? 1
                                          : part * part;
     for (int k = AUTOPSY_REFERENCE; k < AUTOPSY_PARTS; k++) {
-        const double own = size[k].noise * size[k].noise, whole = size[k].rms * size[k].rms;
+        const double own = size[k].noise * size[k].noise;
         share[k] = rest * ((noise > 0 ? noisy * own / noise : 0) +
-                           (smooth > 0 ? (1 - noisy) * (whole - own) / smooth : 0));
+                           (smooth > 0 ? (1 - noisy) * size[k].along / smooth : 0));
     }
 }
 
@@ -379,9 +425,26 @@ enum status autopsy_measure(const struct run *run, struct autopsy_level *level, 
         status = run_execute(&finer, &result, error);
         if (status && status != STATUS_BROKE_DOWN) return status;
         level->error[k] = result.errors[FIELD_VELOCITY].l1;
-        if (!status && k == 0) status = look_at_result(run, &result, level, error);
+        if (!status && k == 0)
+            status = look_at_result(run, &result, &result.regularity, level, error);
+        if (!status && k == 0) status = autopsy_power(run, &result.snapshot, level->power, error);
         run_free(&result);
     }
+    if (!status) divide(level);
+    return status;
+}
+
+enum status autopsy_measure_theirs(const struct run *run, const struct run_result *result,
+                                   struct autopsy_level *level, struct error *error)
+{
+    struct run plain = *run;
+    plain.scheme.viscosity = VISCOSITY_NONE;
+    plain.scheme.alpha_u = 0;
+    *level = (struct autopsy_level){0};
+    for (int k = 0; k < 3; k++) level->error[k] = result->errors[FIELD_VELOCITY].l1;
+    const struct regularity seen =
+        regularity_of(&run->problem, &run->scheme.kernel, &result->snapshot);
+    const enum status status = look_at_result(&plain, result, &seen, level, error);
     if (!status) divide(level);
     return status;
 }

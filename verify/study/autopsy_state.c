@@ -80,6 +80,7 @@ enum status autopsy_power(const struct run *run, const struct snapshot *state,
 struct autopsy_cell {
     size_t n;
     double weight, origin[3], x[3], xx[3][3], f[3], fx[3][3], squares;
+    double aim[3]; /* mean error of the velocity */
 };
 
 static size_t place_of(const struct autopsy_cells *cells, size_t i)
@@ -109,7 +110,7 @@ enum status autopsy_cells_make(struct autopsy_cells *cells, const struct prepare
         cells->count *= cells->along[d];
     }
     cells->place = malloc(n * sizeof *cells->place);
-    cells->of = malloc(cells->count * sizeof *cells->of);
+    cells->of = calloc(cells->count, sizeof *cells->of);
     if (!cells->place || !cells->of)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", n);
     for (size_t i = 0; i < n; i++) cells->place[i] = place_of(cells, i);
@@ -167,16 +168,44 @@ static double scattered(const struct autopsy_cell *cell, int dim)
     return fmax(0, about) * (double)cell->n / (double)(cell->n - fitted);
 }
 
+static void sum_up(const struct autopsy_cells *cells, double *const a[3], double *const b[3])
+{
+    for (size_t k = 0; k < cells->count; k++) {
+        struct autopsy_cell *cell = &cells->of[k];
+        *cell = (struct autopsy_cell){.aim = {cell->aim[0], cell->aim[1], cell->aim[2]}};
+    }
+    for (size_t i = 0; i < cells->n; i++) add(cells, i, a, b);
+}
+
+void autopsy_cells_aim(struct autopsy_cells *cells, double *const a[3], double *const b[3])
+{
+    double squares = 0, weight = 0;
+    sum_up(cells, a, b);
+    for (size_t k = 0; k < cells->count; k++) {
+        struct autopsy_cell *cell = &cells->of[k];
+        for (int d = 0; d < 3 && cell->weight > 0; d++) {
+            cell->aim[d] = cell->f[d] / cell->weight;
+            squares += cell->f[d] * cell->aim[d];
+        }
+        weight += cell->weight;
+    }
+    cells->aimed = sqrt(squares / weight);
+}
+
 struct autopsy_split autopsy_split(const struct autopsy_cells *cells, double *const a[3],
                                    double *const b[3])
 {
-    double squares = 0, noise = 0, weight = 0;
-    for (size_t k = 0; k < cells->count; k++) cells->of[k] = (struct autopsy_cell){0};
-    for (size_t i = 0; i < cells->n; i++) add(cells, i, a, b);
+    double squares = 0, noise = 0, weight = 0, along = 0;
+    sum_up(cells, a, b);
     for (size_t k = 0; k < cells->count; k++) {
-        squares += cells->of[k].squares;
-        weight += cells->of[k].weight;
-        noise += scattered(&cells->of[k], cells->problem->domain.dim);
+        const struct autopsy_cell *cell = &cells->of[k];
+        squares += cell->squares;
+        weight += cell->weight;
+        noise += scattered(cell, cells->problem->domain.dim);
+        for (int d = 0; d < 3; d++) along += cell->f[d] * cell->aim[d];
     }
-    return (struct autopsy_split){sqrt(squares / weight), sqrt(fmin(noise, squares) / weight)};
+    noise = fmin(noise, squares);
+    return (struct autopsy_split){sqrt(squares / weight), sqrt(noise / weight),
+                                  cells->aimed > 0 ? fabs(along) / weight / cells->aimed
+                                                   : sqrt((squares - noise) / weight)};
 }

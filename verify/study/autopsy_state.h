@@ -18,6 +18,7 @@ struct autopsy_cells {
     size_t n, along[3], count, *place; /* of each particle */
     double *const *x, *weight;         /* not owned */
     struct autopsy_cell *of;
+    double aimed; /* root of the mean square of what is smooth in the velocity's error; 0: none */
 };
 
 /* x: dim arrays of n positions, weight: n; both must stay. STATUS_ENVIRONMENT: no memory; free with
@@ -25,6 +26,9 @@ struct autopsy_cells {
 enum status autopsy_cells_make(struct autopsy_cells *cells, const struct prepared *problem,
                                size_t n, double *const x[3], double *weight, struct error *error);
 void autopsy_cells_free(struct autopsy_cells *cells);
+
+/* From now on a - b is the velocity's error, along which fields may point. */
+void autopsy_cells_aim(struct autopsy_cells *cells, double *const a[3], double *const b[3]);
 
 /* Of n vectors a - b, or a where b is NULL. */
 struct autopsy_split autopsy_split(const struct autopsy_cells *cells, double *const a[3],

@@ -132,6 +132,7 @@ COMMANDS = [
     ["rates", "sod", "n=60"],
     ["autopsy", "sound_wave", "--n", "10,14,20,28", "t_end=0.1"],
     ["autopsy", "yee", "--n", "10^2,12^2,14^2,16^2", "t_end=0.2"],
+    ["autopsy", "gresho", "--rates", SNAPSHOTS + "swift_gresho2d_minimal_32.hdf5"],
     ["judge", SNAPSHOTS + "gizmo_sod1d_dsph_n198.gadget1", "--case", "sod", "--gate", "density_l1=1"],
     ["compare", "sod n=40", "sod n=40 kernel=cubic_spline", "--draws", "2"],
     ["compare", "gresho n=10^2 t_end=0.01", "gresho n=10^2 t_end=0.01", "--draws", "1"],
