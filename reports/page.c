@@ -164,6 +164,7 @@ bool page_make(struct page *page, const json_t *results)
     const json_t *claims = json_object_get(results, "claims");
     const json_t *bench = json_object_get(results, "bench");
     const json_t *skips = json_object_get(results, "skips");
+    const json_t *autopsies = json_object_get(results, "autopsies");
     const bool of_codes = !strcmp(value_text(results, "mode"), "code");
     head(to, results, verdict);
     buffer_add(to, "<nav>");
@@ -171,6 +172,7 @@ bool page_make(struct page *page, const json_t *results)
         buffer_add(to, "<a href=\"#history\">Changes</a> ");
     buffer_add(to, "<a href=\"#cases\">Cases</a>");
     if (json_array_size(bench)) buffer_add(to, " <a href=\"#cost\">Cost</a>");
+    if (json_array_size(autopsies)) buffer_add(to, " <a href=\"#autopsies\">Lost orders</a>");
     if (json_array_size(skips)) buffer_add(to, " <a href=\"#skips\">Skips</a>");
     if (gradients) buffer_add(to, " <a href=\"#gradients\">Gradients</a>");
     if (stress) buffer_add(to, " <a href=\"#stability\">Stability</a>");
@@ -193,6 +195,7 @@ bool page_make(struct page *page, const json_t *results)
     if (history) FOLDED(page_history(&writer, history));
     if (!of_codes) FOLDED(page_overview(&writer, results));
     FOLDED(page_bench(&writer, bench, of_codes));
+    if (json_array_size(autopsies)) FOLDED(page_autopsies(&writer, autopsies));
     if (json_array_size(skips)) FOLDED(page_skips(&writer, skips));
     if (gradients) FOLDED(page_gradients(&writer, gradients));
     if (stress) FOLDED(page_stress(&writer, stress));

@@ -23,6 +23,7 @@ void page_history(struct page_writer *writer, const json_t *history);
 void page_strip(struct page_writer *writer, const json_t *results);
 void page_overview(struct page_writer *writer, const json_t *results);
 void page_cases(struct page_writer *writer, const json_t *results);
+void page_autopsies(struct page_writer *writer, const json_t *autopsies);
 void page_skips(struct page_writer *writer, const json_t *skips);
 /* of_codes: of a report of other codes. */
 void page_bench(struct page_writer *writer, const json_t *bench, bool of_codes);

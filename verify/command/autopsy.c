@@ -11,7 +11,6 @@
 #include "judge_autopsy.h"
 #include "picture.h"
 #include "result.h"
-#include "settings_output.h"
 #include "sweep.h"
 #include "table.h"
 #include "text.h"
@@ -172,24 +171,15 @@ static enum status take_ladder(const struct options *options, const struct run_s
     return STATUS_OK;
 }
 
-static json_t *document_of(const struct run *run, const struct autopsy *autopsy)
-{
-    json_t *document = result_new("autopsy");
-    json_object_set_new(document, "case", json_string(run->asked.file.name));
-    json_object_set_new(document, "title", json_string(run->asked.file.title));
-    json_object_set_new(document, "settings", settings_json(&run->settings));
-    autopsy_add_json(autopsy, document);
-    return document;
-}
-
 /* files: of snapshots, finest last; NULL: the runs were ours. */
 static enum status tell(const struct options *options, const struct run *run,
                         const struct autopsy *autopsy, json_t *files, struct error *error)
 {
     const char *plot = options_value(options, "plot");
     const struct table_style style = table_style(options->color);
-    json_t *document = document_of(run, autopsy);
+    json_t *document = result_new("autopsy");
     enum status status = STATUS_OK;
+    autopsy_add_case(run, autopsy, document);
     if (files) json_object_set_new(document, "snapshots", files);
     if (options->speak) {
         printf("%s%s%s: %s\n", style.bold, run->asked.file.name, style.end, run->asked.file.title);

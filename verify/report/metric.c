@@ -272,7 +272,8 @@ static void walk_list(struct metrics *metrics, const struct place *at, const cha
         if (strcmp(key, "snapshots") == 0) /* of one run as a rule, each at its time */
             add_name(name, "time %.10g", value_member(entry, "time"));
         const char *computed = json_string_value(json_object_get(entry, "reproduce"));
-        if (strcmp(key, "skips") == 0 && computed) /* benchmarks, some of one case twice */
+        if (computed &&
+            (!strcmp(key, "skips") || !strcmp(key, "autopsies"))) /* of one case twice */
             add_name(name, "%s", computed);
         const int length = snprintf(inside.path, sizeof inside.path, "%s%s%.80s[%s]", at->path,
                                     *at->path ? "." : "", key, name);

@@ -48,6 +48,10 @@ static const struct metric_rule rules[] = {
     {"code", "exit_status", OUT}, /* reason says what it means for the run */
     /* of an autopsy: what an error is made of is smaller or larger, as the error is */
     {"power", "*", OUT},
+    {"shares", "order",
+     OUT}, /* of the sizes of parts it is compared; in reports of the whole alone */
+    {"error", "order", 0, READING_ORDER, 0.05, 0},
+    {"autopsies", "order", OUT},
     {"parts", "size", 0, READING_PART, 0.1, 1e-12},
     {"parts", "noise", OUT},
     {"parts", "along", OUT},

@@ -260,6 +260,34 @@ static enum status add_skips(struct report *report, struct error *error)
     return STATUS_OK;
 }
 
+/* What orders are lost to: in vortices, and in waves that run across the lattice. */
+static enum status add_autopsies(struct report *report, struct error *error)
+{
+    static const struct {
+        const char *name, *key, *words, *day, *night;
+    } looked_at[] = {
+        {"yee", "", "", "16^2,20^2,24^2,32^2", "32^2,48^2,64^2,96^2"},
+        {"gresho", "", "", "16^2,20^2,24^2,32^2", "32^2,48^2,64^2,96^2"},
+        {"sound_wave_2d", "direction=2 1", "direction=\"2 1\"", "24^2,32^2,40^2,48^2",
+         "32^2,48^2,64^2,96^2"},
+        {"sound_wave_2d", "direction=1 1", "direction=\"1 1\"", NULL, "32^2,48^2,64^2,96^2"},
+        {"sound_wave_3d", "", "", NULL, "14^3,16^3,20^3,24^3"}};
+    for (size_t k = 0; k < sizeof looked_at / sizeof *looked_at; k++) {
+        struct report_piece piece = {.kind = REPORT_AUTOPSY,
+                                     .where = looked_at[k].name,
+                                     .sizes =
+                                         report->nightly ? looked_at[k].night : looked_at[k].day};
+        char key[32], *keys[] = {key};
+        if (!piece.sizes) continue;
+        snprintf(key, sizeof key, "%s", looked_at[k].key);
+        snprintf(piece.keys, sizeof piece.keys, "%s", looked_at[k].words);
+        if (run_prepare(&piece.settings, piece.where, *key != 0, keys, error) ||
+            add_piece(report, piece, error))
+            return error->status;
+    }
+    return STATUS_OK;
+}
+
 static enum status add_checks(struct report *report, struct error *error)
 {
     size_t count;
@@ -274,7 +302,8 @@ static enum status add_checks(struct report *report, struct error *error)
 
 static enum status add_all(struct report *report, struct error *error)
 {
-    if (add_cases(report, error) || add_skips(report, error) || add_checks(report, error))
+    if (add_cases(report, error) || add_skips(report, error) || add_autopsies(report, error) ||
+        add_checks(report, error))
         return error->status;
     if (add_piece(report, (struct report_piece){.kind = REPORT_LEAGUE, .where = "operators"},
                   error))
@@ -379,7 +408,7 @@ static json_t *run_document(const struct report *report, const struct report_pie
 static void add_documents(struct report *report, json_t *results)
 {
     json_t *runs = json_array(), *kernels = json_array(), *bench = json_array(),
-           *skips = json_array(), *verify = NULL;
+           *skips = json_array(), *autopsies = json_array(), *verify = NULL;
     for (size_t k = 0; k < report->piece_count; k++) {
         const struct report_piece *piece = report->pieces[k];
         const struct pool_job *job = &report->pool.jobs[piece->job];
@@ -404,6 +433,9 @@ static void add_documents(struct report *report, json_t *results)
         case REPORT_SKIPS:
             json_array_append(skips, job->document);
             break;
+        case REPORT_AUTOPSY:
+            json_array_append(autopsies, job->document);
+            break;
         case REPORT_CHECKS:
             if (!verify) {
                 json_object_set_new(results, "verify", verify = result_new("verify"));
@@ -419,6 +451,7 @@ static void add_documents(struct report *report, json_t *results)
     json_object_set_new(results, "kernels", kernels);
     json_object_set_new(results, "bench", bench);
     json_object_set_new(results, "skips", skips);
+    json_object_set_new(results, "autopsies", autopsies);
 }
 
 /* FOLDER/NAME.json, which a script may have written. */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "autopsy.h"
 #include "bench_skips.h"
 #include "certificate.h"
 #include "check_registry.h"
@@ -147,6 +148,26 @@ static enum status compute_skips(const struct report_piece *piece, json_t **docu
     return status;
 }
 
+static enum status compute_autopsy(const struct report_piece *piece, json_t **document,
+                                   struct error *error)
+{
+    const struct run_settings *settings = &piece->settings;
+    size_t ladder[CASE_LADDER_MAX], count;
+    struct autopsy autopsy;
+    struct run last;
+    char reproduce[256];
+    if (sweep_ladder(piece->sizes, ORDER_LEVELS_MIN, settings->file.dimension, ladder, &count,
+                     error) ||
+        autopsy_ladder(settings, ladder, count, &autopsy, &last, error))
+        return error->status;
+    snprintf(reproduce, sizeof reproduce, "sphproof autopsy %s%s%s --n %s", piece->where,
+             *piece->keys ? " " : "", piece->keys, piece->sizes);
+    *document = result_new("autopsy");
+    autopsy_add_case(&last, &autopsy, *document);
+    json_object_set_new(*document, "reproduce", json_string(reproduce));
+    return STATUS_OK;
+}
+
 static enum status compute(const void *context, json_t **document, struct error *error)
 {
     const struct report_piece *piece = context;
@@ -163,6 +184,8 @@ static enum status compute(const void *context, json_t **document, struct error 
         return compute_bench(piece, document, error);
     case REPORT_SKIPS:
         return compute_skips(piece, document, error);
+    case REPORT_AUTOPSY:
+        return compute_autopsy(piece, document, error);
     }
     return STATUS_OK;
 }
@@ -170,7 +193,7 @@ static enum status compute(const void *context, json_t **document, struct error 
 /* About how many seconds a piece takes that is no run. */
 static double weight_of(const struct report_piece *piece)
 {
-    static const double weights[] = {0, 0, 0.1, 2, 5, 3};
+    static const double weights[] = {0, 0, 0.1, 2, 5, 3, 4};
     const struct suite_choice choice = {
         .groups = &piece->where, .group_count = 1, .slow = piece->slow};
     double checks = 0;
@@ -181,11 +204,12 @@ static double weight_of(const struct report_piece *piece)
 
 enum status report_piece_add(struct pool *pool, struct report_piece *piece, struct error *error)
 {
-    static const char *const names[] = {"profile", "checks",         "kernel",
-                                        "league",  "work-precision", "skips"};
+    static const char *const names[] = {"profile",        "checks", "kernel", "league",
+                                        "work-precision", "skips",  "autopsy"};
     char name[128], *run = NULL, *key = name;
-    snprintf(name, sizeof name, "%s of %s%s%s", names[piece->kind], piece->where,
-             *piece->keys ? " " : "", piece->keys);
+    snprintf(name, sizeof name, "%s of %s%s%s%s%s", names[piece->kind], piece->where,
+             *piece->keys ? " " : "", piece->keys, piece->sizes ? " " : "",
+             piece->sizes ? piece->sizes : "");
     if (piece->kind == REPORT_CHECKS && piece->slow) strcat(name, ", slow ones too");
     if (piece->kind == REPORT_KERNEL)
         snprintf(name, sizeof name, "kernel %s, dim %d", piece->where, piece->dim);

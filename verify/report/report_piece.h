@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The pieces of a report that are no studies: runs with their profiles, groups of checks, kernel
- * certificates, the league of gradient operators, what an error costs, what skips save; each one
- * job of a pool. */
+ * certificates, the league of gradient operators, what an error costs, what skips save, what an
+ * order is lost to; each one job of a pool. */
 #ifndef SPHPROOF_REPORT_PIECE_H
 #define SPHPROOF_REPORT_PIECE_H
 
@@ -14,18 +14,20 @@ enum report_kind {
     REPORT_KERNEL,
     REPORT_LEAGUE,
     REPORT_BENCH,
-    REPORT_SKIPS
+    REPORT_SKIPS,
+    REPORT_AUTOPSY
 };
 
 struct report_piece {
     enum report_kind kind;
     const char *where;            /* case, group, kernel */
     int dim;                      /* of a kernel */
-    char keys[80];                /* of skips, as words */
+    char keys[80];                /* of skips and autopsies, as words; */
+    const char *sizes;            /* of autopsies: 16^2,24^2,... */
     bool slow;                    /* the slow checks too */
     size_t case_number;           /* of a run, */
     int scheme;                   /* and what it is compared as */
-    struct run_settings settings; /* of a run, a bench or skips */
+    struct run_settings settings; /* of a run, a bench, skips, an autopsy */
     struct run run;               /* the same, from report_piece_add */
     size_t job;                   /* its number, from report_piece_add */
 };

@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "result.h"
-#include "settings.h"
+#include "settings_output.h"
 
 #define MEMBER(name, label)                                                                        \
     &(const struct member)                                                                         \
@@ -324,9 +324,12 @@ static json_t *shares_json(const struct autopsy *autopsy)
     return shares;
 }
 
-void autopsy_add_json(const struct autopsy *autopsy, json_t *document)
+void autopsy_add_case(const struct run *finest, const struct autopsy *autopsy, json_t *document)
 {
     json_t *levels = json_array(), *orders = json_object();
+    json_object_set_new(document, "case", json_string(finest->asked.file.name));
+    json_object_set_new(document, "title", json_string(finest->asked.file.title));
+    json_object_set_new(document, "settings", settings_json(&finest->settings));
     for (size_t l = 0; l < autopsy->count; l++)
         json_array_append_new(levels, level_json(&autopsy->levels[l]));
     json_object_set_new(orders, "error", order_json(&autopsy->order));

@@ -131,7 +131,8 @@ enum status autopsy_judge(struct autopsy *autopsy, struct error *error);
 /* Share of an error at a level: the sum of its parts. */
 double autopsy_share(const struct autopsy_level *level, enum autopsy_share share);
 
-/* Adds "shares", "sentence", "levels", "orders", "cause" and "from" to a document. */
-void autopsy_add_json(const struct autopsy *autopsy, json_t *document);
+/* Adds "case", "title", "settings", "shares", "sentence", "levels", "orders", "cause" and more to a
+ * document. */
+void autopsy_add_case(const struct run *finest, const struct autopsy *autopsy, json_t *document);
 
 #endif

@@ -226,6 +226,41 @@ static void skips(void **state)
     free(page);
 }
 
+/* What orders are lost to: the sentence, the shares of the finest level, and a picture. */
+static void autopsies(void **state)
+{
+    (void)state;
+    static const char *const contents[] = {"id=\"autopsies\"",
+                                           "href=\"#autopsies\"",
+                                           "The order, 1, is lost to disorder from 8^2 on: it is",
+                                           "<td class=\"n\">0.750</td>",
+                                           "<td class=\"n\">1.25</td>",
+                                           "plots/yee-autopsy-1.dat",
+                                           "sphproof autopsy yee --n 8^2,16^2"};
+    static const char *const share = "{s:s, s:i, s:f, s:f, s:f, s:n, s:n}";
+    json_t *results = sound(), *list = json_array();
+    for (int n = 64; n <= 256; n *= 4)
+        for (int k = 0; k < 2; k++)
+            json_array_append_new(list, json_pack(share, "part", k ? "time_step" : "disorder", "n",
+                                                  n, "share",
+                                                  n == 64 ? 0.5
+                                                  : k     ? 0.25
+                                                          : 0.75,
+                                                  "error", 0.1, "order", 1.25, "low", "high"));
+    json_object_set_new(
+        results, "autopsies",
+        json_pack("[{s:s, s:s, s:i, s:s, s:o, s:s, s:[{s:i,s:f,s:f},{s:i,s:f,s:f}]}]", "case",
+                  "yee", "title", "A vortex", "dim", 2, "sentence",
+                  "The order, 1, is lost to disorder from 8^2 on: it is 75 % of the error",
+                  "shares", list, "reproduce", "sphproof autopsy yee --n 8^2,16^2", "levels", "n",
+                  64, "spacing", 0.125, "error", 0.2, "n", 256, "spacing", 0.0625, "error", 0.1));
+    char *page = page_of(results);
+    for (size_t k = 0; k < sizeof contents / sizeof *contents; k++)
+        if (!strstr(page, contents[k])) fail_msg("the page lacks %s", contents[k]);
+    assert_null(strstr(page, "<td class=\"n\">0.500</td>")); /* of the finest level alone */
+    free(page);
+}
+
 /* One profile: density from 2 to 1 at x = 0, where pressure is 4 and one particle has 5. */
 static void overshoots(void **state)
 {
@@ -586,6 +621,7 @@ int main(void)
         cmocka_unit_test(cause_first),
         cmocka_unit_test(unreadable),
         cmocka_unit_test(skips),
+        cmocka_unit_test(autopsies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
