@@ -9,7 +9,7 @@
 #include <string.h>
 
 #ifdef HAVE_HDF5
-#include <hdf5.h>
+#include "h5.h"
 
 enum { HEADER_NUMBERS_MAX = 4096 };
 
@@ -18,10 +18,15 @@ static hid_t file_of(const struct snapshot_source *source)
     return (hid_t)(intptr_t)source->file;
 }
 
+enum status hdf5_load(const char *path, struct error *error)
+{
+    return h5_load(path, error);
+}
+
 enum status hdf5_open(struct snapshot_source *source, struct error *error)
 {
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    const hid_t file = H5Fopen(source->path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    if (h5_load(source->path, error)) return error->status;
+    const hid_t file = h5.Fopen(source->path, H5F_ACC_RDONLY, H5P_DEFAULT);
     if (file < 0)
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s: begins as HDF5, but its library cannot open it: cut off or "
@@ -33,7 +38,7 @@ enum status hdf5_open(struct snapshot_source *source, struct error *error)
 
 void hdf5_close(struct snapshot_source *source)
 {
-    if (source->file) H5Fclose(file_of(source));
+    if (source->file) h5.Fclose(file_of(source));
     source->file = NULL;
 }
 
@@ -45,10 +50,10 @@ bool hdf5_has(const struct snapshot_source *source, const char *path)
         if (length >= sizeof part) return false;
         memcpy(part, path, length);
         part[length] = '\0';
-        if (H5Lexists(file_of(source), part, H5P_DEFAULT) <= 0) return false;
+        if (h5.Lexists(file_of(source), part, H5P_DEFAULT) <= 0) return false;
         if (!path[length]) break;
     }
-    return H5Oexists_by_name(file_of(source), path, H5P_DEFAULT) > 0;
+    return h5.Oexists_by_name(file_of(source), path, H5P_DEFAULT) > 0;
 }
 
 struct names {
@@ -82,8 +87,8 @@ void hdf5_names(const struct snapshot_source *source, const char *group, char *t
     struct names names = {.text = text, .size = size};
     hsize_t at = 0;
     *text = '\0';
-    H5Literate_by_name(file_of(source), group, H5_INDEX_NAME, H5_ITER_INC, &at, add_name, &names,
-                       H5P_DEFAULT);
+    h5.Literate_by_name(file_of(source), group, H5_INDEX_NAME, H5_ITER_INC, &at, add_name, &names,
+                        H5P_DEFAULT);
     status_clean(text);
 }
 
@@ -92,15 +97,15 @@ bool hdf5_last(const struct snapshot_source *source, const char *group, const ch
 {
     struct names names = {.text = name, .size = size, .prefix = prefix, .number = -1};
     hsize_t at = 0;
-    H5Literate_by_name(file_of(source), group, H5_INDEX_NAME, H5_ITER_INC, &at, add_name, &names,
-                       H5P_DEFAULT);
+    h5.Literate_by_name(file_of(source), group, H5_INDEX_NAME, H5_ITER_INC, &at, add_name, &names,
+                        H5P_DEFAULT);
     return names.number >= 0;
 }
 
 static bool is_number(hid_t type)
 {
-    const H5T_class_t class = H5Tget_class(type);
-    return (class == H5T_INTEGER || class == H5T_FLOAT) && H5Tget_size(type) <= 8;
+    const H5T_class_t class = h5.Tget_class(type);
+    return (class == H5T_INTEGER || class == H5T_FLOAT) && h5.Tget_size(type) <= 8;
 }
 
 /* An attribute, or a dataset that a code has in its place, with its type and space. */
@@ -112,9 +117,9 @@ struct entry {
 
 static void close_entry(struct entry *e)
 {
-    if (e->type >= 0) H5Tclose(e->type);
-    if (e->space >= 0) H5Sclose(e->space);
-    if (e->self >= 0) e->attribute ? H5Aclose(e->self) : H5Dclose(e->self);
+    if (e->type >= 0) h5.Tclose(e->type);
+    if (e->space >= 0) h5.Sclose(e->space);
+    if (e->self >= 0) e->attribute ? h5.Aclose(e->self) : h5.Dclose(e->self);
 }
 
 /* False: there is none, or it has more numbers than a header. Close with close_entry. */
@@ -125,15 +130,15 @@ static bool open_entry(const struct snapshot_source *source, const char *group, 
     *e = (struct entry){false, -1, -1, -1, 0};
     snprintf(path, sizeof path, "%s/%s", group, name);
     if (!hdf5_has(source, group)) return false;
-    e->attribute = H5Aexists_by_name(file_of(source), group, name, H5P_DEFAULT) > 0;
+    e->attribute = h5.Aexists_by_name(file_of(source), group, name, H5P_DEFAULT) > 0;
     if (e->attribute) {
-        e->self = H5Aopen_by_name(file_of(source), group, name, H5P_DEFAULT, H5P_DEFAULT);
-        if (e->self >= 0) e->type = H5Aget_type(e->self), e->space = H5Aget_space(e->self);
+        e->self = h5.Aopen_by_name(file_of(source), group, name, H5P_DEFAULT, H5P_DEFAULT);
+        if (e->self >= 0) e->type = h5.Aget_type(e->self), e->space = h5.Aget_space(e->self);
     } else if (hdf5_has(source, path)) {
-        e->self = H5Dopen2(file_of(source), path, H5P_DEFAULT);
-        if (e->self >= 0) e->type = H5Dget_type(e->self), e->space = H5Dget_space(e->self);
+        e->self = h5.Dopen2(file_of(source), path, H5P_DEFAULT);
+        if (e->self >= 0) e->type = h5.Dget_type(e->self), e->space = h5.Dget_space(e->self);
     }
-    if (e->type >= 0 && e->space >= 0) e->count = H5Sget_simple_extent_npoints(e->space);
+    if (e->type >= 0 && e->space >= 0) e->count = h5.Sget_simple_extent_npoints(e->space);
     if (e->count >= 1 && e->count <= HEADER_NUMBERS_MAX) return true;
     close_entry(e);
     return false;
@@ -141,8 +146,8 @@ static bool open_entry(const struct snapshot_source *source, const char *group, 
 
 static bool read_entry(const struct entry *e, hid_t type, void *values)
 {
-    return (e->attribute ? H5Aread(e->self, type, values)
-                         : H5Dread(e->self, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values)) >= 0;
+    return (e->attribute ? h5.Aread(e->self, type, values)
+                         : h5.Dread(e->self, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values)) >= 0;
 }
 
 int hdf5_numbers(const struct snapshot_source *source, const char *group, const char *name,
@@ -152,7 +157,7 @@ int hdf5_numbers(const struct snapshot_source *source, const char *group, const 
     int count = -1;
     if (!open_entry(source, group, name, &e)) return -1;
     double *all = calloc((size_t)e.count, sizeof *all);
-    if (all && is_number(e.type) && read_entry(&e, H5T_NATIVE_DOUBLE, all)) {
+    if (all && is_number(e.type) && read_entry(&e, h5.T_NATIVE_DOUBLE_g, all)) {
         count = (int)e.count;
         for (int i = 0; i < count && i < max; i++) values[i] = all[i];
     }
@@ -168,12 +173,12 @@ void hdf5_text(const struct snapshot_source *source, const char *group, const ch
     char *all = NULL;
     *text = '\0';
     if (!open_entry(source, group, name, &e)) return;
-    const bool is_text = e.count == 1 && H5Tget_class(e.type) == H5T_STRING,
-               variable = is_text && H5Tis_variable_str(e.type) > 0;
-    const size_t length = H5Tget_size(e.type);
+    const bool is_text = e.count == 1 && h5.Tget_class(e.type) == H5T_STRING,
+               variable = is_text && h5.Tis_variable_str(e.type) > 0;
+    const size_t length = h5.Tget_size(e.type);
     if (variable && read_entry(&e, e.type, &all) && all) {
         snprintf(text, size, "%s", all);
-        H5free_memory(all);
+        h5.free_memory(all);
     } else if (is_text && !variable && length > 0 && length < 1 << 16 &&
                (all = calloc(1, length + 1))) {
         if (read_entry(&e, e.type, all)) snprintf(text, size, "%s", all);
@@ -190,21 +195,22 @@ struct dataset {
 
 static void close_dataset(struct dataset *d)
 {
-    if (d->type >= 0) H5Tclose(d->type);
-    if (d->space >= 0) H5Sclose(d->space);
-    if (d->self >= 0) H5Dclose(d->self);
+    if (d->type >= 0) h5.Tclose(d->type);
+    if (d->space >= 0) h5.Sclose(d->space);
+    if (d->self >= 0) h5.Dclose(d->self);
 }
 
 static bool open_dataset(const struct snapshot_source *source, const char *path, struct dataset *d)
 {
     *d = (struct dataset){-1, -1, -1, {0, 1}};
     if (!hdf5_has(source, path)) return false;
-    d->self = H5Dopen2(file_of(source), path, H5P_DEFAULT);
-    if (d->self >= 0) d->type = H5Dget_type(d->self);
-    if (d->self >= 0) d->space = H5Dget_space(d->self);
+    d->self = h5.Dopen2(file_of(source), path, H5P_DEFAULT);
+    if (d->self >= 0) d->type = h5.Dget_type(d->self);
+    if (d->self >= 0) d->space = h5.Dget_space(d->self);
     if (d->type >= 0 && d->space >= 0 && is_number(d->type)) {
-        const int rank = H5Sget_simple_extent_ndims(d->space);
-        if ((rank == 1 || rank == 2) && H5Sget_simple_extent_dims(d->space, d->shape, NULL) == rank)
+        const int rank = h5.Sget_simple_extent_ndims(d->space);
+        if ((rank == 1 || rank == 2) &&
+            h5.Sget_simple_extent_dims(d->space, d->shape, NULL) == rank)
             return true;
     }
     close_dataset(d);
@@ -213,22 +219,22 @@ static bool open_dataset(const struct snapshot_source *source, const char *path,
 
 void hdf5_kind(const struct snapshot_source *source, const char *path, char *text, size_t size)
 {
-    const hid_t self = hdf5_has(source, path) ? H5Oopen(file_of(source), path, H5P_DEFAULT) : -1;
-    const H5I_type_t kind = self >= 0 ? H5Iget_type(self) : H5I_BADID;
-    const hid_t type = kind == H5I_DATASET ? H5Dget_type(self) : -1,
-                space = kind == H5I_DATASET ? H5Dget_space(self) : -1;
+    const hid_t self = hdf5_has(source, path) ? h5.Oopen(file_of(source), path, H5P_DEFAULT) : -1;
+    const H5I_type_t kind = self >= 0 ? h5.Iget_type(self) : H5I_BADID;
+    const hid_t type = kind == H5I_DATASET ? h5.Dget_type(self) : -1,
+                space = kind == H5I_DATASET ? h5.Dget_space(self) : -1;
     if (type >= 0 && space >= 0 && is_number(type))
-        snprintf(text, size, "numbers with %d indices", H5Sget_simple_extent_ndims(space));
+        snprintf(text, size, "numbers with %d indices", h5.Sget_simple_extent_ndims(space));
     else
         snprintf(text, size, "%s",
-                 kind == H5I_GROUP                               ? "a group"
-                 : type >= 0 && H5Tget_class(type) == H5T_STRING ? "text"
-                 : kind == H5I_DATASET                           ? "a dataset of another kind"
-                 : self >= 0                                     ? "a type"
-                                                                 : "nothing");
-    if (type >= 0) H5Tclose(type);
-    if (space >= 0) H5Sclose(space);
-    if (self >= 0) H5Oclose(self);
+                 kind == H5I_GROUP                                ? "a group"
+                 : type >= 0 && h5.Tget_class(type) == H5T_STRING ? "text"
+                 : kind == H5I_DATASET                            ? "a dataset of another kind"
+                 : self >= 0                                      ? "a type"
+                                                                  : "nothing");
+    if (type >= 0) h5.Tclose(type);
+    if (space >= 0) h5.Sclose(space);
+    if (self >= 0) h5.Oclose(self);
 }
 
 size_t hdf5_rows(const struct snapshot_source *source, const char *path)
@@ -242,7 +248,7 @@ size_t hdf5_rows(const struct snapshot_source *source, const char *path)
 static void set_precision(struct snapshot_file *file, enum snapshot_column column, hid_t type)
 {
     double *precision = &file->precision[column >= SNAPSHOT_VX];
-    const bool single = H5Tget_class(type) == H5T_FLOAT && H5Tget_size(type) <= sizeof(float);
+    const bool single = h5.Tget_class(type) == H5T_FLOAT && h5.Tget_size(type) <= sizeof(float);
     *precision = fmax(*precision, single ? (double)FLT_EPSILON / 2 : DBL_EPSILON / 2);
 }
 
@@ -260,7 +266,7 @@ static enum status take(const struct dataset *d, const struct snapshot_source *s
     enum status status = STATUS_OK;
     if (!all)
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
-    else if (H5Dread(d->self, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, all) < 0)
+    else if (h5.Dread(d->self, h5.T_NATIVE_DOUBLE_g, H5S_ALL, H5S_ALL, H5P_DEFAULT, all) < 0)
         status = error_set(error, STATUS_BAD_INPUT,
                            "%.200s: %.80s cannot be read: damaged, or packed by a filter that is "
                            "not installed",
@@ -295,13 +301,18 @@ enum status hdf5_read(const struct snapshot_source *source, const char *path,
 
 #else
 
-enum status hdf5_open(struct snapshot_source *source, struct error *error)
+enum status hdf5_load(const char *path, struct error *error)
 {
     return error_set(error, STATUS_BAD_INPUT,
                      "%.200s: is HDF5, which this program was built without: install libhdf5-dev "
                      "(Debian), hdf5-devel (Fedora) or hdf5 (brew) and build again, or write the "
                      "snapshot as CSV",
-                     source->path);
+                     path);
+}
+
+enum status hdf5_open(struct snapshot_source *source, struct error *error)
+{
+    return hdf5_load(source->path, error);
 }
 
 void hdf5_close(struct snapshot_source *source)

@@ -10,7 +10,12 @@
 #include "snapshot_file.h"
 #include "source.h"
 
-/* Opens source->file. STATUS_BAD_INPUT: the library cannot make sense of it, or is not there. */
+/* Loads the library, for a file. STATUS_BAD_INPUT: this program was built without it.
+ * STATUS_ENVIRONMENT: it is there no more. */
+enum status hdf5_load(const char *path, struct error *error);
+
+/* Opens source->file. STATUS_BAD_INPUT: the library cannot make sense of it; else as
+ * hdf5_load has it. */
 enum status hdf5_open(struct snapshot_source *source, struct error *error);
 void hdf5_close(struct snapshot_source *source);
 
@@ -34,8 +39,8 @@ int hdf5_numbers(const struct snapshot_source *source, const char *group, const 
 void hdf5_text(const struct snapshot_source *source, const char *group, const char *name,
                char *text, size_t size);
 
-/* What stands there in place of a table of numbers, for messages: "a group", "text", "numbers with 3
- * indices", "nothing". */
+/* What stands there in place of a table of numbers, for messages: "a group", "text", "numbers with
+ * 3 indices", "nothing". */
 void hdf5_kind(const struct snapshot_source *source, const char *path, char *text, size_t size);
 
 /* Rows of a dataset of numbers; 0: it is none. */

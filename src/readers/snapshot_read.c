@@ -116,6 +116,8 @@ static enum status read_hdf5(struct snapshot_source *source, const struct snapsh
 {
     enum { SECONDS = 60 };
     struct guard_verdict verdict = {0};
+    /* here once, not in each other process */
+    if (hdf5_load(source->path, error)) return error->status;
     const struct errand errand = {source, options, output_temporary()};
     if (!errand.results)
         return error_set(error, STATUS_ENVIRONMENT, "no temporary file for what %.200s holds",

@@ -7,12 +7,11 @@
 #include "output.h"
 
 #ifdef HAVE_HDF5
-#include <hdf5.h>
+#include "h5.h"
 
 enum status hdf5_image_possible(const char *path, struct error *error)
 {
-    (void)path, (void)error;
-    return STATUS_OK;
+    return h5_load(path, error);
 }
 
 /* Of an identifier, or of what a call returns. */
@@ -23,40 +22,39 @@ static bool went_well(hid_t code)
 
 static hid_t type_of(enum hdf5_type type)
 {
-    const hid_t types[] = {[HDF5_CHAR] = H5T_NATIVE_SCHAR,
-                           [HDF5_INT] = H5T_NATIVE_INT,
-                           [HDF5_UINT] = H5T_NATIVE_UINT,
-                           [HDF5_UINT64] = H5T_NATIVE_UINT64,
-                           [HDF5_DOUBLE] = H5T_NATIVE_DOUBLE};
+    const hid_t types[] = {[HDF5_CHAR] = h5.T_NATIVE_SCHAR_g,
+                           [HDF5_INT] = h5.T_NATIVE_INT_g,
+                           [HDF5_UINT] = h5.T_NATIVE_UINT_g,
+                           [HDF5_UINT64] = h5.T_NATIVE_UINT64_g,
+                           [HDF5_DOUBLE] = h5.T_NATIVE_DOUBLE_g};
     return types[type];
 }
 
 void hdf5_image_begin(struct hdf5_image *image)
 {
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_fapl_core(access, 1 << 20, 0); /* in memory, never on disk */
-    image->file = H5Fcreate("image", H5F_ACC_TRUNC, H5P_DEFAULT, access);
+    const hid_t access = h5.Pcreate(h5.P_CLS_FILE_ACCESS_ID_g);
+    h5.Pset_fapl_core(access, 1 << 20, 0); /* in memory, never on disk */
+    image->file = h5.Fcreate("image", H5F_ACC_TRUNC, H5P_DEFAULT, access);
     image->group = -1;
     image->good = went_well(image->file);
-    H5Pclose(access);
+    h5.Pclose(access);
 }
 
 void hdf5_image_group(struct hdf5_image *image, const char *name)
 {
-    if (went_well(image->group)) H5Gclose(image->group);
-    image->group = H5Gcreate2(image->file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    if (went_well(image->group)) h5.Gclose(image->group);
+    image->group = h5.Gcreate2(image->file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     image->good &= went_well(image->group);
 }
 
 static void set_attribute(struct hdf5_image *image, const char *name, hid_t type,
                           const void *values, hsize_t count)
 {
-    const hid_t space = count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, NULL);
-    const hid_t attribute = H5Acreate2(image->group, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-    image->good &= went_well(attribute) && went_well(H5Awrite(attribute, type, values));
-    if (went_well(attribute)) H5Aclose(attribute);
-    H5Sclose(space);
+    const hid_t space = count == 1 ? h5.Screate(H5S_SCALAR) : h5.Screate_simple(1, &count, NULL);
+    const hid_t attribute = h5.Acreate2(image->group, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    image->good &= went_well(attribute) && went_well(h5.Awrite(attribute, type, values));
+    if (went_well(attribute)) h5.Aclose(attribute);
+    h5.Sclose(space);
 }
 
 void hdf5_image_attribute(struct hdf5_image *image, const char *name, enum hdf5_type type,
@@ -67,38 +65,38 @@ void hdf5_image_attribute(struct hdf5_image *image, const char *name, enum hdf5_
 
 void hdf5_image_text(struct hdf5_image *image, const char *name, const char *text)
 {
-    const hid_t type = H5Tcopy(H5T_C_S1);
-    H5Tset_size(type, strlen(text) + 1);
+    const hid_t type = h5.Tcopy(h5.T_C_S1_g);
+    h5.Tset_size(type, strlen(text) + 1);
     set_attribute(image, name, type, text, 1);
-    H5Tclose(type);
+    h5.Tclose(type);
 }
 
 void hdf5_image_data(struct hdf5_image *image, const char *name, enum hdf5_type type,
                      const void *values, size_t rows, size_t columns)
 {
     const hsize_t shape[2] = {rows, columns};
-    const hid_t space = H5Screate_simple(columns > 1 ? 2 : 1, shape, NULL);
-    const hid_t timeless = H5Pcreate(H5P_DATASET_CREATE);
-    H5Pset_obj_track_times(timeless, false);
+    const hid_t space = h5.Screate_simple(columns > 1 ? 2 : 1, shape, NULL);
+    const hid_t timeless = h5.Pcreate(h5.P_CLS_DATASET_CREATE_ID_g);
+    h5.Pset_obj_track_times(timeless, false);
     const hid_t data =
-        H5Dcreate2(image->group, name, type_of(type), space, H5P_DEFAULT, timeless, H5P_DEFAULT);
+        h5.Dcreate2(image->group, name, type_of(type), space, H5P_DEFAULT, timeless, H5P_DEFAULT);
     image->good &= went_well(data) &&
-                   went_well(H5Dwrite(data, type_of(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
-    if (went_well(data)) H5Dclose(data);
-    H5Pclose(timeless);
-    H5Sclose(space);
+                   went_well(h5.Dwrite(data, type_of(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+    if (went_well(data)) h5.Dclose(data);
+    h5.Pclose(timeless);
+    h5.Sclose(space);
 }
 
 /* The bytes of the file; NULL: something has failed. */
 static void *bytes_of(struct hdf5_image *image, size_t *size)
 {
-    if (went_well(image->group)) H5Gclose(image->group);
-    image->good = image->good && went_well(H5Fflush(image->file, H5F_SCOPE_GLOBAL));
-    const ssize_t needed = image->good ? H5Fget_file_image(image->file, NULL, 0) : 0;
+    if (went_well(image->group)) h5.Gclose(image->group);
+    image->good = image->good && went_well(h5.Fflush(image->file, H5F_SCOPE_GLOBAL));
+    const ssize_t needed = image->good ? h5.Fget_file_image(image->file, NULL, 0) : 0;
     void *bytes = needed > 0 ? malloc((size_t)needed) : NULL;
-    if (bytes && H5Fget_file_image(image->file, bytes, (size_t)needed) <= 0)
+    if (bytes && h5.Fget_file_image(image->file, bytes, (size_t)needed) <= 0)
         free(bytes), bytes = NULL;
-    if (went_well(image->file)) H5Fclose(image->file);
+    if (went_well(image->file)) h5.Fclose(image->file);
     *size = (size_t)needed;
     return bytes;
 }

@@ -18,7 +18,7 @@ struct hdf5_image {
     bool good;           /* nothing has failed yet */
 };
 
-/* STATUS_ENVIRONMENT: this program was built without HDF5. */
+/* Before all others. STATUS_ENVIRONMENT: this program was built without HDF5, or cannot load it. */
 enum status hdf5_image_possible(const char *path, struct error *error);
 
 void hdf5_image_begin(struct hdf5_image *image);

@@ -8,6 +8,7 @@ import json
 import math
 import os
 import random
+import re
 import struct
 import shutil
 import subprocess
@@ -66,6 +67,21 @@ def with_hdf5():
         print("no HDF5: only the message is looked at")
         return False
     return True
+
+
+def without_its_library(folder):
+    """Where the library of HDF5 cannot be loaded, only those who ask for it are told."""
+    with open(PROGRAM, "rb") as program:
+        name = re.search(rb"\0(libhdf5\w*\.so[.\d]*)\0", program.read())
+    if not name:
+        return
+    write(folder, name.group(1).decode(), b"")
+    hidden = dict(os.environ, LD_LIBRARY_PATH=":".join(filter(None, [folder, os.environ.get("LD_LIBRARY_PATH")])))
+    for words, code in ((["judge", os.path.join(DATA, "gizmo_gresho2d_mfm_32.hdf5"), "--case", "gresho"], 4),
+                        (["run", "sod", "n=50", "--snapshot", os.path.join(folder, "a.h5")], 4),
+                        (["run", "sod", "n=50", "--snapshot", os.path.join(folder, "a.csv")], 0)):
+        done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=60, env=hidden)
+        assert done.returncode == code and ("cannot be loaded" in done.stderr) == (code == 4), done
 
 
 def with_zlib():
@@ -766,6 +782,8 @@ def main():
             phantom_dump(folder)
         blocks = formats(folder, zlib)
         files_of_ours(folder, hdf5)
+        if hdf5:
+            without_its_library(folder)
         tubes_with_ends(folder)
         gates_of_values()
         one_list_of_findings(folder)

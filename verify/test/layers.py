@@ -17,7 +17,7 @@ import tempfile
 
 CORE, PUBLIC = "src", "src/include"  # the solver; the installed headers: every library may include both
 FOLDERS = ("src", "reference", "reports", "verify")
-GENERATED = {"config.h", "family_names.h", "version.h"}
+GENERATED = {"config.h", "family_names.h", "h5_soname.h", "version.h"}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
 LAYER = re.compile(r"^\s*\['(\w+)', '([\w/]+)', \[([^\]]*)\]", re.M)
 
