@@ -13,7 +13,7 @@ enum { PARTS = 6, LEVELS = 64, TEXT = 240 };
 /* As they are stacked, with colours that stay whatever else is there. */
 static const struct {
     const char *name, *label;
-} parts[PARTS] = {{"disorder", "disorder"},   {"operator", "gradient"},
+} parts[PARTS] = {{"disorder", "disorder"},   {"operator", "operator (gradient)"},
                   {"viscosity", "viscosity"}, {"volume", "volume elements"},
                   {"time_step", "time step"}, {"measure", "measure"}};
 
@@ -193,5 +193,6 @@ void autopsy_plot_page(struct page_writer *writer, const json_t *document, const
     struct drawing d = {0};
     if (!draw(&d, document, name)) return;
     d.plot.show_title = false;
+    d.panels[0].title = d.panels[1].title = NULL; /* the page says the sentence */
     page_plot(writer, &d.plot, d.title);
 }

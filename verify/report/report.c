@@ -266,7 +266,7 @@ static enum status add_autopsies(struct report *report, struct error *error)
     static const struct {
         const char *name, *key, *words, *day, *night;
     } looked_at[] = {
-        {"yee", "", "", "16^2,20^2,24^2,32^2", "32^2,48^2,64^2,96^2"},
+        {"yee", "", "", "20^2,24^2,32^2,40^2", "32^2,48^2,64^2,96^2"},
         {"gresho", "", "", "16^2,20^2,24^2,32^2", "32^2,48^2,64^2,96^2"},
         {"sound_wave_2d", "direction=2 1", "direction=\"2 1\"", "24^2,32^2,40^2,48^2",
          "32^2,48^2,64^2,96^2"},

@@ -178,7 +178,8 @@ static void speak(struct autopsy *autopsy)
                                        : "";
     number_text(autopsy->levels[autopsy->from].n, autopsy->dim, from);
     number_text(finest->n, autopsy->dim, at);
-    if (isfinite(own)) snprintf(order, sizeof order, " and falls with order %.2f itself", own);
+    if (isfinite(own) && own < 0) snprintf(order, sizeof order, " and does not fall itself");
+    if (own >= 0) snprintf(order, sizeof order, " and falls with order %.2f itself", own);
     if (autopsy->theirs && !isfinite(autopsy->order.order))
         snprintf(autopsy->sentence, sizeof autopsy->sentence,
                  "The largest part of the error from %s on that a snapshot can tell is %s: %.0f %% "
