@@ -5,9 +5,9 @@
 #define SPHPROOF_FIELD_H
 
 #include <math.h>
+#include <stdbool.h>
 
 #include "family.h"
-#include "window.h"
 
 enum field { FIELD_DENSITY, FIELD_VELOCITY, FIELD_PRESSURE, FIELD_INTERNAL_ENERGY, FIELDS };
 enum norm { NORM_L1, NORM_L2, NORM_LINF, NORM_PARTICLE_MEAN, NORM_L1_WHOLE, NORMS };
@@ -33,6 +33,24 @@ static inline double domain_offset(const struct domain *domain, int direction, d
 {
     const double from = x - domain->lo[direction], length = domain_length(domain, direction);
     return from >= length && x < domain->hi[direction] ? nextafter(length, 0) : from;
+}
+
+/* Where errors are measured: an interval, a rectangle or a box, sides included (radius 0), or else
+ * a disc or a ball. */
+struct window {
+    int dim;
+    double lo[3], hi[3]; /* of a ball: the box around it */
+    double centre[3], radius;
+};
+
+static inline bool window_contains(const struct window *window, const double x[3])
+{
+    double square = 0;
+    for (int d = 0; d < window->dim; d++) {
+        if (!(x[d] >= window->lo[d] && x[d] <= window->hi[d])) return false;
+        square += (x[d] - window->centre[d]) * (x[d] - window->centre[d]);
+    }
+    return window->radius == 0 || square <= window->radius * window->radius;
 }
 
 #endif

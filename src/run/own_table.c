@@ -9,7 +9,6 @@
 
 #include "csv.h"
 #include "text.h"
-#include "window.h"
 
 enum column { RHO, VX, VY, VZ, P_, U, VR, VPHI, COLUMNS };
 static const char *const column_names[COLUMNS] = {"rho", "vx", "vy", "vz", "P", "u", "vr", "vphi"};

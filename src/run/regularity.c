@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include "grid.h"
-#include "result.h"
 
 /* Sums over all points, as they come. Distances as a mean and squares about it, updated point by
  * point (Welford 1962): on a lattice the mean of the squares less the square of the mean is noise.
@@ -218,12 +217,4 @@ struct regularity regularity_of(const struct prepared *p, const struct kernel *k
     for (int d = 0; d < p->domain.dim; d++) cloud.periodic[d] = p->boundary[d] == BOUNDARY_PERIODIC;
     if (s->n && !regularity_measure(&cloud, &found, &error)) return found;
     return (struct regularity){(double)NAN, (double)NAN, (double)NAN, (double)NAN, (double)NAN};
-}
-
-json_t *regularity_json(const struct regularity *regularity)
-{
-    return json_pack(
-        "{s:o, s:o, s:o, s:o, s:o}", "nearest", result_number(regularity->nearest), "spread",
-        result_number(regularity->spread), "paired", result_number(regularity->paired), "density",
-        result_number(regularity->density), "gradient", result_number(regularity->gradient));
 }

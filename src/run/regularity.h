@@ -5,7 +5,6 @@
 #ifndef SPHPROOF_REGULARITY_H
 #define SPHPROOF_REGULARITY_H
 
-#include <jansson.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -42,8 +41,5 @@ enum status regularity_measure(const struct regularity_cloud *cloud, struct regu
 /* Of a state of a run, with the kernel that the run has. NaN where it cannot be said. */
 struct regularity regularity_of(const struct prepared *p, const struct kernel *kernel,
                                 const struct snapshot *s);
-
-/* {"nearest", "spread", "paired", "density", "gradient"}. New reference. */
-json_t *regularity_json(const struct regularity *regularity);
 
 #endif

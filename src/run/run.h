@@ -7,7 +7,6 @@
 
 #include <jansson.h>
 
-#include "budget.h"
 #include "cases.h"
 #include "checkpoint.h"
 #include "description.h"
@@ -90,6 +89,18 @@ struct run_functional {
     double value, exact;
 };
 
+/* How far a wave's numerical width reaches, in the particle's h. */
+#define BUDGET_REACH 3.
+
+/* Where the error comes from: its L1 norm by the regions of the problem (problem.h), and whether
+ * gas that no wave has reached is still as it was. */
+struct budget {
+    const struct regions *regions; /* NULL: the problem has none */
+    /* L1 = sum over regions; 0 where a region is not in the window */
+    double l1[PROBLEM_REGIONS_MAX][FIELDS];
+    double still; /* max |v - v0|/c in undisturbed gas of the whole box; NaN: too few particles */
+};
+
 struct run_result {
     enum status status;       /* STATUS_OK or STATUS_BROKE_DOWN */
     char message[512];        /* how it broke down */
@@ -164,6 +175,13 @@ json_t *run_errors_json(const struct run_result *result);
 
 /* What interpolation in a user's table may be off, in a line; "" where there is no table. */
 void run_interpolation_text(const double interpolation[FIELDS], char *text, size_t size);
+
+/* {"undisturbed": {"density", ...}, ..., "still"}; null where there are no regions. New reference.
+ */
+json_t *run_budget_json(const struct budget *budget);
+
+/* [lo, hi] of an interval, {"lo", "hi"} of a box, {"centre", "radius"} of a ball. New reference. */
+json_t *run_window_json(const struct window *window);
 
 /* [{"name", "value", "reference"}]; owned by the caller. */
 json_t *run_functionals_json(const struct run_result *result);

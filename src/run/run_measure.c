@@ -162,6 +162,28 @@ void run_measure_nothing(struct run_result *result)
     for (int field = 0; field < FIELDS; field++) result->interpolation[field] = (double)NAN;
 }
 
+void run_measure_budget(const struct prepared *p, const struct snapshot *s,
+                        const double *const *exact_values, struct budget *budget)
+{
+    const struct regions *regions = p->problem->regions;
+    *budget = (struct budget){.regions = regions, .still = NAN};
+    if (!regions) return;
+    const double *const fields[FIELDS] = {s->rho, s->v[0], s->P, s->u};
+    double volume = 0, x[3];
+    for (size_t i = 0; i < s->n; i++) {
+        const double part = problem_window_part(p, s, i);
+        if (part == 0) continue;
+        problem_place(p, s, i, x);
+        const size_t region = regions->at(p, x, BUDGET_REACH * s->h[i], s->time);
+        volume += part;
+        for (int f = 0; f < FIELDS; f++)
+            budget->l1[region][f] += part * fabs(fields[f][i] - exact_values[f][i]);
+    }
+    for (size_t r = 0; regions->names[r]; r++)
+        for (int f = 0; f < FIELDS; f++) budget->l1[r][f] /= volume;
+    budget->still = regions->still(p, s);
+}
+
 enum status run_measure_errors(struct run_result *result, struct error *error)
 {
     const struct snapshot *s = &result->snapshot;
@@ -174,7 +196,7 @@ enum status run_measure_errors(struct run_result *result, struct error *error)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
     (result->problem.domain.dim == 1 ? measure_line : measure_cloud)(result, measured, &of);
     const enum status status = suspect(result, measured, &of, error);
-    budget_measure(&result->problem, s, (const double *const *)of.exact, &result->budget);
+    run_measure_budget(&result->problem, s, (const double *const *)of.exact, &result->budget);
     free(of.storage);
     return status;
 }

@@ -8,6 +8,11 @@
 /* Of result->snapshot at result->time. STATUS_ENVIRONMENT: no memory. */
 enum status run_measure_errors(struct run_result *result, struct error *error);
 
+/* Splits the L1 norms by the regions of the problem; exact_values[f]: n numbers of field f at the
+ * particles. */
+void run_measure_budget(const struct prepared *p, const struct snapshot *s,
+                        const double *const *exact_values, struct budget *budget);
+
 /* Errors where there is nothing to measure: NaN. */
 void run_measure_nothing(struct run_result *result);
 

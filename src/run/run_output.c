@@ -11,6 +11,7 @@
 #include "result.h"
 #include "settings_output.h"
 #include "snapshot_writer.h"
+#include "trace_output.h"
 
 static void set_number(json_t *object, const char *name, double value)
 {
@@ -93,6 +94,39 @@ void run_add_motion(const struct run_result *result, const struct trace_motion *
     set_known(conservation, "centre", true, motion->centre / result->spacing);
 }
 
+json_t *run_budget_json(const struct budget *budget)
+{
+    if (!budget->regions) return json_null();
+    json_t *object = json_object();
+    for (size_t r = 0; budget->regions->names[r]; r++) {
+        json_t *fields = json_object();
+        for (int f = 0; f < FIELDS; f++)
+            json_object_set_new(fields, field_family.members[f]->name,
+                                result_number(budget->l1[r][f]));
+        json_object_set_new(object, budget->regions->names[r], fields);
+    }
+    json_object_set_new(object, "still",
+                        isnan(budget->still) ? json_null() : result_number(budget->still));
+    return object;
+}
+
+static json_t *place_json(int dim, const double x[3])
+{
+    json_t *place = json_array();
+    for (int d = 0; d < dim; d++) json_array_append_new(place, json_real(x[d]));
+    return place;
+}
+
+json_t *run_window_json(const struct window *window)
+{
+    if (window->radius > 0)
+        return json_pack("{s:o, s:f}", "centre", place_json(window->dim, window->centre), "radius",
+                         window->radius);
+    if (window->dim == 1) return json_pack("[f, f]", window->lo[0], window->hi[0]);
+    return json_pack("{s:o, s:o}", "lo", place_json(window->dim, window->lo), "hi",
+                     place_json(window->dim, window->hi));
+}
+
 static json_t *conservation_json(const struct run_result *result)
 {
     json_t *object = json_object();
@@ -146,7 +180,7 @@ void run_add_plan(const struct run_settings *settings, const struct run_result *
     json_object_set_new(document, "title", json_string(settings->file.title));
     json_object_set_new(document, "settings", settings_json(&result->settings));
     json_object_set_new(document, "n", json_integer((json_int_t)result->n));
-    json_object_set_new(document, "window", window_json(&result->problem.window));
+    json_object_set_new(document, "window", run_window_json(&result->problem.window));
     if (!isnan(result->start.density))
         json_object_set_new(document, "start",
                             json_pack("{s:o, s:o, s:o}", "density_rms",
@@ -184,7 +218,7 @@ void run_add_json(const struct run_settings *settings, const struct run_result *
     if (broke_down) json_object_set_new(document, "message", json_string(result->message));
     json_object_set_new(document, "errors", run_errors_json(result));
     json_object_set_new(document, "conservation", conservation_json(result));
-    json_object_set_new(document, "regularity", regularity_json(&result->regularity));
+    json_object_set_new(document, "regularity", trace_regularity_json(&result->regularity));
     json_object_set_new(document, "cost", cost_json(result));
     json_object_set_new(document, "matrix", matrix_json(result));
     json_object_set_new(document, "functionals", run_functionals_json(result));
@@ -194,7 +228,7 @@ void run_add_json(const struct run_settings *settings, const struct run_result *
     json_object_set_new(document, "measured", measured);
     set_number(document, "spacing", result->spacing);
     set_number(document, "h", result->h);
-    json_object_set_new(document, "budget", budget_json(&result->budget));
+    json_object_set_new(document, "budget", run_budget_json(&result->budget));
     json_object_set_new(document, "suspicion", json_string(result->suspicion));
 }
 

@@ -4,7 +4,6 @@
 #ifndef SPHPROOF_TRACE_H
 #define SPHPROOF_TRACE_H
 
-#include <jansson.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -60,11 +59,5 @@ void trace_add(struct trace *trace, double time, const struct conservation *sums
 /* Is regularity to be seen at this time of a run to t_end? The start and the end always are. */
 bool trace_looks(const struct trace *trace, double time, double t_end);
 void trace_see(struct trace *trace, double time, const struct regularity *regularity);
-
-/* {"time", "mass", "momentum", "angular_momentum" (null in 1D), "energy": arrays of the drift;
- * "kinetic", "potential": what each has gained since the start, over the energy at the start, the
- * latter all that is not kinetic;
- * "regularity": {"time", and the figures of regularity_json}}. New reference. */
-json_t *trace_json(const struct trace *trace, int dim);
 
 #endif

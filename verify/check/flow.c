@@ -2,6 +2,7 @@
  * Checks of the exact flows of 2D and 3D: they satisfy Euler's equations at every place, also
  * carried along by a boost; and what is known of the shear layers that have no exact solution. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

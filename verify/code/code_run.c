@@ -17,6 +17,7 @@
 #include "places.h"
 #include "profile.h"
 #include "result.h"
+#include "trace_output.h"
 #include "value.h"
 
 /* A run on its way. */

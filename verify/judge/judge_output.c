@@ -3,12 +3,13 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "judge.h"
 #include "cloud_profile.h"
 #include "gates.h"
+#include "judge.h"
 #include "profile.h"
 #include "result.h"
 #include "settings_output.h"
+#include "trace_output.h"
 #include "value.h"
 
 static json_t *kernel_json(const struct judged *judged)
@@ -54,10 +55,10 @@ json_t *judge_one_json(const struct judged *judged, bool profiles)
         notes_json(&file->notes), "n", (json_int_t)r->n, "time", result_number(r->time), "dim",
         file->dim, "precision", "positions", result_number(file->precision[0]), "fields",
         result_number(file->precision[1]), "kernel", kernel_json(judged), "window",
-        window_json(&r->problem.window), "errors", run_errors_json(r), "functionals",
-        run_functionals_json(r), "budget", budget_json(&r->budget), "noise", "transverse_velocity",
-        plane ? result_number(judged->transverse) : json_null(), "undisturbed",
-        r->budget.regions ? result_number(r->budget.still) : json_null(), "foreign",
+        run_window_json(&r->problem.window), "errors", run_errors_json(r), "functionals",
+        run_functionals_json(r), "budget", run_budget_json(&r->budget), "noise",
+        "transverse_velocity", plane ? result_number(judged->transverse) : json_null(),
+        "undisturbed", r->budget.regions ? result_number(r->budget.still) : json_null(), "foreign",
         judged->foreign, "verdict", judged->verdict, "meant",
         judged->meant[0] ? judged->meant : NULL);
     if (one && profiles)

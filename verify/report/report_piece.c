@@ -18,6 +18,7 @@
 #include "run_job.h"
 #include "suite.h"
 #include "suite_output.h"
+#include "trace_output.h"
 #include "value.h"
 
 static enum status compute_run(const struct report_piece *piece, json_t **document,

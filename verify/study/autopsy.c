@@ -6,6 +6,7 @@
 
 #include "result.h"
 #include "settings_output.h"
+#include "trace_output.h"
 
 #define MEMBER(name, label)                                                                        \
     &(const struct member)                                                                         \
@@ -297,9 +298,9 @@ static json_t *level_json(const struct autopsy_level *level)
                    {"jittered", level->jittered},
                    {"density", level->density},
                    {"density_regular", level->density_regular}};
-    json_t *object =
-        json_pack("{s:i, s:o, s:o, s:o}", "n", (int)level->n, "parts", parts_json(level), "power",
-                  power_json(level->power), "regularity", regularity_json(&level->regularity));
+    json_t *object = json_pack("{s:i, s:o, s:o, s:o}", "n", (int)level->n, "parts",
+                               parts_json(level), "power", power_json(level->power), "regularity",
+                               trace_regularity_json(&level->regularity));
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
         json_object_set_new(object, numbers[k].name, result_number(numbers[k].value));
     return object;

@@ -10,7 +10,6 @@
 
 #include <jansson.h>
 
-#include "budget.h"
 #include "gates.h"
 #include "order.h"
 #include "pool.h"

@@ -45,7 +45,7 @@ static json_t *level_json(const struct study *study, const struct study_level *l
     json_t *item = json_pack("{s:I, s:o, s:o, s:o, s:o, s:o}", "n", (json_int_t)level->n, "h",
                              result_number(level->h), "spacing", result_number(level->spacing),
                              "errors", errors, "cpu_s", result_number(level->cpu_s), "budget",
-                             budget_json(&level->budget));
+                             run_budget_json(&level->budget));
     json_object_set_new(item, "replicates", json_integer((json_int_t)study->replicates));
     if (study->replicates > 1) {
         json_object_set(item, "spread", spread);

@@ -23,6 +23,19 @@ static double error_of(const json_t *run, int field, int norm)
     return norm_of(run, field_family.members[field]->name, norm);
 }
 
+/* Adds the budget of a run, by such regions (NULL: none), times weight; still: the largest. */
+static void add_budget(struct budget *budget, const struct regions *regions, const json_t *json,
+                       double weight)
+{
+    if (!regions || !json_is_object(json)) return;
+    if (!budget->regions) *budget = (struct budget){.regions = regions, .still = NAN};
+    for (size_t r = 0; regions->names[r]; r++)
+        for (int f = 0; f < FIELDS; f++)
+            budget->l1[r][f] +=
+                weight * value_inner(json, regions->names[r], field_family.members[f]->name);
+    budget->still = fmax(budget->still, value_member(json, "still"));
+}
+
 static void read_functionals(struct study_result *result, struct study_level *level,
                              const json_t *run, double weight)
 {
@@ -77,7 +90,7 @@ static void read_run(struct study_result *result, struct study_level *level,
     level->binned_density_l1 +=
         weight * log(value_member(json_object_get(run, "errors"), "binned_density_l1"));
     level->cpu_s += weight * value_member(json_object_get(run, "cost"), "cpu_s");
-    budget_add(&level->budget, problem_of(&result->settings)->regions,
+    add_budget(&level->budget, problem_of(&result->settings)->regions,
                json_object_get(run, "budget"), weight);
     read_functionals(result, level, run, weight);
     const json_t *errors = json_object_get(run, "errors");

@@ -4,7 +4,8 @@
 
   layers.py SOURCE            the folders of src, reference, reports and verify, and their files, must include
                               each other without a circle, and a library only the core and those libraries that
-                              its line in meson.build names, or that these name
+                              its line in meson.build names, or that these name; of the solver's sums (src/line,
+                              src/cells) only the headers in src/cells/include
   layers.py SOURCE --print    the graph, one library a line
   layers.py SOURCE --dot      the same for graphviz
 
@@ -15,6 +16,8 @@ import re
 import sys
 import tempfile
 
+INSIDE = ("src/line/", "src/cells/")  # of the solver: seen by itself, by what times its loops, and by tests
+SEE_INSIDE = ("src/core/",) + INSIDE + ("verify/bench/", "verify/test/")
 CORE, PUBLIC = "src", "src/include"  # the solver; the installed headers: every library may include both
 FOLDERS = ("src", "reference", "reports", "verify")
 GENERATED = {"config.h", "family_names.h", "h5_soname.h", "version.h"}
@@ -118,6 +121,8 @@ def judge(source):
         if here is None:
             troubles.append("%s stands in no folder that meson.build lists" % file)
         for other in others:
+            if other.startswith(INSIDE) and "/include/" not in other and not file.startswith(SEE_INSIDE):
+                troubles.append("%s includes %s, which is private to the solver" % (file, other))
             there = layer_of(other, sees)
             if there != here and (there not in sees or here in sees and there not in sees[here]):
                 troubles.append("%s includes %s: upward" % (file, other))
@@ -142,6 +147,8 @@ def try_itself():
               ({"src/core/core.h": '#include "low.h"\n'}, "upward"),
               ({"verify/high/high.c": '#include "test.h"\n', "verify/test/test.h": ""}, "upward"),
               ({"verify/high/high.c": '#include "nowhere.h"\n'}, "no place"),
+              ({"src/cells/include/grid.h": "", "verify/high/high.c": '#include "grid.h"\n'}, None),
+              ({"src/cells/lanes.h": "", "verify/high/high.c": '#include "cells/lanes.h"\n'}, "private"),
               ({"reference/new.c": ""}, "no folder")]
     for fault, expected in faults:
         with tempfile.TemporaryDirectory() as tree:

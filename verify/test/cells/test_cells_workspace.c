@@ -14,7 +14,7 @@
 #include "solver.h"
 #include "width.h"
 
-#include "cells/grid.h"
+#include "grid.h"
 
 enum { N = 1024 };
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "cube_root.h"
-#include "gather.h"
+#include "cells/gather.h"
 #include "grid.h"
 #include "near.h"
 

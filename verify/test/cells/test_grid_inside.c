@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "grid_inside.h"
+#include "cells/grid_inside.h"
 #include "near.h"
 
 enum { POINTS_MAX = 3000 };

@@ -11,7 +11,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "cells/matrix.h"
+#include "matrix.h"
 #include "cells/moments.h"
 #include "kernel.h"
 

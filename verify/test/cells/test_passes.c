@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "cells/lanes.h"
-#include "cells/matrix.h"
+#include "matrix.h"
 #include "cells/pairs.h"
 
 typedef long double real;

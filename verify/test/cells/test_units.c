@@ -7,8 +7,8 @@
 #include <stdlib.h>
 
 #include "near.h"
-#include "shapes.h"
-#include "units.h"
+#include "cells/shapes.h"
+#include "cells/units.h"
 
 TEST(test_ordinary)
 {

@@ -9,11 +9,11 @@
 #include <string.h>
 
 #include "draw.h"
-#include "cells.h"
+#include "cells/cells.h"
 #include "grid.h"
 #include "integrator.h"
 #include "operator.h"
-#include "shapes.h"
+#include "cells/shapes.h"
 #include "simulation.h"
 #include "summation.h"
 #include "watched.h"

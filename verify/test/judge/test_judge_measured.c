@@ -3,7 +3,6 @@
  * box, and how far it is from the solution is what a plain calculation says. */
 #include "test.h"
 
-#include "budget.h"
 #include "made_snapshot.h"
 #include "near.h"
 

@@ -16,6 +16,7 @@
 #include "problem.h"
 #include "problem_list.h"
 #include "problem_prepare.h"
+#include "run.h"
 
 /* What a walk is about, and where it stopped. */
 struct walk {
@@ -458,7 +459,7 @@ TEST(two_dimensions)
     assert_string_equal(walk.fault, "");
     assert_true(window_contains(&walk.p.window, (double[3]){0.5, 0.89}));
     assert_false(window_contains(&walk.p.window, (double[3]){0.2, 0.2})); /* in the box around it */
-    json_t *window = window_json(&walk.p.window);
+    json_t *window = run_window_json(&walk.p.window);
     assert_int_equal(json_array_size(json_object_get(window, "centre")), 2);
     json_decref(window);
     struct problem flat = vortex;

@@ -9,6 +9,7 @@
 #include "near.h"
 #include "problem.h"
 #include "regularity.h"
+#include "trace_output.h"
 
 static struct kernel kernel_named(const char *name)
 {
@@ -295,7 +296,7 @@ TEST(of_a_run)
     const struct regularity none = regularity_of(&p, &kernel, &s);
     assert_true(isnan(none.nearest) && isnan(none.spread) && isnan(none.paired) &&
                 isnan(none.density) && isnan(none.gradient));
-    json_t *json = regularity_json(&(struct regularity){1, 2, 3, 4, NAN});
+    json_t *json = trace_regularity_json(&(struct regularity){1, 2, 3, 4, NAN});
     char *text = json_dumps(json, JSON_COMPACT | JSON_SORT_KEYS);
     assert_string_equal(text,
                         "{\"density\":4.0,\"gradient\":\"nan\",\"nearest\":1.0,\"paired\":3.0,"

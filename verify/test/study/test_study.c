@@ -9,6 +9,7 @@
 #include "judged.h"
 #include "near.h"
 #include "result.h"
+#include "run_measure.h"
 #include "study.h"
 
 /* Changes a run's document before it is judged: what the judges make of figures that a sound solver
@@ -266,14 +267,14 @@ TEST(still_gas_that_moves)
     double *v = (double *)run.snapshot.v[0];
     for (size_t i = 0; i < run.n; i++)
         if (fabs(run.snapshot.x[0][i] + 0.5) < 0.01) v[i] = 0.05;
-    budget_measure(&run.problem, &run.snapshot, none, &budget);
+    run_measure_budget(&run.problem, &run.snapshot, none, &budget);
     near_relative(budget.still, 0.05 / sqrt(1.4), 1e-12);
     /* behind the shock gas may move as it likes */
     for (size_t i = 0; i < run.n; i++) {
         if (fabs(run.snapshot.x[0][i] + 0.5) < 0.01) v[i] = 0;
         if (fabs(run.snapshot.x[0][i] - 0.25) < 0.01) v[i] = 9;
     }
-    budget_measure(&run.problem, &run.snapshot, none, &budget);
+    run_measure_budget(&run.problem, &run.snapshot, none, &budget);
     near_below(budget.still, 1e-6);
     run_free(&run);
 }

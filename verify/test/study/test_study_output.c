@@ -35,7 +35,7 @@ static json_t *pack_level(const struct study *study, const struct study_level *l
         json_pack("{s:I, s:o, s:o, s:o, s:o, s:o, s:I}", "n", (json_int_t)level->n, "h",
                   result_number(level->h), "spacing", result_number(level->spacing), "errors",
                   errors, "cpu_s", result_number(level->cpu_s), "budget",
-                  budget_json(&level->budget), "replicates", (json_int_t)study->replicates);
+                  run_budget_json(&level->budget), "replicates", (json_int_t)study->replicates);
     if (study->replicates > 1) {
         json_object_set_new(packed, "spread", pack_fields(level->spread));
         json_object_set_new(
