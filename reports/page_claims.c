@@ -20,7 +20,7 @@ static void claim_head(struct buffer *to, const json_t *claim)
     buffer_escape(to, value_text(claim, "claim"));
 }
 
-/* ---- who pairs ---- */
+/* ---- particles in pairs ---- */
 
 struct curve {
     double neighbours[STEPS], nearest[STEPS];

@@ -335,7 +335,7 @@ ALWAYS_INLINE void describe_neighbours(int dim, const struct cells *cells, size_
                                        struct description *of)
 {
     const struct grid_list *list = &cells->lists[slot];
-    const int32_t *slots = /* who sleeps has no list */
+    const int32_t *slots = /* an inactive particle has no list */
         list->kept ? grid_neighbours(cells->grid, &cells->lanes[0].reader, cells->lists, slot)
                    : NULL;
     const bool wrapped = list->wrapped;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Who wakes and who falls asleep in 2D and 3D, pair by pair: the signal of a step goes no further
- * than the pairs of its sums. */
+ * Decides pair by pair which particles wake and which fall asleep in 2D and 3D. In one step a
+ * signal reaches no further than the pairs of its sums. */
 #include <math.h>
 
 #include "cells.h"

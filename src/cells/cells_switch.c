@@ -112,7 +112,7 @@ static void switch_pass(struct cells *cells, const struct cells_fields *fields, 
 
 void cells_switch(struct cells *cells, const struct cells_fields *fields)
 {
-    for (size_t i = 0; i < fields->n; i++) { /* of those who sleep */
+    for (size_t i = 0; i < fields->n; i++) { /* particles that sleep keep these values */
         fields->alpha_local[i] = cells->method.alpha_min;
         fields->decay[i] = 0;
     }

@@ -124,7 +124,7 @@ double workspace_bytes(const struct simulation *simulation, double n)
     double **of[ARRAYS_MAX];
     const struct cells_method method = workspace_method(simulation);
     const double arrays = (double)list_arrays(simulation, &workspace, of);
-    /* the first search goes further, and lists hold who is within the wider of two widths */
+    /* the first search reaches further; lists hold all pairs within the wider of two widths */
     const double neighbours =
         width_neighbours(method.box.dim, simulation->scheme.eta * workspace_margin);
     /* outcome; parts and woken; where particles may sleep, kept, asleep and level */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Who sleeps in 2D and 3D: particles at rest among neighbours at rest, until one of these wakes
- * them. */
+ * Sleep in 2D and 3D: a particle at rest among neighbours at rest is not evaluated until one of
+ * them wakes it. */
 #include <stdlib.h>
 
 #include "workspace.h"

@@ -139,7 +139,7 @@ static void number_to_mass(const struct simulation *simulation, ptrdiff_t first,
     }
 }
 
-/* The equation of state of a batch. Those who are not being evaluated keep what was predicted. */
+/* The equation of state of a batch. Inactive particles keep what was predicted. */
 static void close_batch(const struct simulation *simulation, ptrdiff_t first, int len,
                         const struct gas *gas, const struct density_sums *sums)
 {

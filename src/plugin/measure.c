@@ -119,8 +119,8 @@ int measure_class_limit(const struct pieces *pieces)
     return pieces->terms.single || pieces_look_single(pieces) ? 2 : MEASURE_CLASS_MAX;
 }
 
-/* Nobody builds a kernel whose w, w' or w'' jumps by a part of 1e-4 somewhere: that is a slip. A
- * table's many points do jump so little. */
+/* A few jumps of w, w' or w'' by a part of 1e-4 are a mistake: no kernel is meant to have them. The
+ * many points of a table do jump so little. */
 static void note_accident(const struct pieces *pieces, int i, int k, double jump,
                           struct measure_class *result)
 {

@@ -19,7 +19,7 @@ struct counting {
     struct simulation *simulation;
     double *h;                 /* of the start, by id */
     double *before;            /* v and rho of the step before, by id: dim + 1 runs of n */
-    bool *asleep, *free;       /* who sleeps, and who could: in the order of a snapshot */
+    bool *asleep, *free;       /* particles that sleep, and that could: in snapshot order */
     double sound, time, t_end; /* of the setup; of the step before; of the run */
     /* what could be skipped, and what of it was done: summed over steps */
     double share, reached, layers;
@@ -66,7 +66,7 @@ static void find_ahead(const struct counting *counting, const struct snapshot *s
     }
 }
 
-/* Who changes slowly; keeps their values for the next step. */
+/* Marks the particles that change slowly, and keeps all values for the next step. */
 static void find_calm(struct counting *counting, const struct snapshot *s, double dt)
 {
     const int dim = counting->problem->domain.dim;

@@ -147,7 +147,7 @@ static double balance_of(const struct ball *ball, double r)
     return worst;
 }
 
-/* Mass, momentum and energy through the front, as one sees it who moves along. */
+/* Fluxes of mass, momentum and energy through the front, in the frame of the front. */
 static double jump_of(const struct ball *ball, double t)
 {
     const double R = ball->flow->shock(ball->flow, t), dt = 1e-4 * t;

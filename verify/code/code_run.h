@@ -2,7 +2,7 @@
  * One run of another code, in place of one of ours: the initial state is written, templates are
  * filled in, the command runs in a folder of its own, its last snapshot is judged, and the document
  * of `sphproof run` comes of it with "code" and "judged" beside. Ladders, orders, gates, pages and
- * history are made of such documents, whoever has computed. */
+ * history are made of such documents alone, whichever code has run. */
 #ifndef SPHPROOF_CODE_RUN_H
 #define SPHPROOF_CODE_RUN_H
 

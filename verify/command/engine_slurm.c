@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * --engine slurm: an array of tasks, each a share of the study (--shard), into the cache.
  *
- * What is missing in the cache decides, never what Slurm says of a task: a share of which something
- * is missing and that no task is at is submitted, and so whoever calls again attaches. Between
- * calls a small file keeps the number of shares and how often each was submitted; the name of the
- * array is made of the study's computations and its folder. */
+ * What is missing in the cache decides, never what Slurm says of a task: a share is submitted if
+ * some of its results are missing and no task works on it. The same command, called again,
+ * therefore attaches to the tasks that run. Between calls a small file keeps the number of shares
+ * and how often each was submitted. The name of the array is made of the study's computations and
+ * its folder. */
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
@@ -338,8 +339,8 @@ static enum status be_patient(struct array *array, const struct error *trouble, 
     return error->status;
 }
 
-/* One look at the cache and the queue, and what follows from it; of several who watch the same
- * study one at a time. */
+/* One look at the cache and the queue, and what follows from it. Of several processes that watch
+ * the same study, one takes its step at a time. */
 static enum status step(struct array *array, struct error *error)
 {
     struct slurm_task *tasks = NULL;

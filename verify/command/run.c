@@ -381,7 +381,7 @@ struct kept {
     char build[CACHE_BUILD_MAX], *run;
 };
 
-/* run belongs to the caller, who frees it. */
+/* The caller frees kept->run. */
 static enum status take_checkpoint(struct kept *kept, const struct options *options,
                                    const struct run *run, struct error *error)
 {

@@ -52,7 +52,8 @@ static enum status take_engine(struct sharing *sharing, const struct options *op
                               options->command->name, sharing->engine->name);
 }
 
-/* Results of another build would not be found by who asked for them. */
+/* Refuses --only-build with another build: its results would stand in the cache under another key.
+ */
 static enum status check_build(const struct sharing *sharing, const struct options *options,
                                struct error *error)
 {

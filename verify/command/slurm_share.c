@@ -16,7 +16,7 @@ void slurm_share_log(const char *folder, const char *name, long job, int share, 
     snprintf(path, size, "%s/%s-%ld_%d.log", folder, name, job, share);
 }
 
-/* Options that are not a share's: where results go, who computes. */
+/* Options that a share is not given: they say where results go and which engine computes. */
 static bool of_the_caller(const char *name)
 {
     static const char *const names[] = {"engine",  "engine-options", "engine-tasks", "failures",

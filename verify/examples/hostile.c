@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The cubic spline as somebody might get it wrong where nobody looks, and foreign code at its
- * worst: the compiler option -DFAULT=NAME chooses. hostile.txt says what sphproof must say to each.
+ * The cubic spline with mistakes in places that are seldom tested, and foreign code at its worst:
+ * the compiler option -DFAULT=NAME chooses one. hostile.txt says what sphproof must say to each.
  * With -DBARE neither class nor knots nor dW/dh is declared. */
 #include <math.h>
 #include <signal.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The claim that Wendland functions keep particles from pairing because their Fourier transforms
  * are nowhere negative (Dehnen & Aly 2012), measured: disordered gas comes to rest with every
- * kernel, from few neighbours to many, in 2D and 3D, and it is seen who stands in pairs. */
+ * kernel, from few neighbours to many, in 2D and 3D, and particles in pairs are counted. */
 #ifndef SPHPROOF_PAIRING_H
 #define SPHPROOF_PAIRING_H
 

@@ -92,7 +92,7 @@ static void fill_exact(const struct scene *s)
     }
 }
 
-/* x: of the caller, who keeps them. */
+/* x stays with the caller, and must outlive the scene. */
 static enum status scene_make(struct scene *s, const struct run *run, size_t n, double time,
                               double *const x[3], const double *m, struct error *error)
 {

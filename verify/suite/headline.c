@@ -87,7 +87,7 @@ static json_t *headline(const struct cause *causes, size_t count, size_t first)
         if (strcmp(cause->member, main->member) != 0) continue;
         figures += cause->figures;
         if (i != first) json_array_append_new(also, json_string(cause->check->name));
-        if (said >= 2) continue; /* what fails first, and one more figure that everybody knows */
+        if (said >= 2) continue; /* the first failure, and one more figure beside it */
         const size_t used = strlen(text);
         say(cause, part, sizeof part);
         snprintf(text + used, sizeof text - used, "%s%s", said ? "; " : "", part);

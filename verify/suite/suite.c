@@ -40,7 +40,7 @@ static bool take_figures(struct suite *suite, struct check_run *run)
         failed += run->figures[i].status == FINDING_FAIL;
         run->figures[i].subject = NULL;
     }
-    suite->failed += failed; /* for those who stop at the first */
+    suite->failed += failed; /* callers may stop at the first failure */
     for (size_t i = 0; failed && i < run->series_count; i++) {
         if (!list_grow(&suite->series, suite->series_count, sizeof *suite->series)) return false;
         suite->series[suite->series_count++] = run->series[i];
