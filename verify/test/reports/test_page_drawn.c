@@ -79,6 +79,16 @@ TEST(pages)
         assert_true(page_make_judge(&page, judged));
         compare(&kept, "judge", k, whole(&page));
         json_decref(judged);
+        if (k % 4) continue;
+        json_t *compared = made_document(&draw, json_object_get(template, "compare"));
+        assert_true(page_make_compare(&page, compared));
+        compare(&kept, "compare", k, whole(&page));
+        json_decref(compared);
+        json_t *codes = made_document(&draw, json_object_get(template, "codes"));
+        json_object_set_new(codes, "verdict", verdict_make(codes));
+        assert_true(page_make(&page, codes));
+        compare(&kept, "codes", k, whole(&page));
+        json_decref(codes);
     }
     setenv("PATH", path, 1);
     free(path);
