@@ -151,6 +151,7 @@ static void add_filtered(struct buffer *to, const char *text)
         next = text + length + (text[length] == '\n');
         assert_true(length + 2 < sizeof line);
         snprintf(line, sizeof line, "\n%.*s", (int)length, text);
+        if (strstr(line, " s left")) continue; /* progress, where the machine is slow */
         const int indentation = (int)strspn(line + 1, " ");
         if (closed >= 0) {
             if (indentation == closed) closed = -1;
