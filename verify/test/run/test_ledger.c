@@ -1,21 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a run says of itself, computed again from its particles: spacing, mean h, budgets (also of
- * the mirrored problem), up to when a window is free of the mirrored tube, and how jitter is drawn.
- */
+ * the mirrored problem), sums over its start, and errors at the centre of a blast. */
 #include "test.h"
 
-#include <float.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "initial.h"
 #include "initial_create.h"
 #include "near.h"
-#include "riemann.h"
 #include "run.h"
-#include "shells.h"
 
 static struct run resolved(const char *name, int n, const char *const *words)
 {
@@ -118,116 +111,6 @@ TEST(mirrored_budgets)
     }
 }
 
-/* ---- windows ---- */
-
-/* The window of a tube in [-1, 1] is free until the first wave of the tube that starts at the box's
- * ends is there; on its way it meets only gas as it was, if that is before 1/2 of the box. */
-TEST(windows)
-{
-    static const struct {
-        struct riemann_state left, right;
-        double lo, hi;
-    } cases[] = {{{1, 0, 1}, {0.125, 0, 0.1}, -0.8, 0.7},
-                 {{1, 0, 1}, {0.125, 0, 0.1}, -0.6, 0.9},
-                 {{0.445, 0.698, 3.528}, {0.5, 0, 0.571}, -0.7, 0.8},
-                 {{0.445, 0.698, 3.528}, {0.5, 0, 0.571}, -0.95, 0.7},
-                 {{1, 0.3, 0.4}, {1, 0.3, 0.7}, -0.75, 0.7},
-                 {{1, -2, 0.4}, {1, 2, 0.4}, -0.8, 0.9},
-                 {{1, -2, 0.4}, {1, 2, 0.4}, -0.9, 0.7},
-                 {{1, 0, 1}, {1, 0, 1}, -0.7, 0.8},
-                 {{1, 0.2, 1}, {1, 0.2, 1}, -0.8, 0.7}};
-    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-        const struct riemann_state *l = &cases[c].left, *r = &cases[c].right;
-        struct riemann_solution ends;
-        char words[3][96];
-        snprintf(words[0], sizeof words[0], "left=%.17g,%.17g,%.17g", l->rho, l->v, l->P);
-        snprintf(words[1], sizeof words[1], "right=%.17g,%.17g,%.17g", r->rho, r->v, r->P);
-        snprintf(words[2], sizeof words[2], "window=%.17g,%.17g", cases[c].lo, cases[c].hi);
-        const struct run run =
-            resolved("sod", 3, (const char *const[]){words[0], words[1], words[2]});
-        assert_null(riemann_solve(1.4, r, l, &ends));
-        const bool none = ends.right_wave == RIEMANN_NONE; /* sound, all the same */
-        const double from_lo = none ? l->v + sqrt(1.4 * l->P / l->rho) : ends.right_head,
-                     from_hi = none ? sqrt(1.4 * r->P / r->rho) - r->v : -ends.left_head;
-        const double limit = fmin((cases[c].lo + 1) / from_lo, (1 - cases[c].hi) / from_hi);
-        struct error error = {0};
-        assert_int_equal(problem_check_time(&run.problem, limit * (1 - 1e-9), &error), STATUS_OK);
-        assert_int_equal(problem_check_time(&run.problem, limit * (1 + 1e-9), &error),
-                         STATUS_BAD_INPUT);
-        const char *shown = strstr(error.message, "allowed: t_end <= "); /* rounded down */
-        assert_non_null(shown);
-        near_inside(strtod(shown + strlen("allowed: t_end <= "), NULL), limit * (1 - 2e-3), limit);
-    }
-}
-
-/* ---- jitter ---- */
-
-/* Of n numbers that should be uniform in [-1, 1]: mean, variance and extremes. */
-static void uniform(size_t n, const double *x)
-{
-    double sum = 0, squares = 0, most = 0;
-    for (size_t i = 0; i < n; i++) {
-        sum += x[i];
-        squares += x[i] * x[i];
-        most = fmax(most, fabs(x[i]));
-    }
-    const double root = sqrt((double)n);
-    near_below(fabs(sum / (double)n), 4 * sqrt(1 / 3.) / root);
-    near_below(fabs(squares / (double)n - 1 / 3.), 4 * sqrt(4 / 45.) / root);
-    near_inside(most, 1 - 12 / (double)n, 1 + 1e-9);
-}
-
-static void jitter(const char *name, const char *key, const char *lattice, double part)
-{
-    char amount[32];
-    snprintf(amount, sizeof amount, "jitter=%g", part);
-    enum { MOST = 4096 };
-    static double moved[3][MOST];
-    struct initial start[3]; /* at rest; shaken with two seeds */
-    const char *const words[][4] = {{key, lattice, "jitter=0", "seed=1"},
-                                    {key, lattice, amount, "seed=1"},
-                                    {key, lattice, amount, "seed=2"}};
-    int dim = 0;
-    size_t alike = 0, n = 0;
-    for (size_t k = 0; k < 3; k++) {
-        struct error error = {0};
-        const struct run run = resolved(name, 4, words[k]);
-        if (initial_create(&start[k], &run.problem, &run.settings, &error))
-            fail_msg("%s", error.message);
-        dim = run.problem.domain.dim;
-        n = start[k].n;
-        assert_true(n <= MOST && n == start[0].n);
-        for (int d = 0; d < dim && k; d++) {
-            for (size_t i = 0; i < n; i++) {
-                const double share = pow(start[0].m[i] / start[0].rho[i], 1. / dim);
-                const double period = domain_length(&run.problem.domain, d);
-                const double away = start[k].x[d][i] - start[0].x[d][i];
-                moved[d][i] = (away - period * round(away / period)) / (part * share);
-                if (k == 2) alike += start[1].x[d][i] == start[2].x[d][i];
-            }
-            uniform(n, moved[d]);
-        }
-        double both =
-            0; /* directions know nothing of each other, nor particles of their neighbours */
-        for (size_t i = 0; i + 1 < n && k; i++)
-            both += moved[0][i] * (dim > 1 ? moved[1][i] : moved[0][i + 1]);
-        if (k) near_below(fabs(both / (double)n), 4 / 3. / sqrt((double)n));
-    }
-    assert_int_equal(alike, 0);
-    for (size_t k = 0; k < 3; k++) initial_free(&start[k]);
-}
-
-TEST(jitters)
-{
-    jitter("sod", "n=3000", "lattice=uniform", 0.3);
-    jitter("rest_2d", "n=50^2", "lattice=square", 0.3);
-    jitter("rest_3d", "n=14^3", "lattice=cubic", 0.3);
-    /* and over the ends of the box */
-    jitter("rest_2d", "n=40^2", "lattice=hexagonal", 0.49);
-    jitter("rest_3d", "n=1372", "lattice=fcc", 0.49);
-    jitter("rest_3d", "n=1458", "lattice=bcc", 0.49);
-}
-
 /* ---- what is summed over a start ---- */
 
 /* The scale of speeds: sum of m c, c of the state that the particles show; also of those that an
@@ -270,63 +153,6 @@ TEST(sound)
         near_relative(sums.mass, mass, 1e-13);
         near_relative(sums.energy, energy, 1e-12);
         simulation_destroy(simulation);
-        initial_free(&initial);
-    }
-}
-
-/* Shells round the middle: as thick as particles are apart, or the least that there is room for, to
- * the nearest end. */
-TEST(rings)
-{
-    static const struct {
-        const char *name, *words[2];
-    } cases[] = {{"rest_2d", {"n=2400", "hi=1.5,1"}},
-                 {"rest_2d", {"n=2400", "hi=1,1.5"}},
-                 {"noh_1d", {"n=4000", "t_end=0.1"}}};
-    static struct shells shells;
-    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-        const struct run run = resolved(cases[c].name, 2, cases[c].words);
-        const struct prepared *p = &run.problem;
-        struct initial initial;
-        struct error error = {0};
-        if (initial_create(&initial, p, &run.settings, &error)) fail_msg("%s", error.message);
-        double *volume = malloc(initial.n * sizeof *volume), reach = HUGE_VAL, sum = 0;
-        assert_non_null(volume);
-        size_t inside = 0;
-        for (size_t i = 0; i < initial.n; i++) volume[i] = initial.m[i] / initial.rho[i];
-        const struct snapshot s = {.n = initial.n,
-                                   .x = {initial.x[0], initial.x[1], initial.x[2]},
-                                   .v = {initial.v[0], initial.v[1], initial.v[2]},
-                                   .m = initial.m,
-                                   .rho = initial.rho,
-                                   .volume = volume};
-        for (size_t i = 0; i < s.n; i++)
-            if (in_window(p, &s, i)) sum += volume[i], inside++;
-        for (int d = 0; d < p->domain.dim; d++)
-            reach = fmin(reach, domain_length(&p->domain, d) / 2);
-        const double apart = pow(sum / (double)inside, 1. / p->domain.dim);
-        const double width = fmax(apart, reach / SHELLS_MAX);
-        shells_make(&shells, p, &s);
-        near_relative(shells.width, width, 1e-12);
-        assert_int_equal(shells.n, (size_t)fmin(SHELLS_MAX, ceil(reach / shells.width)));
-        assert_true(shells.n > 15);
-        double peak = 0;
-        for (size_t k = 0; k < shells.n; k++) {
-            double m = 0, V = 0;
-            for (size_t i = 0; i < s.n; i++) {
-                double place[3] = {0}, square = 0;
-                problem_place(p, &s, i, place);
-                for (int d = 0; d < p->domain.dim; d++)
-                    square += pow(place[d] - p->window.centre[d], 2);
-                if (floor(sqrt(square) / shells.width) != (double)k) continue;
-                m += s.m[i], V += volume[i];
-            }
-            if (V > 0) near_relative(shells.density[k], m / V, 1e-12);
-            assert_int_equal(isnan(shells.density[k]), !(V > 0));
-            peak = fmax(peak, shells.density[k]);
-        }
-        assert_true(shells_peak(&shells) == peak);
-        free(volume);
         initial_free(&initial);
     }
 }
