@@ -109,6 +109,7 @@ BAD = [
     ("autopsy kelvin_helmholtz", 2, "kelvin_helmholtz", "without jumps"),
     ("autopsy yee n=100", 2, "the key n and a ladder", "--n"),
     ("autopsy yee --rates nosuch.csv", 2, "nosuch.csv", "cannot be read"),
+    ("autopsy yee --plot shares.pdf", 2, "shares.pdf", ".svg"),
     ("autopsy yee --rates nosuch.csv --n 100", 2, "--n and --rates"),
     ("autopsy yee --n 100,200,300", 2, "--n", "4"),
     ("autopsy yee --n 10^3,11^3,12^3,13^3", 2, "10^3"),

@@ -226,6 +226,26 @@ static void skips(void **state)
     free(page);
 }
 
+/* Other codes' errors stand beside ours where the same error is meant, and only there. */
+static void other_codes(void **state)
+{
+    (void)state;
+    for (int same = 0; same < 2; same++) {
+        json_t *results = sound();
+        json_object_set_new(results, "bench",
+                            json_pack("[{s:s, s:s, s:s, s:[{s:s, s:f}], s:[{s:s, s:f, s:f}]}]",
+                                      "case", "kelvin_helmholtz", "error_of",
+                                      same ? "mode_amplitude" : "density", "reproduce",
+                                      "sphproof bench kelvin_helmholtz", "schemes", "scheme",
+                                      "mine", "figure_of_merit", 1., "points", "scheme", "mine",
+                                      "cpu_s", 1., "error", 0.1));
+        char *page = page_of(results);
+        assert_int_equal(strstr(page, "Athena++, 64^2") != NULL, same);
+        assert_int_equal(strstr(page, "what other codes gave") != NULL, same);
+        free(page);
+    }
+}
+
 /* What orders are lost to: the sentence, the shares of the finest level, and a picture. */
 static void autopsies(void **state)
 {
@@ -622,6 +642,7 @@ int main(void)
         cmocka_unit_test(unreadable),
         cmocka_unit_test(skips),
         cmocka_unit_test(autopsies),
+        cmocka_unit_test(other_codes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
