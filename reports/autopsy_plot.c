@@ -54,7 +54,10 @@ static bool read_levels(struct drawing *d, const json_t *document)
     return d->n > 0;
 }
 
-/* "disorder, order 1.10": what the key says of a part. */
+/* What is less than this part of the error is not drawn as a line. */
+#define LEAST 3e-3
+
+/* "disorder, order 1.10": what the key says of a part; no order of what is nearly nothing. */
 static void name_parts(struct drawing *d, const json_t *document)
 {
     size_t i;
@@ -64,7 +67,8 @@ static void name_parts(struct drawing *d, const json_t *document)
     json_array_foreach(json_object_get(document, "shares"), i, entry) {
         const double order = value_member(entry, "order");
         for (size_t p = 0; p < PARTS; p++)
-            if (strcmp(parts[p].name, value_text(entry, "part")) == 0 && isfinite(order))
+            if (strcmp(parts[p].name, value_text(entry, "part")) == 0 && isfinite(order) &&
+                d->share[p][0] > LEAST && d->share[p][d->n - 1] > LEAST)
                 snprintf(d->labels[p], sizeof d->labels[p], "%s, order %.2f", parts[p].label,
                          order);
     }
@@ -80,9 +84,6 @@ static void split_sentence(struct drawing *d, const char *text)
     snprintf(d->sentence[0], TEXT, "%.*s", (int)first, text);
     snprintf(d->sentence[1], TEXT, "%s", second ? second + 2 : "");
 }
-
-/* What is less than this part of the error is not drawn as a line. */
-#define LEAST 3e-3
 
 /* Bars do not touch. */
 static double half_width(const struct drawing *d)
@@ -130,7 +131,9 @@ static void lay_out(struct drawing *d)
                                           .y = d->whole,
                                           .color = PLOT_NEUTRAL};
     const double from = d->x[0] / 1.12, to = d->x[d->n - 1] * 1.12;
-    d->slope = (struct plot_slope){d->x[0], d->x[d->n - 1], 3.2 * d->whole[0], -2, "second order"};
+    d->slope = (struct plot_slope){d->x[0], d->x[d->n - 1],
+                                   3 * d->whole[d->n - 1] * pow(d->x[d->n - 1] / d->x[0], 2), -2,
+                                   "second order"};
     d->panels[0] = (struct plot_panel){.title = d->sentence[0],
                                        .y_label = "L1 of the velocity",
                                        .x_log = true,
@@ -140,7 +143,7 @@ static void lay_out(struct drawing *d)
                                        .x_ticks = d->x,
                                        .x_tick_count = d->n,
                                        .y_min = 0.7 * fmin(least, largest),
-                                       .y_max = 4.5 * largest,
+                                       .y_max = 1.5 * fmax(largest, d->slope.y0),
                                        .key = PLOT_KEY_TOP,
                                        .series = d->lines,
                                        .series_count = used + 1,
