@@ -126,7 +126,7 @@ static inline ptrdiff_t grid_cells_within(const struct grid *grid, int axis, dou
 }
 
 /* The cells that the points of a cell look through on one axis: from, count; across: the edge of a
- * periodic box lies between; all: the axis has no more cells, so that images must be compared. */
+ * periodic box lies between; all: the axis has fewer cells, so that images must be compared. */
 struct look {
     ptrdiff_t from, count;
     bool across, all;
@@ -139,7 +139,7 @@ static inline struct look grid_look_along(const struct grid *grid, int axis, ptr
                     k = within >= 0 ? within : grid_cells_within(grid, axis, radius);
     struct look look = {at - k, 2 * k + 1, false, false};
     if (grid_wraps(grid, axis)) {
-        look.all = look.count >= cells;
+        look.all = look.count > cells;
         look.across = look.all || look.from < 0 || at + k >= cells;
         if (look.all) look = (struct look){0, cells, true, true};
         return look;

@@ -276,7 +276,7 @@ static void check_looks(const struct grid *grid)
                                  at + within < cells ? at + within + 1 : cells);
                 continue;
             }
-            assert_true(look.all == (2 * within + 1 >= cells));
+            assert_true(look.all == (2 * within + 1 > cells));
             assert_true(look.across == (look.all || at < within || at + within >= cells));
             assert_int_equal(look.from, look.all ? 0 : at - within);
             assert_int_equal(look.count, look.all ? cells : 2 * within + 1);
