@@ -30,7 +30,7 @@ bool reactions_reserve(struct reactions *reactions, int dim, size_t slots)
     free(reactions->of[0]);
     reactions->values = (int)values;
     reactions->of[0] =
-        malloc(slots * (2 * values * sizeof(double) + 1) + chunks * sizeof(uint32_t));
+        malloc(slots * (2 * values * sizeof(double) + 1) + chunks * sizeof(uint32_t) + 3);
     if (!reactions->of[0]) return false;
     reactions->of[1] = reactions->of[0] + slots * values;
     reactions->begin = (uint32_t *)(void *)(reactions->of[1] + slots * values);
@@ -125,21 +125,26 @@ static void split_plainly(struct split *split, const unsigned char *reach, const
 
 #if SPHPROOF_CLONES && defined __x86_64__
 
-/* The same where every slot has sums. */
-__attribute__((target("avx512f,popcnt"))) static void
-split_in_vectors(struct split *split, const int32_t *slots, int count)
+/* The same. all: every slot has sums; otherwise `reach` is read three bytes beyond a slot's own. */
+__attribute__((target("avx512f,popcnt"), always_inline)) static inline void
+split_vectors(bool all, struct split *split, const unsigned char *reach, const int32_t *slots,
+              int count)
 {
     const __m512i slot = _mm512_set1_epi32((int32_t)split->slot),
                   before = _mm512_set1_epi32((int32_t)split->before),
-                  beyond = _mm512_set1_epi32((int32_t)split->beyond);
+                  beyond = _mm512_set1_epi32((int32_t)split->beyond), byte = _mm512_set1_epi32(255);
     int reacting = 0, alone = 0;
     for (int k = 0; k < count; k += 16) {
         const __mmask16 there = (__mmask16)(count - k < 16 ? (1u << (count - k)) - 1 : 0xffffu);
         const __m512i other = _mm512_maskz_loadu_epi32(there, slots + k);
-        const __mmask16 later = _mm512_mask_cmpgt_epi32_mask(there, other, slot),
+        __mmask16 has_sums = there;
+        if (!all)
+            has_sums = _mm512_mask_test_epi32_mask(
+                there, _mm512_mask_i32gather_epi32(byte, there, other, reach, 1), byte);
+        const __mmask16 later = _mm512_mask_cmpgt_epi32_mask(has_sums, other, slot),
                         near = _mm512_mask_cmplt_epi32_mask(later, other, beyond),
                         earlier = _mm512_mask_cmplt_epi32_mask(there, other, before),
-                        far = (__mmask16)((later & ~near) | earlier);
+                        far = (__mmask16)((later & ~near) | earlier | (there & ~has_sums));
         _mm512_storeu_si512(split->reacting + reacting, _mm512_maskz_compress_epi32(near, other));
         _mm512_storeu_si512(split->alone + alone, _mm512_maskz_compress_epi32(far, other));
         reacting += _mm_popcnt_u32(near);
@@ -149,14 +154,24 @@ split_in_vectors(struct split *split, const int32_t *slots, int count)
     split->alone_count = alone;
 }
 
+__attribute__((target("avx512f,popcnt"))) static void
+split_in_vectors(struct split *split, const struct reactions *reactions, const int32_t *slots,
+                 int count)
+{
+    if (reactions->all)
+        split_vectors(true, split, reactions->reach, slots, count);
+    else
+        split_vectors(false, split, reactions->reach, slots, count);
+}
+
 #endif
 
 static void split_list(struct split *split, const struct reactions *reactions, const int32_t *slots,
                        int count)
 {
 #if SPHPROOF_CLONES && defined __x86_64__
-    if (reactions->all && __builtin_cpu_supports("avx512f")) {
-        split_in_vectors(split, slots, count);
+    if (__builtin_cpu_supports("avx512f")) {
+        split_in_vectors(split, reactions, slots, count);
         return;
     }
 #endif
