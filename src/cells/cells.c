@@ -313,7 +313,7 @@ ALWAYS_INLINE double separate(int dim, bool wrapped, const struct cells *cells, 
     for (int k = 0; k < dim; k++) {
         const double side = cells->side[k];
         x[k] = cells->place[b][k] - cells->place[a][k];
-        if (wrapped && side < HUGE_VAL) x[k] -= side * round(x[k] / side);
+        if (wrapped) x[k] = grid_nearest(x[k], side);
         r2 += x[k] * x[k];
     }
     return r2;

@@ -55,13 +55,6 @@ struct geometry {
     ptrdiff_t stride;
 };
 
-/* The difference that is nearest to 0: exactly odd, so that both sides of a pair agree. */
-ALWAYS_INLINE double nearest(double d, double side)
-{
-    const double half = 0.5 * side;
-    return d > half ? d - side : d < -half ? d + side : d;
-}
-
 /* 1/r is 0 where points coincide: a pair without a direction. */
 ALWAYS_INLINE void geometry_body(int dim, bool wrapped, enum lanes_geometry geometry, int count,
                                  const struct geometry *g)
@@ -79,9 +72,9 @@ ALWAYS_INLINE void geometry_body(int dim, bool wrapped, enum lanes_geometry geom
     for (int k = 0; k < count; k++) {
         double a = x[k] - x0, b = x[y + k] - y0, c = dim == 3 ? x[z + k] - z0 : 0;
         if (wrapped) {
-            a = nearest(a, side_x);
-            b = nearest(b, side_y);
-            c = dim == 3 ? nearest(c, side_z) : 0;
+            a = grid_nearest(a, side_x);
+            b = grid_nearest(b, side_y);
+            c = dim == 3 ? grid_nearest(c, side_z) : 0;
         }
         const double r2 = dim == 3 ? a * a + b * b + c * c : a * a + b * b, root = sqrt(r2);
         r[k] = root;

@@ -5,12 +5,14 @@
 #include <stdlib.h>
 
 #include "grid.h"
+#include "shapes.h"
 
 /* Sums over all points, as they come. Distances as a mean and squares about it, updated point by
  * point (Welford 1962): on a lattice the mean of the squares less the square of the mean is noise.
  */
 struct sums {
     const struct regularity_cloud *cloud;
+    struct shapes shapes;
     size_t points, whole; /* whole: their neighbourhood is in the box */
     double distance, squares, density, gradient;
     size_t paired;
@@ -22,26 +24,46 @@ struct place {
     double nearest, sum, to[3];
 };
 
+/* Some of them: from the neighbour to the place, the nearest image, and its volume. */
+enum { PART = 64 };
+
+struct part {
+    size_t count;
+    double delta[3][PART], volume[PART];
+};
+
 static struct place place_of(const struct regularity_cloud *cloud, size_t i, double widest)
 {
     const double self = kernel_value(cloud->kernel, 0, cloud->h[i], cloud->box.dim);
     return (struct place){.i = i, .nearest = widest, .sum = cloud->volume[i] * self};
 }
 
-/* delta: from the neighbour j to the place, its nearest image. */
-static void see(const struct regularity_cloud *cloud, struct place *place, size_t j,
-                const double delta[3])
+static void see(const struct sums *sums, struct place *place, const struct part *part)
 {
+    const struct regularity_cloud *cloud = sums->cloud;
+    const struct kernel *kernel = cloud->kernel;
     const int dim = cloud->box.dim;
-    const double h = cloud->h[place->i], V = cloud->volume[j];
-    double square = 0;
-    for (int d = 0; d < dim; d++) square += delta[d] * delta[d];
-    const double r = sqrt(square);
-    if (r < place->nearest) place->nearest = r;
-    if (!(r < h)) return;
-    place->sum += V * kernel_value(cloud->kernel, r, h, dim);
-    const double slope = r > 0 ? V * h * kernel_dr(cloud->kernel, r, h, dim) : 0;
-    for (int d = 0; d < dim && r > 0; d++) place->to[d] += slope * delta[d] / r;
+    const double h = cloud->h[place->i], constant = kernel->constant[dim],
+                 volume = dim == 1   ? h
+                          : dim == 2 ? h * h
+                                     : h * h * h;
+    double r[PART], q[PART], w[PART], dw[PART];
+    for (size_t k = 0; k < part->count; k++) {
+        double square = 0;
+        for (int d = 0; d < dim; d++) square += part->delta[d][k] * part->delta[d][k];
+        r[k] = sqrt(square);
+        q[k] = r[k] / h;
+        if (r[k] < place->nearest) place->nearest = r[k];
+    }
+    sums->shapes.w(kernel, part->count, q, w);
+    sums->shapes.dw(kernel, part->count, q, dw);
+    for (size_t k = 0; k < part->count; k++) {
+        if (!(r[k] < h)) continue;
+        const double V = part->volume[k] * (constant / volume),
+                     slope = r[k] > 0 ? V * dw[k] / r[k] : 0;
+        place->sum += V * w[k];
+        for (int d = 0; d < dim; d++) place->to[d] += slope * part->delta[d][k];
+    }
 }
 
 static bool is_whole(const struct regularity_cloud *cloud, size_t i)
@@ -79,16 +101,19 @@ static void add_slot(struct sums *sums, const struct grid *grid, struct grid_rea
     const double(*position)[3] = grid_positions(grid);
     const uint32_t *order = grid_order(grid);
     double side[3];
-    for (int d = 0; d < cloud->box.dim; d++) side[d] = lists[slot].wrapped ? grid_side(grid, d) : 0;
-    struct place place = place_of(cloud, grid_order(grid)[slot], widest);
-    for (int32_t k = 0; k < count; k++) {
-        const size_t other = (size_t)slots[k];
-        double delta[3];
-        for (int d = 0; d < cloud->box.dim; d++) {
-            delta[d] = position[slot][d] - position[other][d];
-            if (side[d] > 0) delta[d] -= side[d] * round(delta[d] / side[d]);
+    for (int d = 0; d < cloud->box.dim; d++)
+        side[d] = lists[slot].wrapped && grid_side(grid, d) > 0 ? grid_side(grid, d) : HUGE_VAL;
+    struct place place = place_of(cloud, order[slot], widest);
+    struct part part;
+    for (int32_t from = 0; from < count; from += PART) {
+        part.count = count - from < PART ? (size_t)(count - from) : PART;
+        for (size_t k = 0; k < part.count; k++) {
+            const size_t other = (size_t)slots[(size_t)from + k];
+            for (int d = 0; d < cloud->box.dim; d++)
+                part.delta[d][k] = grid_nearest(position[slot][d] - position[other][d], side[d]);
+            part.volume[k] = cloud->volume[order[other]];
         }
-        see(cloud, &place, order[other], delta);
+        see(sums, &place, &part);
     }
     add(sums, &place);
 }
@@ -146,9 +171,10 @@ static int by_place(const void *a, const void *b)
 }
 
 /* Those on one side of place k, out to its h; at least the next one. */
-static void walk_side(const struct regularity_cloud *cloud, const struct stand *row, size_t k,
-                      bool right, struct place *place)
+static void walk_side(const struct sums *sums, const struct stand *row, size_t k, bool right,
+                      struct place *place)
 {
+    const struct regularity_cloud *cloud = sums->cloud;
     const double side = domain_length(&cloud->box, 0);
     const size_t n = cloud->n;
     for (size_t away = 1; away < n; away++) {
@@ -156,9 +182,11 @@ static void walk_side(const struct regularity_cloud *cloud, const struct stand *
         if (wraps && !cloud->periodic[0]) return;
         const size_t other = (right ? k + away : k + n - away) % n;
         const double image = !wraps ? 0 : right ? side : -side;
-        const double delta[3] = {row[k].x - row[other].x - image};
-        see(cloud, place, row[other].i, delta);
-        if (!(fabs(delta[0]) < cloud->h[place->i])) return;
+        const struct part part = {.count = 1,
+                                  .delta[0][0] = row[k].x - row[other].x - image,
+                                  .volume[0] = cloud->volume[row[other].i]};
+        see(sums, place, &part);
+        if (!(fabs(part.delta[0][0]) < cloud->h[place->i])) return;
     }
 }
 
@@ -175,8 +203,8 @@ static enum status walk_line(struct sums *sums, double widest, struct error *err
     qsort(row, cloud->n, sizeof *row, by_place);
     for (size_t k = 0; k < cloud->n; k++) {
         struct place place = place_of(cloud, row[k].i, widest);
-        walk_side(cloud, row, k, true, &place);
-        walk_side(cloud, row, k, false, &place);
+        walk_side(sums, row, k, true, &place);
+        walk_side(sums, row, k, false, &place);
         add(sums, &place);
     }
     free(row);
@@ -186,7 +214,7 @@ static enum status walk_line(struct sums *sums, double widest, struct error *err
 enum status regularity_measure(const struct regularity_cloud *cloud, struct regularity *regularity,
                                struct error *error)
 {
-    struct sums sums = {.cloud = cloud};
+    struct sums sums = {.cloud = cloud, .shapes = shapes_of(cloud->kernel, cloud->box.dim, true)};
     double widest = 0;
     for (size_t i = 0; i < cloud->n; i++) widest = fmax(widest, cloud->h[i]);
     const enum status status =

@@ -87,6 +87,14 @@ void grid_reader_free(struct grid_reader *reader);
  * vectors. Until the reader reads another one; slots of a cell are fastest one after the other. */
 const int32_t *grid_read(const struct grid *grid, struct grid_reader *reader, size_t slot);
 
+/* The difference of two positions in the box, or of its image, that is nearest to 0: exactly odd,
+ * so that both sides of a pair agree. side: the period, HUGE_VAL where there is none. */
+static inline double grid_nearest(double d, double side)
+{
+    const double half = 0.5 * side;
+    return d > half ? d - side : d < -half ? d + side : d;
+}
+
 static inline const int32_t *grid_neighbours(const struct grid *grid, struct grid_reader *reader,
                                              const struct grid_list *lists, size_t slot)
 {

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 #include "near.h"
-#include "cells/shapes.h"
+#include "shapes.h"
 #include "cells/units.h"
 
 TEST(test_ordinary)

@@ -13,7 +13,7 @@
 #include "grid.h"
 #include "integrator.h"
 #include "operator.h"
-#include "cells/shapes.h"
+#include "shapes.h"
 #include "simulation.h"
 #include "summation.h"
 #include "watched.h"
