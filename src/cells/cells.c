@@ -116,7 +116,7 @@ static bool method_halves(const struct cells_method *method)
     const struct viscosity_descriptor *viscosity = &viscosity_of[method->viscosity];
     const bool costly = viscosity->midpoint || viscosity->noise,
                many = width_neighbours(method->box.dim, 1 / method->numbers.near) > 36;
-    return !method->div_v && !(method->conductivity > 0) && (costly || many);
+    return !method->div_v && (costly || many);
 }
 
 double cells_bytes(const struct cells_method *method, double n, double neighbours)

@@ -216,7 +216,7 @@ bool cells_viscosity(const struct cells *cells, const struct pairs *pairs)
 }
 
 /* Conductivity (Price 2008), into heat: sum_j m_i m_j alpha_u v_u (u_i - u_j)/rhobar e_ij . Gbar.
- */
+ * What the particle gains its neighbours lose. */
 CLONES static double conducted(int dim, double alpha_u, const struct pairs *pairs)
 {
     const struct lanes *lanes = pairs->lanes;
@@ -232,7 +232,9 @@ CLONES static double conducted(int dim, double alpha_u, const struct pairs *pair
                  own_P = *pairs_own(pairs, RECORD_PRESSURE),
                  own_rho = *pairs_own(pairs, RECORD_DENSITY),
                  own_u = *pairs_own(pairs, RECORD_HEAT);
-    double *restrict s = lane(lanes, LANE_SPARE);
+    /* forces have been added: K is spare, while reactions wait to be given */
+    double *restrict s = lane(lanes, LANE_K);
+    double *restrict reaction = lane(lanes, LANE_REACTION + dim);
     for (int k = 0; k < count; k++) s[k] = 0;
     for (int a = 0; a < dim; a++) {
         const double *restrict xa = x + a * stride, *restrict Ga = G + a * stride;
@@ -245,6 +247,7 @@ CLONES static double conducted(int dim, double alpha_u, const struct pairs *pair
         const double speed = sqrt(fabs(own_P - P[k]) / rho_bar);
         const double along_pair = least(s[k] * r_inverse[k], 0);
         s[k] = own_m * m[k] * alpha_u * speed * (own_u - u[k]) / rho_bar * along_pair;
+        reaction[k] -= s[k];
     }
     return lanes_sum(s, count);
 }

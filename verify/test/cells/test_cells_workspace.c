@@ -517,8 +517,8 @@ TEST(test_no_position)
 }
 
 /* Numbers of a particle: the room's own arrays, and a record of its longest pass in whole fours;
- * where pairs are many or cost much and nothing is conducted, what it gets from pairs that others
- * work out, twice, and a flag. */
+ * where pairs are many or cost much, what it gets from pairs that others work out, twice, and a
+ * flag. */
 static void expect_bytes(int dim, const struct scheme *scheme, int arrays, int record)
 {
     for (int sleep = 0; sleep < 2; sleep++) { /* who may sleep has 1/h and two flags */
@@ -527,8 +527,7 @@ static void expect_bytes(int dim, const struct scheme *scheme, int arrays, int r
         struct simulation simulation = {.scheme = *scheme, .plan = plan_of_setup(&setup)};
         const double lists = grid_bytes(dim, 1, width_neighbours(dim, scheme->eta * 1.1));
         const double found = cells_sums.bytes(&simulation, 1000) / 1000 - lists;
-        const bool halves =
-            scheme->alpha_u == 0 && (scheme->eta > 3 || scheme->viscosity == VISCOSITY_PROJECTED);
+        const bool halves = scheme->eta > 3 || scheme->viscosity == VISCOSITY_PROJECTED;
         const double reactions = halves ? 2 * 8. * (dim + 2) + 1 : 0;
         near_absolute(found, 8. * arrays + 1 + 10. * sleep + 8. * record + reactions, 1e-9);
     }

@@ -50,6 +50,7 @@ static void draw_method(int trial)
                                     .energy = draw_count(0, 1) ? ENERGY_TOTAL : ENERGY_INTERNAL,
                                     .number = draw_count(0, 1),
                                     .balsara = draw_count(0, 1),
+                                    .conductivity = draw_count(0, 1) ? 0.7 : 0,
                                     .worst_condition = 1e8,
                                     .numbers = {1, 2, 2, 0.25, 0.4}, /* many neighbours */
                                     .threads = 1};
