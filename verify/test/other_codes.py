@@ -20,12 +20,15 @@ with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "schema
     validator = Validator(json.load(text))
 
 # The code: MODE CASE N T_END SEED OUT. It reads the initial state's masses, so that they are the file's.
-CODE = """#!%s
-import csv, os, subprocess, sys, time
+CODE = """#!%s -IS
+import os, sys, time
 mode, case, n, t_end, seed, out = sys.argv[1:7]
-print("the code says: mode", mode)
+print("the code says: mode", mode, flush=True)
+def call(*words):
+    if os.spawnl(os.P_WAIT, %r, "sphproof", *words): # modules take longer to start than most runs
+        sys.exit(1)
 def run(t=t_end, n=n, to=out + "_1.csv", *keys):
-    subprocess.run([%r, "run", case, "n=" + n, "t_end=" + t, "seed=" + seed, *keys, "--quiet", "--snapshot", to], check=True)
+    call("run", case, "n=" + n, "t_end=" + t, "seed=" + seed, *keys, "--quiet", "--snapshot", to)
 if mode == "hang":
     time.sleep(1000)
 if mode == "eat":
@@ -77,7 +80,7 @@ elif mode in ("starts", "kicked"):
     os.remove("ic.csv")
     run()
 elif mode == "own":
-    subprocess.run([%r, "ic", case, "n=" + n, "jitter=0.02", "--format", "csv", "--out", out + "_0.csv"], check=True)
+    call("ic", case, "n=" + n, "jitter=0.02", "--format", "csv", "--out", out + "_0.csv")
     run()
 elif mode == "fast":
     with open("ic.csv") as file, open(out + "_0.csv", "w") as to:
@@ -112,6 +115,7 @@ if mode == "old":
     run()
     os.utime(out + "_1.csv", (1e9, 1e9))
 if mode in ("grandchild", "daemon"):
+    import subprocess
     subprocess.Popen(["sleep", "9%%d" %% os.getppid()], start_new_session=mode == "daemon")
     with open(os.path.join(%r, "child"), "w") as file:
         file.write("9%%d" %% os.getppid())
@@ -516,7 +520,7 @@ with tempfile.TemporaryDirectory() as work:
     os.chdir(work)
     os.mkdir("tmp")
     os.environ["TMPDIR"] = os.path.abspath("tmp")
-    write("code.py", CODE % (sys.executable, program, program, work, work, work))
+    write("code.py", CODE % (sys.executable, program, work, work, work))
     with open("code.py", "rb") as file:
         code_bytes = file.read()
     os.chmod("code.py", 0o700)
