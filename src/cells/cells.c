@@ -330,6 +330,12 @@ static double condition_of(const struct cells *cells, const struct cells_fields 
     return matrix_condition(dim, C); /* that of the matrix, too */
 }
 
+double cells_distance2(const struct cells *cells, size_t a, size_t b)
+{
+    double x[3];
+    return separate(cells->method.box.dim, cells->lists[a].wrapped, cells, a, b, x);
+}
+
 ALWAYS_INLINE void describe_neighbours(int dim, const struct cells *cells, size_t slot,
                                        double h_inverse, const double C[CELLS_SQUARE], bool used,
                                        struct description *of)

@@ -157,24 +157,26 @@ void cells_switch(struct cells *cells, const struct cells_fields *fields);
 void cells_signal(struct cells *cells, const struct cells_fields *fields);
 
 /* How far every particle is from rest; who sleeps, CELLS_AWAKE or not. */
-enum { CELLS_CALM, CELLS_STIRRED, CELLS_DISTURBED, CELLS_VIOLENT };
 enum { CELLS_AWAKE, CELLS_ASLEEP, CELLS_JUST_ASLEEP };
 struct cells_quiet {
-    unsigned char *level; /* of each particle; of sleepers CELLS_CALM. Neighbours of a violent one
-                             are raised to CELLS_DISTURBED where it matters: in one step a signal
-                             passes through density and forces, two reaches */
-    double tolerance, sound; /* neighbours that move against each other at more than tolerance
-                                times c, or times this where it is more, are not at rest */
-    double calm;             /* times the tolerance: for who is to fall asleep */
+    const double *disturbance; /* of each particle, in tolerances; of sleepers 0 */
+    double *arriving;          /* n for use inside */
+    double tolerance, sound;   /* neighbours that move against each other at more than tolerance
+                                  times c, or times this where it is more, are not at rest */
+    double calm;               /* times the tolerance: for who is to fall asleep */
 };
 
-/* Wakes the sleepers who are neighbours of one that is disturbed or moves against them. */
+/* Wakes the sleepers at whom more than the tolerance arrives, or whose neighbours move against
+ * them. */
 void cells_wake(struct cells *cells, const struct cells_fields *fields,
                 const struct cells_quiet *quiet, unsigned char *asleep);
 
-/* CELLS_JUST_ASLEEP: who is awake and calm, as are all neighbours. Returns how many. */
+/* CELLS_JUST_ASLEEP: who is awake and calm, and has calm around. Returns how many. */
 size_t cells_lull(struct cells *cells, const struct cells_fields *fields,
                   const struct cells_quiet *quiet, unsigned char *asleep);
+
+/* Square of the distance of the points at two slots. */
+double cells_distance2(const struct cells *cells, size_t a, size_t b);
 
 /* Visits the particles, slot by slot. */
 void cells_describe(const struct cells *cells, const struct cells_fields *fields,

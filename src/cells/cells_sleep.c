@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Decides pair by pair which particles wake and which fall asleep in 2D and 3D. In one step a
- * signal reaches no further than the pairs of its sums. */
+ * Decides pair by pair which particles wake and which fall asleep in 2D and 3D, by what the pairs of
+ * a step's sums make of the rates of particles that are awake. */
 #include <math.h>
+#include <string.h>
 
 #include "cells.h"
 #include "lanes.h"
@@ -30,70 +31,94 @@ static double square_of_limit(const struct cells_fields *fields, const struct ce
     return quiet->tolerance * c * quiet->tolerance * c;
 }
 
-/* Raises the particle at a slot where it has a violent neighbour. */
-static void raise_level(struct cells *cells, const struct cells_fields *fields,
-                        const struct cells_quiet *quiet, size_t slot)
+/* Within one step no more than this part of a disturbance passes through a neighbour, by its
+ * density and then its force. */
+static const double carried = 1e-5;
+/* Times the term of pressure: how much of a neighbour's disturbance arrives at most. */
+static const double terms = 4;
+
+/* The disturbance of the particle at a slot that its neighbours have to expect. */
+static double expected_at(struct cells *cells, const struct cells_fields *fields,
+                          const struct cells_quiet *quiet, size_t slot)
 {
-    const size_t i = cells->order[slot];
-    if (quiet->level[i] >= CELLS_DISTURBED) return;
     const int32_t *slots = list_of(cells, slot);
     const int32_t count = cells->lists[slot].count;
+    double around = 0;
     for (int32_t k = 0; k < count; k++) {
         int mirrored;
-        if (quiet->level[lanes_source(cells, fields->n, (size_t)slots[k], &mirrored)] <
-            CELLS_VIOLENT)
-            continue;
-        quiet->level[i] = CELLS_DISTURBED;
-        return;
+        const size_t j = lanes_source(cells, fields->n, (size_t)slots[k], &mirrored);
+        around = fmax(around, quiet->disturbance[j]);
     }
+    return fmax(quiet->disturbance[cells->order[slot]], carried * around);
+}
+
+/* What arrives at a particle of a disturbance 1 of its neighbour `from`, the other way round as
+ * well: of particles at two slots. */
+static double part_of(const struct cells *cells, const struct cells_fields *fields, size_t slot,
+                      size_t other, size_t to, size_t from)
+{
+    const double r = sqrt(cells_distance2(cells, slot, other));
+    const double h = 1 / fmin(fields->h_inverse[to], fields->h_inverse[from]);
+    const double slope = kernel_dr(cells->method.kernel, r, h, cells->method.box.dim);
+    return terms * fields->V[from] * h * fabs(slope);
 }
 
 void cells_wake(struct cells *cells, const struct cells_fields *fields,
                 const struct cells_quiet *quiet, unsigned char *asleep)
 {
+    memset(quiet->arriving, 0, fields->n * sizeof *quiet->arriving);
     grid_find_rim(cells->grid, asleep);
     for (size_t slot = 0; slot < cells->points; slot++) {
         if (!grid_in_rim(cells->grid, slot)) continue;
         if (!cells->lists[slot].kept) continue; /* it sleeps, or is an image */
-        raise_level(cells, fields, quiet, slot);
         const size_t i = cells->order[slot];
+        const double expected = expected_at(cells, fields, quiet, slot);
         const int32_t *slots = list_of(cells, slot);
         const double limit2 = square_of_limit(fields, quiet, i);
         const int32_t count = cells->lists[slot].count;
         for (int32_t k = 0; k < count; k++) {
             int mirrored;
             const size_t j = lanes_source(cells, fields->n, (size_t)slots[k], &mirrored);
-            if (asleep[j] && !(quiet->level[i] < CELLS_DISTURBED &&
-                               passing2(cells, fields, i, j, mirrored) <= limit2))
+            if (!asleep[j]) continue;
+            if (!(expected <= 1))
+                quiet->arriving[j] +=
+                    expected * part_of(cells, fields, slot, (size_t)slots[k], j, i);
+            if (!(quiet->arriving[j] <= 1 && passing2(cells, fields, i, j, mirrored) <= limit2))
                 asleep[j] = 0;
         }
     }
 }
 
-/* Are the particle at a slot and all its neighbours calm? */
+/* Is the particle at a slot calm, does it move with all its neighbours, and does no more arrive
+ * from those that are not calm? */
 static bool calm_around(struct cells *cells, const struct cells_fields *fields,
                         const struct cells_quiet *quiet, size_t slot)
 {
     const size_t i = cells->order[slot];
     const double limit2 = square_of_limit(fields, quiet, i) * quiet->calm * quiet->calm;
-    if (quiet->level[i] != CELLS_CALM) return false;
+    if (!(quiet->disturbance[i] <= quiet->calm)) return false;
     const int32_t *slots = list_of(cells, slot);
     const int32_t count = cells->lists[slot].count;
-    bool calm = true;
-    for (int32_t k = 0; k < count && calm; k++) {
+    double sum = 0;
+    for (int32_t k = 0; k < count; k++) {
         int mirrored;
         const size_t j = lanes_source(cells, fields->n, (size_t)slots[k], &mirrored);
-        calm = quiet->level[j] == CELLS_CALM && passing2(cells, fields, i, j, mirrored) <= limit2;
+        if (!(quiet->arriving[j] <= quiet->calm))
+            sum += quiet->arriving[j] * part_of(cells, fields, slot, (size_t)slots[k], i, j);
+        if (!(sum <= quiet->calm && passing2(cells, fields, i, j, mirrored) <= limit2))
+            return false;
     }
-    return calm;
+    return true;
 }
 
 size_t cells_lull(struct cells *cells, const struct cells_fields *fields,
                   const struct cells_quiet *quiet, unsigned char *asleep)
 {
     size_t count = 0;
+    memset(quiet->arriving, 0, fields->n * sizeof *quiet->arriving);
     for (size_t slot = 0; slot < cells->points; slot++)
-        if (cells->lists[slot].kept) raise_level(cells, fields, quiet, slot);
+        if (cells->lists[slot].kept)
+            quiet->arriving[cells->order[slot]] = expected_at(cells, fields, quiet, slot);
     for (size_t slot = 0; slot < cells->points; slot++) {
         if (!cells->lists[slot].kept || !calm_around(cells, fields, quiet, slot)) continue;
         asleep[cells->order[slot]] = CELLS_JUST_ASLEEP;

@@ -69,6 +69,7 @@ static enum status forces(struct simulation *simulation, double *rate, struct er
     simulation->cost.without_slope += left_out.slope;
     for (ptrdiff_t first = 0; simulation->plan.alpha && first < a->n; first += BATCH_MAX)
         state_dalpha(a, first, workspace_batch(a, first), &simulation->scheme);
+    sleep_balance(simulation);
     *rate = rate_of_all(simulation);
     return STATUS_OK;
 }

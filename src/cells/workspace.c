@@ -10,7 +10,7 @@ struct cells_method workspace_method(const struct simulation *simulation)
 {
     const struct plan *plan = &simulation->plan;
     struct cells_method method = cells_method_of(&simulation->scheme, plan);
-    method.still = plan->quiet && !plan->jump ? 0.01 * sleep_tolerance(simulation) : 0;
+    method.still = plan->quiet && !plan->jump ? 0.01 * sleep_least_tolerance(simulation) : 0;
     method.threads = simulation->team.most;
     for (int k = 0; k < plan->dim; k++) {
         method.box.lo[k] = simulation->lo[k];
@@ -127,8 +127,8 @@ double workspace_bytes(const struct simulation *simulation, double n)
     /* the first search reaches further; lists hold all pairs within the wider of two widths */
     const double neighbours =
         width_neighbours(method.box.dim, simulation->scheme.eta * workspace_margin);
-    /* outcome; parts and woken; where particles may sleep, kept, asleep and level */
-    const double sleepers = simulation->plan.sleep ? sizeof(double) + 2 : 0,
+    /* outcome; parts and woken; where particles may sleep, asleep and three arrays */
+    const double sleepers = simulation->plan.sleep ? 3 * sizeof(double) + 1 : 0,
                  local = simulation->plan.local ? 2 : 0;
     return n * (arrays * sizeof(double) + 1 + local + sleepers) +
            cells_bytes(&method, n, neighbours);
@@ -137,9 +137,11 @@ double workspace_bytes(const struct simulation *simulation, double n)
 void workspace_forget_sleep(struct workspace *workspace)
 {
     free(workspace->asleep);
-    free(workspace->level);
+    free(workspace->disturbance);
+    free(workspace->arriving);
     free(workspace->kept);
-    workspace->asleep = workspace->level = NULL;
+    workspace->asleep = NULL;
+    workspace->disturbance = workspace->arriving = NULL;
     workspace->kept = NULL;
 }
 

@@ -19,7 +19,7 @@ struct workspace {
     double *sum_m, *sum_m_dh, *sum_Z, *sum_Z_dh;
     size_t arrays, stride; /* that lie in block, and from one to the next */
     unsigned char *outcome;
-    unsigned char *level;  /* of particles that sleep or may: enum in cells.h; likewise */
+    double *disturbance, *arriving; /* where particles may sleep: struct cells_quiet */
     unsigned char *parts;  /* local steps: of each particle, in the evaluation of a level; */
     unsigned char *woken;  /* and the level that it wakes to, 0: none */
     unsigned char *asleep; /* of each particle; NULL: no particle ever sleeps */

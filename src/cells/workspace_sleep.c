@@ -1,26 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Sleep in 2D and 3D: a particle at rest among neighbours at rest is not evaluated until one of
  * them wakes it. */
+#include <math.h>
 #include <stdlib.h>
 
 #include "workspace.h"
 
-/* Finds the level of each particle. Only particles that move with their neighbours may sleep: in a
- * shear flow on a lattice forces vanish as well, but neighbours change. */
+/* Finds the disturbance of each particle. Only particles that move with their neighbours may sleep:
+ * in a shear flow on a lattice forces vanish as well, but neighbours change. */
 static struct cells_quiet find_quiet(struct simulation *simulation)
 {
     struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
     for (ptrdiff_t i = 0; i < a->n; i++) {
-        workspace->level[i] = CELLS_CALM;
-        if (workspace->asleep[i]) continue;
-        const double disturbance = sleep_disturbance(simulation, i, 1);
-        if (!(disturbance <= SLEEP_CALM)) workspace->level[i] = CELLS_STIRRED;
-        if (!(disturbance <= 1)) workspace->level[i] = CELLS_DISTURBED;
-        if (!(disturbance <= SLEEP_VIOLENT)) workspace->level[i] = CELLS_VIOLENT;
+        const double found = workspace->asleep[i] ? 0 : sleep_disturbance(simulation, i, 1);
+        workspace->disturbance[i] = isnan(found) ? HUGE_VAL : found;
     }
-    return (struct cells_quiet){.level = workspace->level,
-                                .tolerance = sleep_tolerance(simulation),
+    return (struct cells_quiet){.disturbance = workspace->disturbance,
+                                .arriving = workspace->arriving,
+                                .tolerance = simulation->sleep.tolerance,
                                 .sound = simulation->sleep.sound,
                                 .calm = SLEEP_CALM};
 }
@@ -59,9 +57,10 @@ enum status workspace_begin_sleep(struct simulation *simulation, struct error *e
     sleep->awake_count = a->n;
     if (!simulation->plan.sleep) return STATUS_OK;
     workspace->asleep = calloc(n, 1);
-    workspace->level = calloc(n, 1);
+    workspace->disturbance = calloc(n, sizeof *workspace->disturbance);
+    workspace->arriving = calloc(n, sizeof *workspace->arriving);
     workspace->kept = calloc(n, sizeof *workspace->kept);
-    if (!workspace->asleep || !workspace->level || !workspace->kept) {
+    if (!workspace->asleep || !workspace->disturbance || !workspace->arriving || !workspace->kept) {
         workspace_forget_sleep(workspace);
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", n);
     }

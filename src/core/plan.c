@@ -166,7 +166,8 @@ size_t plan_explain(const struct setup *setup, struct plan_line *lines, size_t m
         line(&writer, "gravity", plan.gravity, "added to the forces", "gravity=0");
     }
     line(&writer, "sleep", plan.sleep,
-         "skip=auto: no sums where no signal has been; acts as a start changed by 1e-11",
+         "skip=auto: no sums where no signal has been; acts as a start changed by 1e-11, in 2D and "
+         "3D by up to 1e-8",
          plan.gravity ? "gravity: nobody is at rest" : "skip=none: every particle at every step");
     line(&writer, "final state", !scheme->integrator->ends_evaluated,
          "density and equation of state once more at t_end", "the last evaluation was at t_end");

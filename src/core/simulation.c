@@ -346,6 +346,7 @@ void simulation_serialise(struct simulation *simulation, struct serialiser *seri
     SERIALISE(serialiser, sleep->at_rest);
     SERIALISE(serialiser, sleep->rate);
     SERIALISE(serialiser, sleep->sound);
+    SERIALISE(serialiser, sleep->tolerance);
     SERIALISE(serialiser, sleep->span_count);
     SERIALISE(serialiser, sleep->awake_count);
     serialise(serialiser, sleep->spans, (size_t)sleep->span_count * sizeof *sleep->spans);

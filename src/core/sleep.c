@@ -13,7 +13,15 @@ bool sleep_due(const struct simulation *simulation)
     return simulation->cost.steps % DUE_EVERY == DUE_EVERY - 1;
 }
 
-void sleep_scale(struct simulation *simulation)
+/* Positions of order 1 are known to eps, spacings to n^(1/d) eps. */
+double sleep_least_tolerance(const struct simulation *simulation)
+{
+    const double n = (double)simulation->particles.n;
+    const double across = simulation->plan.dim == 1 ? n : pow(n, 1. / simulation->plan.dim);
+    return fmax(1e-11, 30 * DBL_EPSILON * across);
+}
+
+static void find_sound(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
     const double gamma = simulation->gamma;
@@ -31,18 +39,24 @@ void sleep_scale(struct simulation *simulation)
     simulation->sleep.sound = energy > 0 ? sqrt(gamma * (gamma - 1) * energy / mass) : 0;
 }
 
-/* Positions of order 1 are known to eps, spacings to n^(1/d) eps. */
-double sleep_tolerance(const struct simulation *simulation)
+/* Of the largest rate at the start, in units of the state: 1 is a jump's. */
+static const double of_start = 1e-8;
+
+void sleep_scale(struct simulation *simulation)
 {
-    const double n = (double)simulation->particles.n;
-    const double across = simulation->plan.dim == 1 ? n : pow(n, 1. / simulation->plan.dim);
-    return fmax(1e-11, 30 * DBL_EPSILON * across);
+    struct sleep *sleep = &simulation->sleep;
+    find_sound(simulation);
+    sleep->tolerance = sleep_least_tolerance(simulation);
+    if (simulation->plan.dim == 1) return;
+    const double start =
+        sleep->tolerance * sleep_disturbance(simulation, 0, simulation->particles.n);
+    sleep->tolerance = fmax(sleep->tolerance, of_start * fmin(start, 1));
 }
 
 double sleep_disturbance(const struct simulation *simulation, ptrdiff_t first, ptrdiff_t len)
 {
     const struct particles *a = &simulation->particles;
-    const double sound = simulation->sleep.sound, in_tolerances = 1 / sleep_tolerance(simulation);
+    const double sound = simulation->sleep.sound, in_tolerances = 1 / simulation->sleep.tolerance;
     double worst = 0;
     for (ptrdiff_t i = first; i < first + len; i++) {
         const double c = a->c[i] < sound ? sound : a->c[i]; /* NaN stays */
@@ -66,6 +80,57 @@ void sleep_begin(struct simulation *simulation, ptrdiff_t first, ptrdiff_t len)
         for (int k = 0; k < a->dim; k++) {
             a->F[k][i] = 0;
             simulation->sleep.at_rest &= a->p[k][i] == 0;
+        }
+    }
+}
+
+/* Sums over all that are awake: rates of momentum and total energy, which sleepers do not get the
+ * opposite of, and what the two are shared out by. long double: rounding is not to be shared out */
+struct leak {
+    long double force[3], power, mass, momentum[3], heat;
+};
+
+static struct leak find_leak(const struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    const bool total = simulation->scheme.energy == ENERGY_TOTAL;
+    struct leak leak = {0};
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        if (simulation->plan.sums->sleeps(simulation, i)) continue;
+        leak.mass += a->m[i];
+        leak.heat += a->U[i];
+        leak.power += a->de[i];
+        for (int k = 0; k < a->dim; k++) {
+            leak.force[k] += a->F[k][i];
+            leak.momentum[k] += (long double)a->m[i] * a->v[k][i];
+            if (!total) leak.power += (long double)a->v[k][i] * a->F[k][i];
+        }
+    }
+    return leak;
+}
+
+void sleep_balance(struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    const bool total = simulation->scheme.energy == ENERGY_TOTAL;
+    const ptrdiff_t awake = simulation->sleep.awake_count;
+    if (awake == a->n || awake == 0) return;
+    const struct leak leak = find_leak(simulation);
+    long double power = leak.power;
+    double g[3] = {0};
+    for (int k = 0; k < a->dim; k++) {
+        if (simulation->boundary[k] == BOUNDARY_FIXED) return; /* layers take what they get */
+        if (simulation->boundary[k] == BOUNDARY_REFLECTING) continue; /* so do walls */
+        g[k] = (double)(-leak.force[k] / leak.mass);
+        power += g[k] * leak.momentum[k];
+    }
+    const double part = (double)(power / leak.heat); /* of internal energy, which stays positive */
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        if (simulation->plan.sums->sleeps(simulation, i)) continue;
+        a->de[i] -= part * a->U[i];
+        for (int k = 0; k < a->dim; k++) {
+            a->F[k][i] += a->m[i] * g[k];
+            if (total) a->de[i] += a->m[i] * g[k] * a->v[k][i];
         }
     }
 }

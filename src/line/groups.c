@@ -47,7 +47,7 @@ static double against_wall(const struct simulation *simulation, ptrdiff_t i, dou
  * rates, but its density changes. NaN where a value is no number. */
 static double disturbance_of(const struct simulation *simulation, ptrdiff_t first, ptrdiff_t len)
 {
-    const double in_tolerances = 1 / sleep_tolerance(simulation);
+    const double in_tolerances = 1 / simulation->sleep.tolerance;
     double worst = sleep_disturbance(simulation, first, len);
     for (ptrdiff_t i = first; i < first + len; i++) {
         const double right = against_right(simulation, i, in_tolerances);
@@ -67,7 +67,7 @@ static bool group_disturbed(const struct simulation *simulation, ptrdiff_t group
 static bool group_calm(const struct simulation *simulation, ptrdiff_t group)
 {
     const ptrdiff_t first = group * GROUP;
-    return against_right(simulation, first, 1 / sleep_tolerance(simulation)) <= SLEEP_CALM &&
+    return against_right(simulation, first, 1 / simulation->sleep.tolerance) <= SLEEP_CALM &&
            disturbance_of(simulation, first, group_len(simulation, group)) <= SLEEP_CALM;
 }
 

@@ -4,9 +4,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "bench_allowed.h"
 #include "initial.h"
 #include "initial_create.h"
-#include "sleep.h"
+#include "solver.h"
 
 static const double reaches = 3;
 /* Rates of change, in c per h/c of the setup's mean sound speed, below which gas counts as calm. It
@@ -200,6 +201,7 @@ static enum status run_counting(const struct run *run, struct counting *counting
     find_calm(counting, &start, 0);
     status = simulation_run(counting->simulation, setup.t_end, count, counting, error);
     simulation_cost(counting->simulation, &cost);
+    const double tolerance = counting->simulation->sleep.tolerance;
     simulation_destroy(counting->simulation);
     const double skipped = (double)cost.skipped_particle_updates;
     shares->skipped = skipped / (skipped + (double)cost.particle_updates);
@@ -209,7 +211,10 @@ static enum status run_counting(const struct run *run, struct counting *counting
     shares->coarse = run->problem.problem->ahead == NULL;
     shares->columns = counting->columns;
     fill_map(counting, shares);
-    return status;
+    shares->allowed = (double)NAN;
+    return status || tolerance <= 0 ? status
+                                    : bench_allowed(run, counting->initial, tolerance,
+                                                    counting->sound, &shares->allowed, error);
 }
 
 enum status bench_possible(const struct run *run, struct bench_shares *shares, struct error *error)

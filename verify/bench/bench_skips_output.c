@@ -68,6 +68,7 @@ void bench_skips_add_json(const struct bench_skips *result, bool maps, json_t *d
         json_t *entry = json_array_get(list, json_array_size(list) - 1);
         if (skip->promise != PROMISE_UNUSED) add_drift(entry, skip);
         if (!shares) continue;
+        json_object_set_new(entry, "allowed_fraction", result_number_or_null(shares->allowed));
         json_object_set_new(entry, "reached_fraction", result_number(shares->reached));
         json_object_set_new(entry, "layers_fraction", result_number(shares->layers));
         json_object_set_new(entry, "possible_by",
@@ -97,20 +98,21 @@ static void print_answer(const struct bench_skip *skip, const struct table_style
 
 void bench_skips_print(const struct bench_skips *result, const struct table_style *style)
 {
-    printf("%s%-16s %6s  %-32s %8s %7s %9s %9s %9s %9s %9s %9s  %s%s\n", style->bold, "case", "n",
-           "left out", "saves", "spread", "updates", "possible", "reached", "layers", "viscosity",
-           "slopes", "the answer", style->end);
+    printf("%s%-16s %6s  %-32s %8s %7s %9s %9s %9s %9s %9s %9s %9s  %s%s\n", style->bold, "case",
+           "n", "left out", "saves", "spread", "updates", "allowed", "possible", "reached",
+           "layers", "viscosity", "slopes", "the answer", style->end);
     for (size_t s = 0; s < result->count; s++) {
         const struct bench_skip *skip = &result->skips[s];
         printf("%-16s %6zu  %-32s %7.2fx %6.0f%%", result->cases[skip->case_index].file.name,
                result->n[skip->case_index], skip->name,
                skip->cpu_s[BENCH_WITH] / skip->cpu_s[BENCH_WITHOUT], 100 * skip->spread);
         if (skip->shares)
-            printf(" %8.0f%% %7.0f%%%s %8.0f%% %8.0f%%", -100 * skip->shares->skipped,
-                   -100 * skip->shares->possible, skip->shares->coarse ? "*" : " ",
-                   100 * skip->shares->reached, 100 * skip->shares->layers);
+            printf(" %8.0f%% %8.0f%% %7.0f%%%s %8.0f%% %8.0f%%", -100 * skip->shares->skipped,
+                   -100 * skip->shares->allowed, -100 * skip->shares->possible,
+                   skip->shares->coarse ? "*" : " ", 100 * skip->shares->reached,
+                   100 * skip->shares->layers);
         else
-            printf(" %9s %9s %9s %9s", "", "", "", "");
+            printf(" %9s %9s %9s %9s %9s", "", "", "", "", "");
         const double shares[] = {skip->without_viscosity, skip->without_slope};
         for (size_t k = 0; k < sizeof shares / sizeof *shares; k++)
             if (isnan(shares[k]))
@@ -124,7 +126,9 @@ void bench_skips_print(const struct bench_skips *result, const struct table_styl
         "%ssaves: CPU time with the work over that without, both runs of one benchmark; passes "
         "that the plan\ndoes not contain are timed by themselves (n = %d; in 2D and 3D 1600 and "
         "1728) on top of a "
-        "particle's whole update. updates: particle\nupdates left out; possible: of gas three "
+        "particle's whole update. updates: particle\nupdates left out; allowed: of gas that a run "
+        "without skips leaves as it was to the tolerance of skips,\nas well as all within a "
+        "smoothing length; possible: of gas three "
         "smoothing lengths and more ahead of all waves of the\nexact solution; *: there is no such "
         "front, and it is gas that changes by less than 1e-7 in the\ntime h/c;\nreached: of what "
         "is possible, done where a precursor above the tolerance has come; layers: "

@@ -525,6 +525,7 @@ TEST(disturbed_beyond_a_limit)
                         struct particles *a = &s.particles;
                         if (particles_create(a, dim, n, 0, &error)) fail_msg("%s", error.message);
                         const double limit = fmax(1e-11, 30 * DBL_EPSILON * pow(n, 1. / dim));
+                        s.sleep.tolerance = sleep_least_tolerance(&s);
                         if (mean) s.sleep.sound = 20;
                         for (int i = 0; i < 9; i++) {
                             a->P[i] = 3 + i, a->c[i] = 2 + i, a->h[i] = 0.25 + 0.125 * i;
