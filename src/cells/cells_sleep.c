@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Decides pair by pair which particles wake and which fall asleep in 2D and 3D, by what the pairs of
- * a step's sums make of the rates of particles that are awake. */
+ * Decides pair by pair which particles wake and which fall asleep in 2D and 3D, by what the pairs
+ * of a step's sums make of the rates of particles that are awake. */
 #include <math.h>
 #include <string.h>
 
