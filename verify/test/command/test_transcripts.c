@@ -143,7 +143,7 @@ static char *last_column(char *line)
 
 static void add_filtered(struct buffer *to, const char *text)
 {
-    bool cpu_column = false, timed = false;
+    bool cpu_column = false;
     int closed = -1; /* what was asked for, and what grows with every new key: its indentation */
     char line[LINE_MAX];
     for (const char *next; *text; text = next) {
@@ -164,9 +164,8 @@ static void add_filtered(struct buffer *to, const char *text)
         }
         if (strncmp(line, "\n  ok   ", 8) == 0 && strlen(line) > 26)
             strcpy(line + 26, "~"); /* round-off */
-        char *draws = timed ? strstr(line, " draw") : NULL;
-        if (draws) strcpy(draws, "~"), next = ""; /* what follows in a verdict is of time */
-        if (strncmp(line, "\nCPU time ", 10) == 0) strcpy(line + 10, "~"), timed = true;
+        /* what follows, a verdict, has times as well */
+        if (strncmp(line, "\nCPU time ", 10) == 0) strcpy(line + 10, "~"), next = "";
         const size_t end = strlen(line);
         if (cpu_column && isdigit((unsigned char)line[end - 1]) && line[1] == ' ')
             strcpy(last_column(line), " ~");
