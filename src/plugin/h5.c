@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "h5.h"
 
-#ifdef HAVE_HDF5
 #include <dlfcn.h>
 #include <pthread.h>
 #include <string.h>
@@ -48,4 +47,3 @@ enum status h5_load(const char *path, struct error *error)
     return error_set(error, STATUS_ENVIRONMENT, "%.200s: the HDF5 library cannot be loaded: %.200s",
                      path, failure);
 }
-#endif
