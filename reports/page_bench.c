@@ -147,8 +147,14 @@ static void scheme_table(struct buffer *to, const struct curve *curves, size_t c
         html_cell(to, curve->name);
         html_cell_number(to, curve->n ? curve->error[curve->n - 1] : (double)NAN);
         html_cell_number(to, curve->n ? curve->cpu[curve->n - 1] : (double)NAN);
-        html_cell_number(to, value_member(curve->scheme, "figure_of_merit"));
-        html_cell_number(to, value_member(curve->scheme, "seed_plain_over_this"));
+        for (size_t v = 0; v < 2; v++) { /* other codes have neither */
+            const double value =
+                value_member(curve->scheme, v ? "seed_plain_over_this" : "figure_of_merit");
+            if (isnan(value))
+                html_cell(to, "—");
+            else
+                html_cell_number(to, value);
+        }
         buffer_add(to, "</tr>\n");
     }
     html_table_end(to);

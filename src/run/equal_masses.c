@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "initial.h"
+#include "problem_list.h"
 #include "quasi_random.h"
 #include "relax.h"
 
@@ -88,4 +89,33 @@ enum status equal_masses_fill(const struct prepared *p, const struct settings *s
         initial->m[i] = gas.mass;
     }
     return STATUS_OK;
+}
+
+enum status equal_masses_ask(struct run_settings *asked, struct error *error)
+{
+    static const struct {
+        enum setting key;
+        const char *value;
+    } ways[] = {{SETTING_equal_masses, "yes"}, {SETTING_mass_ratio, "1"}};
+    struct settings *settings = &asked->settings;
+    asked->equal_masses = true;
+    for (size_t k = 0; k < sizeof ways / sizeof *ways; k++)
+        if (problem_reads(problem_of(settings), ways[k].key) &&
+            settings->value[ways[k].key].source != SOURCE_USER &&
+            settings_set(settings, ways[k].key, ways[k].value, SOURCE_USER, NULL, error))
+            return error->status;
+    return STATUS_OK;
+}
+
+enum status equal_masses_check(const struct initial *initial, struct error *error)
+{
+    double least = INFINITY, most = 0;
+    for (size_t i = 0; i < initial->n; i++)
+        least = fmin(least, initial->m[i]), most = fmax(most, initial->m[i]);
+    if (most <= least * (1 + 1e-9)) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "equal masses: the particles of this case with these keys have masses that "
+                     "differ by a factor of %.6g, with numbers of particles near this one too; "
+                     "allowed: cases and keys that lay equal ones",
+                     most / least);
 }

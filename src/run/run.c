@@ -8,12 +8,14 @@
 #include <string.h>
 #include <sys/resource.h>
 
+#include "equal_masses.h"
 #include "initial.h"
 #include "initial_create.h"
 #include "problem_prepare.h"
 #include "run_keep.h"
 #include "run_measure.h"
 #include "run_simulate.h"
+#include "slab.h"
 #include "snapshot_writer.h"
 
 enum status run_prepare(struct run_settings *settings, const char *case_name, int n,
@@ -193,13 +195,52 @@ enum status run_execute(const struct run *run, struct run_result *result, struct
     return result->status;
 }
 
-enum status run_start(const struct run *run, struct run_result *result, struct error *error)
+/* With equal masses: lattices of two spacings, or parts of a line, have them for some numbers of
+ * particles only, of which the nearest is taken. */
+static enum status begin_equal(struct run *run, struct run_result *result, struct initial *initial,
+                               struct error *error)
 {
+    enum { TRIES = 200 }; /* up to half of n away, at first all */
+    const double n = settings_real(&run->settings, SETTING_n);
+    struct run_settings asked = run->asked;
+    struct error reason;
+    enum status status = begin(run, result, initial, error);
+    if (!status) status = equal_masses_check(initial, error);
+    for (int k = 2; status == STATUS_BAD_INPUT && k < 2 * TRIES; k++) {
+        const double away = k / 2 + floor(n / 2 * pow((k / 2) / (double)TRIES, 3));
+        char text[32];
+        snprintf(text, sizeof text, "%.17g", fmax(4, n + (k % 2 ? -away : away)));
+        initial_free(initial);
+        if (!settings_set(&asked.settings, SETTING_n, text, SOURCE_USER, NULL, &reason) &&
+            !run_resolve(run, &asked, &reason) && !begin(run, result, initial, &reason) &&
+            !equal_masses_check(initial, &reason))
+            status = STATUS_OK;
+    }
+    return status;
+}
+
+/* In layers, where they are asked for: run becomes that of the slab. */
+static enum status begin_start(struct run *run, struct run_result *result, struct initial *initial,
+                               struct error *error)
+{
+    enum status status = run->asked.equal_masses ? begin_equal(run, result, initial, error)
+                                                 : begin(run, result, initial, error);
+    if (status || !run->asked.layers) return status;
+    status = slab_lay(run, initial, error);
+    result->problem = run->problem;
+    result->scheme = run->scheme;
+    result->n = initial->n;
+    return status;
+}
+
+enum status run_start(const struct run *asked, struct run_result *result, struct error *error)
+{
+    struct run run = *asked;
     struct initial initial;
     struct simulation *simulation = NULL;
-    enum status status = begin(run, result, &initial, error);
+    enum status status = begin_start(&run, result, &initial, error);
     if (!status) {
-        const struct setup setup = run_setup(run, &initial);
+        const struct setup setup = run_setup(&run, &initial);
         status = simulation_take(&setup, &simulation, error);
     }
     initial_free(&initial);

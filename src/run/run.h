@@ -59,11 +59,13 @@ struct run_external {
 
 struct run_settings {
     struct case_file file;
-    struct settings settings;            /* the case's with the user's on top; `auto` still in it */
-    int threads;                         /* >= 1 */
-    bool any_window;                     /* run also where the mirrored tube reaches the window */
-    bool generic;                        /* by the loops that look every choice up */
-    run_solver *solver;                  /* computes the run; NULL: the core solver */
+    struct settings settings; /* the case's with the user's on top; `auto` still in it */
+    int threads;              /* >= 1 */
+    bool any_window;          /* run also where the mirrored tube reaches the window */
+    bool generic;             /* by the loops that look every choice up */
+    int layers;               /* of run_start: a plane as so many layers in space; 0: as it is */
+    bool equal_masses;        /* of run_start: particles of equal masses, or none */
+    run_solver *solver;       /* computes the run; NULL: the core solver */
     const struct run_external *external; /* computes its document; NULL: this program */
     simulation_progress *progress;       /* called every 32 steps; may be NULL */
     void *progress_context;
@@ -159,8 +161,9 @@ enum status run_execute(const struct run *run, struct run_result *result, struct
 enum status run_explain(const struct run *run, struct run_result *result, struct error *error);
 
 /* No step: the state at t = 0 of the very particles that run_execute starts from, with the density
- * and smoothing length that its solver finds; nothing is measured. STATUS_*: as run_execute, and
- * only STATUS_OK leaves a result. */
+ * and smoothing length that its solver finds; nothing is measured. With asked.layers it is in 3D
+ * (see slab.h), and the problem of the result serves for box, boundary and gamma alone. STATUS_*:
+ * as run_execute, and only STATUS_OK leaves a result. */
 enum status run_start(const struct run *run, struct run_result *result, struct error *error);
 
 /* No run: errors and functionals of a state that another code has computed, by the problem of a run

@@ -27,13 +27,16 @@ const struct start_format *start_format_of(const char *name, struct error *error
     return NULL;
 }
 
-enum status start_possible(const struct start_format *format, const struct prepared *problem,
+enum status start_possible(const struct start_format *format, const struct run *run,
                            struct error *error)
 {
-    if (format->dim && problem->domain.dim != format->dim)
+    const struct prepared *problem = &run->problem;
+    const int dim = run->asked.layers ? 3 : problem->domain.dim;
+    if (format->dim && dim != format->dim)
         return error_set(error, STATUS_BAD_INPUT,
-                         "ic: a problem in %dD: the code that reads '%s' is for %dD",
-                         problem->domain.dim, format->member.name, format->dim);
+                         "ic: a problem in %dD: the code that reads '%s' is for %dD%s", dim,
+                         format->member.name, format->dim,
+                         dim == 2 && format->dim == 3 ? " (--as-3d LAYERS makes that of it)" : "");
     for (int d = 0; d < problem->domain.dim; d++) {
         const enum boundary boundary = problem->boundary[d];
         if (format->no_walls && boundary != BOUNDARY_PERIODIC && boundary != BOUNDARY_OPEN)

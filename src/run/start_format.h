@@ -27,7 +27,7 @@ extern const struct family start_format_family;
 const struct start_format *start_format_of(const char *name, struct error *error);
 
 /* STATUS_BAD_INPUT: the code cannot be given such a problem; the message says why. */
-enum status start_possible(const struct start_format *format, const struct prepared *problem,
+enum status start_possible(const struct start_format *format, const struct run *run,
                            struct error *error);
 
 /* The result of run_start in a file. STATUS_ENVIRONMENT: it cannot be written. */

@@ -70,7 +70,7 @@ void code_values(struct code_values *values, const struct code_external *externa
     if (word) template_name(word, length, values->parameters);
     values->of[CODE_WORD_CASE] = run->asked.file.name;
     set_real(values, CODE_WORD_T_END, settings_real(&run->settings, SETTING_t_end));
-    set_real(values, CODE_WORD_DIM, run->asked.file.dimension);
+    set_real(values, CODE_WORD_DIM, run->asked.layers ? 3 : run->asked.file.dimension);
     set_real(values, CODE_WORD_GAMMA, run->problem.gamma);
     set_real(values, CODE_WORD_THREADS, run->asked.threads);
     set_real(values, CODE_WORD_SEED, settings_real(&run->settings, SETTING_seed));
@@ -259,6 +259,9 @@ enum status code_add_key(const struct run_external *base, const struct run *run,
                              "elements", code_value(way, CODE_elements), "shell", code_shell(way),
                              "files", files, "templates", template_sums(external, &values));
     free(filled);
+    if (code && run->asked.layers)
+        json_object_set_new(code, "as_3d", json_integer(run->asked.layers));
+    if (code && run->asked.equal_masses) json_object_set_new(code, "equal_masses", json_true());
     if (code && external->variation)
         json_object_set_new(code, "variation", json_integer((json_int_t)external->variation));
     if (code && !json_object_set_new(key, "code", code)) return STATUS_OK;

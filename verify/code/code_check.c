@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "slab.h"
 #include "text.h"
 
 bool code_is_file(const char *path)
@@ -120,6 +121,7 @@ void code_check_value(const struct code *code, struct ini_text *at, enum code_ke
     struct code_way way = {.line[CODE_memory] = 1,
                            .line[CODE_timeout] = 1,
                            .line[CODE_shell] = 1,
+                           .line[CODE_equal_masses] = 1,
                            .line[CODE_elements] = 1};
     snprintf(way.value[key], sizeof way.value[key], "%s", value);
     const char *allowed = code_keys[key].allowed;
@@ -148,6 +150,14 @@ void code_check_value(const struct code *code, struct ini_text *at, enum code_ke
     case CODE_elements:
         if (!code_cells(&way) && strcmp(value, "particles") != 0)
             ini_text_fail_value(at, "elements", value, allowed);
+        return;
+    case CODE_as_3d:
+        if (strcmp(value, "no") != 0 && !slab_layers(value))
+            ini_text_fail_value(at, "as_3d", value, allowed);
+        return;
+    case CODE_equal_masses:
+        if (!code_equal_masses(&way) && strcmp(value, "no") != 0)
+            ini_text_fail_value(at, "equal_masses", value, allowed);
         return;
     case CODE_shell:
         if (!code_shell(&way) && strcmp(value, "no") != 0)

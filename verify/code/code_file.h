@@ -44,6 +44,9 @@
     KEY(elements, "particles", "particles cells",                                                  \
         "what the gas is made of: cells of a grid exchange mass, so a snapshot need not have the " \
         "particles of the initial state")                                                          \
+    KEY(as_3d, "no", "no, or a number of layers",                                                  \
+        "cases in 2D are given to the code as so many periodic layers in 3D, and judged in 2D")    \
+    KEY(equal_masses, "no", "yes no", "initial states have particles of equal masses")             \
     KEY(shell, "no", "yes no", "the command is a line for sh, in which no word is a file")
 
 enum code_key {
@@ -127,6 +130,7 @@ double code_timeout(const struct code_way *way);
 double code_memory(const struct code_way *way); /* bytes; INFINITY: no limit */
 bool code_shell(const struct code_way *way);
 bool code_cells(const struct code_way *way);
+bool code_equal_masses(const struct code_way *way);
 /* The format of initial states; NULL: ic is a command. */
 const struct start_format *code_format(const struct code_way *way);
 

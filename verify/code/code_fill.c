@@ -47,6 +47,11 @@ bool code_shell(const struct code_way *way)
     return strcmp(code_value(way, CODE_shell), "yes") == 0;
 }
 
+bool code_equal_masses(const struct code_way *way)
+{
+    return strcmp(code_value(way, CODE_equal_masses), "yes") == 0;
+}
+
 bool code_cells(const struct code_way *way)
 {
     return strcmp(code_value(way, CODE_elements), "cells") == 0;

@@ -13,10 +13,12 @@
 #include "code_call.h"
 #include "code_process.h"
 #include "code_snapshot.h"
+#include "equal_masses.h"
 #include "output.h"
 #include "places.h"
 #include "profile.h"
 #include "result.h"
+#include "slab.h"
 #include "trace_output.h"
 #include "value.h"
 
@@ -147,7 +149,7 @@ static enum status prepare(struct course *course, struct error *error)
 {
     const struct code_external *external = course->external;
     const struct start_format *format = code_format(&external->of->way);
-    if ((format && start_possible(format, &course->run->problem, error)) ||
+    if ((format && start_possible(format, course->run, error)) ||
         run_start(course->run, &course->start, error))
         return error->status;
     code_values(&course->values, external, course->run, &course->start);
@@ -197,27 +199,50 @@ static bool box_of(const struct course *course, const struct snapshot_file *file
     return true;
 }
 
+/* What the initial state conserves, where the snapshot has its particles; of a slab as of the plane
+ * that it is judged as. */
+static enum status sum_start(const struct course *course, struct conservation *sums,
+                             struct error *error)
+{
+    const struct run_result *result = &course->judged.result;
+    const struct domain *ours = &course->run->problem.domain, *theirs = &result->problem.domain;
+    const double slab = course->judged.slab > 0 ? course->judged.slab : 1;
+    struct snapshot start = course->start.snapshot;
+    double shift[3] = {0}, *m = malloc(start.n * sizeof *m);
+    if (!m) return error_set(error, STATUS_ENVIRONMENT, "no memory for an initial state");
+    for (size_t i = 0; i < start.n; i++) m[i] = start.m[i] / slab;
+    for (int d = 0; d < ours->dim; d++) shift[d] = theirs->lo[d] - ours->lo[d];
+    start.m = m;
+    judge_sum(&result->problem, &start, shift, sums);
+    free(m);
+    return STATUS_OK;
+}
+
 /* Of the kernel that was found, else of the case's. */
-static void complete(struct course *course)
+static enum status complete(struct course *course, struct error *error)
 {
     const struct run *run = course->run;
     struct run_result *result = &course->judged.result;
     const struct conventions *found = &course->judged.conventions;
-    const struct domain *ours = &course->start.problem.domain, *theirs = &result->problem.domain;
+    const double unknown = (double)NAN;
     struct conservation start = {0};
-    double shift[3] = {0};
-    for (int d = 0; d < ours->dim; d++) shift[d] = theirs->lo[d] - ours->lo[d];
-    if (code_format(&course->external->of->way))
-        judge_sum(&result->problem, &course->start.snapshot, shift, &start);
-    else
+    if (!code_format(&course->external->of->way))
         start = course->judged.start;
+    else if (sum_start(course, &start, error))
+        return error->status;
     if (start.mass > 0) trace_add(&course->trace, 0, &start);
     result->settings = run->settings;
-    result->regularity = regularity_of(
-        &result->problem, found->known ? &found->candidate[0].kernel : &run->scheme.kernel,
-        &result->snapshot);
+    if (run->asked.layers) {
+        result->n /= (size_t)run->asked.layers;
+        result->regularity = (struct regularity){unknown, unknown, unknown, unknown, unknown};
+    } else {
+        result->regularity = regularity_of(
+            &result->problem, found->known ? &found->candidate[0].kernel : &run->scheme.kernel,
+            &result->snapshot);
+    }
     result->cost.wall_s = course->outcome.wall_s;
     result->cost.cpu_s = course->outcome.cpu_s;
+    return STATUS_OK;
 }
 
 /* A snapshot of the start, where the code writes one, is the initial state, or course->reason. */
@@ -241,7 +266,7 @@ static void check_start(struct course *course, const struct code_origin *origin)
 static enum status judge(struct course *course, const char *path, struct error *error)
 {
     const struct code_origin origin = {.ic = course->readable ? &course->read : NULL,
-                                       .problem = &course->start.problem,
+                                       .problem = &course->run->problem,
                                        .t_end =
                                            settings_real(&course->run->settings, SETTING_t_end),
                                        .cells = code_cells(&course->external->of->way)};
@@ -268,7 +293,7 @@ static enum status judge(struct course *course, const char *path, struct error *
         status = judge_as(path, &request, false, &course->judged, &said);
         if (status == STATUS_BAD_INPUT) course->reason = REASON_wrong_particles;
     }
-    if (!status && !course->reason) complete(course);
+    if (!status && !course->reason) status = complete(course, &said);
     if (status == STATUS_BAD_INPUT)
         snprintf(course->message, sizeof course->message, "%.390s",
                  said.message + (strncmp(said.message, course->folder, strlen(course->folder))
@@ -300,7 +325,7 @@ static void add_moment(struct course *course, const char *path)
     snapshot_file_free(&file);
     if (boxed) request.box = box;
     if (!between || judge_as(path, &request, true, &judged, &ignored)) return;
-    if (judged.result.n == course->judged.result.n)
+    if (judged.result.snapshot.n == course->judged.result.snapshot.n)
         trace_add(&course->trace, judged.result.time, &judged.sums);
     judge_free(&judged);
 }
@@ -480,7 +505,9 @@ static enum status tell_failed(const struct course *course, json_t *document, st
               code_reason_names[course->reason], course->message,
               *last ? "; its log ends with: " : "", last,
               course->external->work ? "" : " (--work DIR keeps its files)");
-    run_add_plan(&course->run->asked, &course->start, document);
+    struct run_result start = course->start;
+    if (course->run->asked.layers) start.n /= (size_t)course->run->asked.layers;
+    run_add_plan(&course->run->asked, &start, document);
     forget(document);
     json_object_set_new(document, "status", json_string("failed"));
     json_object_set_new(document, "reason", json_string(code_reason_names[course->reason]));
@@ -585,5 +612,11 @@ enum status code_prepare(const struct code *code, const char *case_name, const c
         .work = work};
     *settings = (struct run_settings){
         .file = of->file, .settings = of->file.settings, .threads = 1, .external = &external->base};
-    return settings_apply(&settings->settings, n, arguments, error);
+    if (settings_apply(&settings->settings, n, arguments, error) ||
+        (code_equal_masses(&of->way) && equal_masses_ask(settings, error)))
+        return error->status;
+    const char *layers = code_value(&of->way, CODE_as_3d);
+    return of->file.dimension == 2 && strcmp(layers, "no") != 0
+               ? slab_ask(settings, layers, "as_3d", error)
+               : STATUS_OK;
 }

@@ -4,8 +4,10 @@
 #include <string.h>
 
 #include "command.h"
+#include "equal_masses.h"
 #include "output.h"
 #include "result.h"
+#include "slab.h"
 #include "snapshot_remarks.h"
 #include "start_format.h"
 
@@ -50,6 +52,14 @@ static enum status write_document(const struct options *options, const char *for
     return status;
 }
 
+static enum status ask_shape(const struct options *options, struct run_settings *settings,
+                             struct error *error)
+{
+    const char *layers = options_value(options, "as-3d");
+    if (layers && slab_ask(settings, layers, "ic: --as-3d", error)) return error->status;
+    return options_value(options, "equal-masses") ? equal_masses_ask(settings, error) : STATUS_OK;
+}
+
 static enum status write_ic(const struct options *options, int n, char **arguments,
                             struct error *error)
 {
@@ -68,7 +78,8 @@ static enum status write_ic(const struct options *options, int n, char **argumen
                          out);
     if (run_prepare(&settings, arguments[0], n - 1, arguments + 1, error)) return error->status;
     settings.threads = options->threads;
-    if (run_resolve(&run, &settings, error) || start_possible(format, &run.problem, error))
+    if (ask_shape(options, &settings, error)) return error->status;
+    if (run_resolve(&run, &settings, error) || start_possible(format, &run, error))
         return error->status;
     if (format->writer->possible && format->writer->possible(out, error)) return error->status;
     if (!streamed && output_probe(out, error)) return error->status;
@@ -87,6 +98,8 @@ static enum status write_ic(const struct options *options, int n, char **argumen
 static const struct command_option own_options[] = {
     {"format", "FORMAT", "one of `sphproof list formats`"},
     {"out", "FILE", "the file"},
+    {"equal-masses", NULL, "particles of equal masses, for codes that know no others"},
+    {"as-3d", "LAYERS", "a case in 2D as so many periodic layers in 3D, for codes in 3D"},
     {NULL, NULL, NULL},
 };
 
@@ -98,5 +111,6 @@ const struct command command_ic = {
     .run = write_ic,
     .options = own_options,
     .examples = "sphproof ic gresho n=64^2 --format swift --out gresho.hdf5\n"
+                "sphproof ic gresho n=32^2 --as-3d 8 --format sph_exa --out gresho.h5\n"
                 "sphproof ic sod lattice=uniform --format csv --out sod.csv",
 };

@@ -106,6 +106,13 @@ static double wrapped(double x, double lo, double period)
     return y < lo ? lo : y;
 }
 
+static double width_of_volume(const struct judged *judged, size_t i)
+{
+    const struct snapshot_file *file = &judged->file;
+    const double volume = file->column[SNAPSHOT_M][i] / file->column[SNAPSHOT_RHO][i];
+    return pow(volume, 1. / (judged->slab > 0 ? 3 : file->dim));
+}
+
 static enum status gas_make(struct gas *gas, const struct judged *judged, const double period[3],
                             double reach, struct error *error)
 {
@@ -132,13 +139,12 @@ static enum status gas_make(struct gas *gas, const struct judged *judged, const 
             column[d][k] = wrapped(file->column[d][i], domain->lo[d], period[d]);
             column[3 + d][k] = file->column[SNAPSHOT_VX + d][i];
         }
-        column[6][k] = file->column[SNAPSHOT_M][i];
+        column[6][k] = file->column[SNAPSHOT_M][i] / (judged->slab > 0 ? judged->slab : 1);
         column[7][k] = file->column[SNAPSHOT_RHO][i];
         column[8][k] = file->column[SNAPSHOT_U][i];
         column[9][k] = file->column[SNAPSHOT_P][i];
-        column[10][k] = file->column[SNAPSHOT_H] && reach > 0
-                            ? reach * file->column[SNAPSHOT_H][i]
-                            : 2 * pow(column[6][k] / column[7][k], 1. / file->dim);
+        column[10][k] = file->column[SNAPSHOT_H] && reach > 0 ? reach * file->column[SNAPSHOT_H][i]
+                                                              : 2 * width_of_volume(judged, i);
     }
     for (size_t k = 0; k < n; k++) column[11][k] = column[6][k] / column[7][k];
     *s = (struct snapshot){.n = n,
@@ -444,12 +450,36 @@ static bool wrong_mass(const struct judged *judged)
            !(fabs(judged->sums.mass / judged->start.mass - 1) <= JUDGE_FOREIGN_MASS);
 }
 
+/* With the sums of the particles: see measure_sums. */
+static enum status measure_start(struct judged *judged, bool glance, struct error *error)
+{
+    struct judge_start *start = &judged->of_start;
+    measure_sums(judged);
+    const double ratio =
+        judged->start.mass > 0 ? judged->sums.mass / judged->start.mass : (double)NAN;
+    if (glance) return STATUS_OK;
+    if (judge_start_look(&judged->result, judged->file.precision[1], ratio, start, error))
+        return error->status;
+    if (start->looked && !start->wrong)
+        snapshot_note(
+            &judged->file.notes, "start", "the case's",
+            "%s%svelocities to %.1e of the greatest, internal energies to %.1e, masses to "
+            "%.1e; density and pressure are sums over neighbours",
+            start->message, *start->message ? "; " : "", start->worst[START_VELOCITY],
+            start->worst[START_ENERGY], start->worst[START_MASS]);
+    else if (start->looked)
+        snapshot_note(&judged->file.notes, "start", "damaged", "%s", start->message);
+    return STATUS_OK;
+}
+
 static void write_verdict(struct judged *judged)
 {
     const struct run_result *r = &judged->result;
     const struct convention *best = &judged->conventions.candidate[0];
-    char kernel[100], gas[220] = "";
-    if (wrong_mass(judged))
+    char kernel[100], gas[520] = "";
+    if (judged->of_start.wrong)
+        snprintf(gas, sizeof gas, "%s; ", judged->of_start.message);
+    else if (wrong_mass(judged))
         snprintf(gas, sizeof gas,
                  "its mass is %.3g times that of the case in this box: particles are missing or "
                  "there twice, or box or units are others; ",
@@ -524,10 +554,15 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
     if (!status) status = judge_place(request, judged, period, error);
     if (!status) status = complete(judged, judged->run.problem.gamma, error);
     if (!status && request->kernel >= 0)
-        status = plugin_select(&kernel, request->kernel, SINC_ORDER, judged->file.dim, error);
-    if (!status && !glance)
+        status = plugin_select(&kernel, request->kernel, SINC_ORDER,
+                               judged->slab > 0 ? 3 : judged->file.dim, error);
+    if (!status && !glance) {
+        const int dim = judged->file.dim;
+        if (judged->slab > 0) judged->file.dim = 3; /* in which its densities were summed */
         status = conventions_find(&judged->file, period, request->kernel < 0 ? NULL : &kernel,
                                   &request->width, &judged->conventions, error);
+        judged->file.dim = dim;
+    }
     if (!status)
         status =
             gas_make(&gas, judged, period,
@@ -543,12 +578,18 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
                           : "");
     }
     if (!status && sees_nothing(&judged->result)) status = refuse_window(judged, error);
+    if (!status && judged->slab > 0)
+        judged->result.spacing *= sqrt((double)judged->result.n / judged->case_n);
     if (!status) measure_growth(judged);
     if (!status) status = measure_wrong(judged, error);
+    if (!status) status = measure_start(judged, glance, error);
     if (!status) {
         judged->far = judged->wrong > JUDGE_FOREIGN;
-        measure_sums(judged);
-        judged->foreign = judged->far || judged->case_gamma > 0 || wrong_mass(judged);
+        judged->foreign =
+            judged->far || judged->case_gamma > 0 || wrong_mass(judged) ||
+            (judged->of_start.wrong &&
+             (judged->of_start.explained ||
+              judged->of_start.wrong > judged->result.n / 10)); /* few may have moved on */
         judged->passes = !judged->foreign || request->allow_far;
         judged->silent = !is_known(&judged->result) && !request->allow_far;
         judged->transverse = measure_noise(judged);

@@ -7,6 +7,7 @@
 #include <jansson.h>
 
 #include "conventions.h"
+#include "judge_start.h"
 #include "run.h"
 #include "snapshot_file.h"
 
@@ -37,20 +38,23 @@ struct judged {
     struct run_result result;
     struct conservation sums;  /* of the gas; no momentum where walls or gravity push */
     struct conservation start; /* of the case at t = 0 in the same box; mass 0: not known */
-    double case_n;     /* as many particles as the case's own box would have of the same spacing */
-    int case_dim;      /* in which it is written */
-    bool altered;      /* another initial state than the case's */
-    bool boxed;        /* the gas fills a box that is known, and has no other ends */
+    double case_n; /* as many particles as the case's own box would have of the same spacing */
+    int case_dim;  /* in which it is written */
+    double slab;  /* a plane's gas in layers in 3D: how thick they are together, and what masses are
+                     divided by to be those of the plane; 0: as many dimensions as the case */
+    bool altered; /* another initial state than the case's */
+    bool boxed;   /* the gas fills a box that is known, and has no other ends */
     double transverse; /* rms of velocities across x, by volume, in the window; NaN in 1D */
     double wrong;      /* worst median error of a field over the range of its exact values */
     enum field wrong_field;
     bool far;          /* from this case's solution */
-    bool foreign;      /* far from this case's solution, or of another gas */
+    bool foreign;      /* far from this case's solution, of another gas, or a damaged start */
     bool passes;       /* not foreign, or that was allowed */
     bool silent;       /* nothing is known of the case at this time, and that was not allowed */
     double case_gamma; /* where the user named the case and the file has another gamma; else 0 */
-    char meant[64];    /* the case of ours that it fits, where it is far from the one asked for */
-    char verdict[600];
+    struct judge_start of_start; /* of t = 0 */
+    char meant[64]; /* the case of ours that it fits, where it is far from the one asked for */
+    char verdict[1000];
 };
 
 /* A snapshot that is far from its case is compared with our other cases as well. STATUS_BAD_INPUT:

@@ -130,7 +130,9 @@ enum status judge_snapshot(const char *path, const struct judge_request *request
     const enum status status = judge_as(path, request, false, judged, error);
     const bool other =
         judged->far || judged->silent || (judged->foreign && judged->case_gamma == 0);
-    if (status == STATUS_BAD_INPUT ? !judged->file.n : status || !other) return status;
+    if (status == STATUS_BAD_INPUT ? !judged->file.n
+                                   : status || !other || judged->of_start.explained)
+        return status;
     find_meant(path, request, judged, !status, meant);
     char *text = status ? error->message : judged->verdict;
     const size_t size = status ? sizeof error->message : sizeof judged->verdict,

@@ -43,6 +43,19 @@ static json_t *notes_json(const struct snapshot_notes *notes)
     return list;
 }
 
+/* Null of other times. */
+static json_t *start_json(const struct judge_start *start)
+{
+    static const char *const names[START_FIELDS] = {"velocity", "internal_energy", "mass",
+                                                    "pressure"};
+    if (!start->looked) return json_null();
+    json_t *of =
+        json_pack("{s:I, s:s}", "wrong", (json_int_t)start->wrong, "message", start->message);
+    for (int f = 0; f < START_FIELDS; f++)
+        json_object_set_new(of, names[f], result_number(start->worst[f]));
+    return of;
+}
+
 json_t *judge_one_json(const struct judged *judged, bool profiles)
 {
     const struct run_result *r = &judged->result;
@@ -50,7 +63,7 @@ json_t *judge_one_json(const struct judged *judged, bool profiles)
     const bool plane = judged->file.dim > 1;
     json_t *one = json_pack(
         "{s:s, s:s, s:s, s:o, s:I, s:o, s:i, s:{s:o, s:o}, s:o, s:o, s:o, s:o, s:o, s:{s:o, s:o}, "
-        "s:b, s:s, s:s?}",
+        "s:b, s:s, s:s?, s:o}",
         "file", judged->path, "layout", file->layout, "code", file->code, "assumptions",
         notes_json(&file->notes), "n", (json_int_t)r->n, "time", result_number(r->time), "dim",
         file->dim, "precision", "positions", result_number(file->precision[0]), "fields",
@@ -60,7 +73,7 @@ json_t *judge_one_json(const struct judged *judged, bool profiles)
         "transverse_velocity", plane ? result_number(judged->transverse) : json_null(),
         "undisturbed", r->budget.regions ? result_number(r->budget.still) : json_null(), "foreign",
         judged->foreign, "verdict", judged->verdict, "meant",
-        judged->meant[0] ? judged->meant : NULL);
+        judged->meant[0] ? judged->meant : NULL, "start", start_json(&judged->of_start));
     if (one && profiles)
         json_object_set_new(one, "profile", plane ? cloud_profile_json(r) : profile_json(r));
     return one;

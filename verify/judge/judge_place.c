@@ -317,12 +317,54 @@ static enum status set_window(const struct judge_request *request, struct judged
     return settings_set(settings, SETTING_window, text, SOURCE_USER, NULL, error);
 }
 
+/* The first words for so many directions. */
+static void cut_words(char *words, int directions)
+{
+    for (char *c = words; *c; c++)
+        if (*c == ' ' && --directions == 0) *c = '\0';
+}
+
+/* Layers of a plane's gas: they are judged along x and y. Without a box they are as thick as their
+ * volumes make them. */
+static void take_slab(struct judged *judged)
+{
+    struct snapshot_file *file = &judged->file;
+    double volume = 0, area = 1, along = 0, most = 0;
+    char value[48];
+    for (size_t i = 0; i < file->gas; i++) {
+        double squares = 0;
+        for (int d = 0; d < 3; d++)
+            squares += file->column[SNAPSHOT_VX + d][i] * file->column[SNAPSHOT_VX + d][i];
+        volume += file->column[SNAPSHOT_M][i] / file->column[SNAPSHOT_RHO][i];
+        along = fmax(along, fabs(file->column[SNAPSHOT_VX + 2][i]));
+        most = fmax(most, sqrt(squares));
+    }
+    for (int d = 0; d < 2; d++) {
+        double lo, hi;
+        extent(file, file->gas, d, &lo, &hi);
+        area *= file->boxed ? file->box[d] : hi - lo;
+    }
+    judged->slab = file->boxed && file->box[2] > 0 ? file->box[2] : volume / area;
+    file->dim = 2;
+    cut_words(file->boundary, 2);
+    snprintf(value, sizeof value, "a slab in 3D, %.6g thick", judged->slab);
+    snapshot_note(&file->notes, "plane", value,
+                  "the case is in 2D: judged along x and y; velocities along z are at most %.2g of "
+                  "the greatest",
+                  most > 0 ? along / most : 0);
+}
+
 static enum status check_dimension(struct judged *judged, struct run_settings *asked,
                                    const struct problem *problem, struct error *error)
 {
     const int dim = judged->file.dim;
     char value[32];
     if (dim == asked->file.dimension) return STATUS_OK;
+    /* what has a form on a line varies along x alone, in any dimension */
+    if (dim == 3 && asked->file.dimension == 2 && (problem->least_dim == 2 || problem->circular)) {
+        take_slab(judged);
+        return STATUS_OK;
+    }
     if (dim < problem->least_dim || dim > problem->most_dim || problem->circular)
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s: particles in %d dimensions; the case %.60s has %d", judged->path,
@@ -384,6 +426,8 @@ enum status judge_place(const struct judge_request *given, struct judged *judged
     else if (run_prepare(&asked, name, 0, NULL, error))
         return error->status;
     judged->case_dim = asked.file.dimension;
+    const struct problem *problem = problem_of(settings);
+    if (check_dimension(judged, &asked, problem, error)) return error->status;
     if (strcmp(name, said) == 0 && !request->x0.known && take_keys(judged, settings, error))
         return error->status;
     if ((request->left &&
@@ -394,7 +438,6 @@ enum status judge_place(const struct judge_request *given, struct judged *judged
     for (int key = 0; key < SETTINGS; key++)
         judged->altered |= settings->value[key].source == SOURCE_USER &&
                            strcmp(setting_keys[key].section, "initial") == 0;
-    const struct problem *problem = problem_of(settings);
     const bool tube = problem_reads(problem, SETTING_left);
     if (!tube && (request->x0.known || request->left || request->right))
         return error_set(error, STATUS_BAD_INPUT,
@@ -410,8 +453,7 @@ enum status judge_place(const struct judge_request *given, struct judged *judged
     }
     const double case_lo = settings_along(settings, SETTING_lo, 0),
                  case_hi = settings_along(settings, SETTING_hi, 0);
-    if (check_dimension(judged, &asked, problem, error) ||
-        take_gamma(request, judged, settings, error) ||
+    if (take_gamma(request, judged, settings, error) ||
         take_time(request, judged, settings, error) ||
         take_box(request, judged, settings, ends != NULL, &box, error))
         return error->status;
@@ -432,12 +474,18 @@ enum status judge_place(const struct judge_request *given, struct judged *judged
         judged->case_n *=
             (settings_along(settings, SETTING_hi, d) - settings_along(settings, SETTING_lo, d)) /
             (box.hi[d] - box.lo[d]);
+    if (judged->slab > 0) /* a layer's, if particles stand as far apart in all directions */
+        judged->case_n *= cbrt((box.hi[0] - box.lo[0]) * (box.hi[1] - box.lo[1]) * judged->slab /
+                               (double)judged->file.gas) /
+                          judged->slab;
     if (tube && place_tube(request, judged, settings, &box, &period[0], &ended, error))
         return error->status;
     judged->boxed = box.known && !ended && judged->file.gas == judged->file.n;
     if ((!ended && set_window(request, judged, settings, &box, case_hi - case_lo,
                               0.5 * (case_lo + case_hi), error)) ||
-        set_real(settings, SETTING_n, fmin(1e7, (double)judged->file.gas), error) ||
+        set_real(settings, SETTING_n,
+                 fmin(1e7, judged->slab > 0 ? round(judged->case_n) : (double)judged->file.gas),
+                 error) ||
         set_ends(settings, SETTING_lo, box.lo, dim, error) ||
         set_ends(settings, SETTING_hi, box.hi, dim, error))
         return error->status;

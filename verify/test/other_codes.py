@@ -291,6 +291,30 @@ def test_work():
     same(document("run", "sod", "n=100")["errors"], done["errors"])
 
 
+SLAB = """#!/bin/sh
+# a code that knows 3D alone: T_END OUT, and the ends of the box
+printf '[case]\\ntitle = t\\ndimension = 3\\nreference = none\\n[domain]\\nlo = %%s %%s %%s\\nhi = %%s %%s %%s\\n' $3 $4 $5 $6 $7 $8 > it.ini
+printf '[initial]\\nkind = particles\\nfile = ic.csv\\n[run]\\ngamma = 1.6666666666666667\\nt_end = %%s\\n' $1 >> it.ini
+%s run ./it.ini --quiet --snapshot all.csv
+sed '/^# case/d;/^# keys/d' all.csv > $2_1.csv
+"""
+
+
+def test_slab(draw):
+    """A code in 3D runs a case in 2D as layers: its errors are nearly ours in 2D, n is that of a layer."""
+    write("slab.sh", SLAB % program)
+    os.chmod("slab.sh", 0o700)
+    write("slab.ini", GOOD.replace("[case gresho]", "[case gresho]\nas_3d = %d\nequal_masses = yes" % draw.randint(7, 9))
+          .replace("./code.py good gresho @N@ @T_END@ @SEED@ @OUT@", "./slab.sh @T_END@ @OUT@ @LO@ @HI@"))
+    words = ("run", "gresho", "n=14^2", "t_end=0.1")
+    ours, theirs = document(*words), document(*words, "--code", "slab.ini")
+    assert theirs["n"] == 196 and 0.8 < theirs["errors"]["velocity"]["l1"] / ours["errors"]["velocity"]["l1"] < 1.2, theirs
+    assert theirs["conservation"]["mass"] < 1e-12 and theirs["conservation"]["energy"] < 1e-12, theirs["conservation"]
+    assert any(one["what"] == "plane" and "slab" in one["value"] for one in theirs["judged"]["assumptions"]), theirs["judged"]
+    write("slab.ini", GOOD.replace("[case gresho]", "as_3d = 3.5\n[case gresho]"))
+    assert "a number of layers" in call(*words, "--code", "slab.ini", status=2)[1]
+
+
 def test_no_errors():
     """A case without an exact solution has no errors and orders to print."""
     said = call("converge", "kelvin_helmholtz", "--n", "12^2,14^2,16^2,18^2", "--replicates", "1", status=None)[0]
@@ -531,6 +555,7 @@ with tempfile.TemporaryDirectory() as work:
     test_again()
     test_refused()
     test_work()
+    test_slab(random.Random(seed))
     test_no_errors()
     test_ladder(random.Random(seed))
     test_motion()

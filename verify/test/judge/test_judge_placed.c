@@ -233,8 +233,6 @@ TEST(in_vain)
     plant(1, 0, "# box = 2\n");
     request.right = NULL;
     refuses(&request, "particles in 1 dimensions; the case gresho has 2");
-    plant(3, 0, "# box = 2 1 1\n");
-    refuses(&request, "particles in 3 dimensions; the case gresho has 2");
     request = uniform_gas();
     plant(1, 0, "# box = 2\n");
     for (int i = 2; i < N; i++) gas.x[0][i] = uniform(0, 0.4);

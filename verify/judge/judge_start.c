@@ -1,0 +1,331 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "judge_start.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "problem_list.h"
+#include "start_cause.h"
+
+/* Above this a difference is none of rounding. */
+#define WRONG 1e-4
+
+static const char *const names[START_FIELDS] = {"velocity", "internal energy", "mass", "pressure"};
+
+/* ---- what differs ---- */
+
+static double energy_off(double u, double exact)
+{
+    return exact > 0 ? fabs(u / exact - 1) : u > 0 ? 1 : 0;
+}
+
+/* On a line a particle may also have the mass of the room that it has: spacings may be graded. */
+static bool fills_room(const struct start_gas *gas, size_t i)
+{
+    const struct snapshot *s = gas->snapshot;
+    const size_t last = s->n - 1;
+    if (gas->problem->domain.dim > 1) return false;
+    const double before = i ? s->x[0][i] - s->x[0][i - 1] : s->x[0][1] - s->x[0][0],
+                 after = i < last ? s->x[0][i + 1] - s->x[0][i] : before,
+                 room = s->m[i] / gas->exact[i].rho;
+    return room > 0.95 * fmin(before, after) && room < 1.05 * fmax(before, after);
+}
+
+/* Beside a jump particles that were moved keep the state that they had. */
+static double least_off(const struct start_gas *gas, enum start_field field, size_t i)
+{
+    static const double steps[] = {0.25, 0.5, 1};
+    const struct prepared *p = gas->problem;
+    double x[3], least = start_off(gas, field, i, &gas->exact[i]);
+    memcpy(x, gas->x[i], sizeof x);
+    if (field == START_MASS && least > WRONG && fills_room(gas, i)) return 0;
+    if (p->problem->smooth || least <= WRONG) return least;
+    for (int d = 0; d < p->domain.dim; d++)
+        for (int k = 0; k < 6; k++) {
+            struct problem_state beside;
+            x[d] = gas->x[i][d] + (k % 2 ? -1 : 1) * steps[k / 2] * gas->spacing;
+            problem_sample(p, x, 0, &beside);
+            least = fmin(least, start_off(gas, field, i, &beside));
+            x[d] = gas->x[i][d];
+        }
+    return least;
+}
+
+double start_off(const struct start_gas *gas, enum start_field field, size_t i,
+                 const struct problem_state *exact)
+{
+    const struct snapshot *s = gas->snapshot;
+    double squares = 0;
+    switch (field) {
+    case START_VELOCITY:
+        for (int d = 0; d < gas->problem->domain.dim; d++)
+            squares += (s->v[d][i] - exact->v[d]) * (s->v[d][i] - exact->v[d]);
+        return sqrt(squares) / gas->speed;
+    case START_ENERGY:
+        return energy_off(s->u[i], exact->u);
+    case START_MASS:
+        return fabs(s->m[i] / start_mass(gas, exact->rho) - 1);
+    default:
+        return energy_off(s->P[i], (gas->problem->gamma - 1) * s->rho[i] * s->u[i]);
+    }
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *values, size_t n)
+{
+    qsort(values, n, sizeof *values, ascending);
+    return values[n / 2];
+}
+
+/* Is it all but equal for most? */
+static size_t near(const double *values, size_t n, double value)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++) count += fabs(values[i] / value - 1) <= WRONG;
+    return count;
+}
+
+static bool alike(double a, double b, double tolerance)
+{
+    return fabs(a / b - 1) <= tolerance;
+}
+
+/* The densities that the case's gas has, if they are few, and the middle mass of each; false: they
+ * are many, or in one of them most masses differ. */
+static bool find_gases(struct start_gas *gas, double *room)
+{
+    const struct snapshot *s = gas->snapshot;
+    for (size_t i = 0; i < s->n; i++) {
+        size_t k = 0;
+        while (k < gas->gases && !alike(gas->exact[i].rho, gas->of[k].rho, 1e-9)) k++;
+        if (k == START_GASES_MAX) return false;
+        if (k == gas->gases) gas->of[gas->gases++].rho = gas->exact[i].rho;
+    }
+    for (size_t k = 0; k < gas->gases; k++) {
+        size_t n = 0;
+        for (size_t i = 0; i < s->n; i++)
+            if (alike(gas->exact[i].rho, gas->of[k].rho, 1e-9)) room[n++] = s->m[i];
+        gas->of[k].mass = median(room, n);
+        if (2 * near(room, n, gas->of[k].mass) <= n) return false;
+    }
+    return true;
+}
+
+/* Lattices that fill the sides of a jump have masses that are but nearly equal, and those of a tube
+ * may be any; else one gas that is off is wrong. */
+static bool gases_fit(const struct start_gas *gas)
+{
+    bool fit = true;
+    for (size_t k = 0; k < gas->gases; k++)
+        fit = fit &&
+              (problem_reads(gas->problem->problem, SETTING_mass_ratio) ||
+               alike(gas->of[k].mass, gas->mass, 0.15) ||
+               (gas->volume > 0 && alike(gas->of[k].mass, gas->of[k].rho * gas->volume, 0.15)));
+    return fit;
+}
+
+double start_mass(const struct start_gas *gas, double rho)
+{
+    for (size_t k = 0; k < gas->gases; k++)
+        if (alike(rho, gas->of[k].rho, 1e-9)) return gas->of[k].mass;
+    return gas->volume > 0 ? rho * gas->volume : gas->mass;
+}
+
+/* Masses are equal, or volumes are, or masses of each gas; false: none of it. */
+static bool measure_masses(struct start_gas *gas, double *room)
+{
+    const struct snapshot *s = gas->snapshot;
+    memcpy(room, s->m, s->n * sizeof *room);
+    gas->mass = median(room, s->n);
+    const size_t masses = near(room, s->n, gas->mass);
+    for (size_t i = 0; i < s->n; i++) room[i] = s->m[i] / gas->exact[i].rho;
+    const double volume = median(room, s->n);
+    const size_t volumes = near(room, s->n, volume);
+    gas->volume = volumes > masses ? volume : 0;
+    if (find_gases(gas, room) && gases_fit(gas)) return true;
+    gas->gases = 0;
+    return 2 * (volumes > masses ? volumes : masses) > s->n;
+}
+
+/* Does the file say so of most particles? Some codes have a pressure of their own. */
+static bool pressures_follow(const struct start_gas *gas)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < gas->snapshot->n; i++)
+        count += start_off(gas, START_PRESSURE, i, &gas->exact[i]) <= 1e-6;
+    return 2 * count > gas->snapshot->n;
+}
+
+static void measure_gas(struct start_gas *gas)
+{
+    double sound = 0;
+    for (size_t i = 0; i < gas->snapshot->n; i++) {
+        const struct problem_state *exact = &gas->exact[i];
+        double squares = 0;
+        for (int d = 0; d < gas->problem->domain.dim; d++) squares += exact->v[d] * exact->v[d];
+        gas->speed = fmax(gas->speed, sqrt(squares));
+        sound = fmax(sound, sqrt(gas->problem->gamma * exact->P / exact->rho));
+    }
+    if (!(gas->speed > 1e-12 * sound)) gas->speed = sound;
+}
+
+/* ---- what is said ---- */
+
+static size_t count_wrong(const struct start_gas *gas, unsigned fields)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < gas->snapshot->n; i++) count += (gas->wrong[i] & fields) != 0;
+    return count;
+}
+
+/* One sentence about the particles of which one of these fields is wrong. */
+static void say(const struct start_gas *gas, unsigned fields, const char *what, const char *cause,
+                char *text, size_t size)
+{
+    const size_t wrong = count_wrong(gas, fields);
+    char share[60], place[120];
+    start_share(wrong, gas->snapshot->n, share, sizeof share);
+    start_place(gas, fields, place, sizeof place);
+    snprintf(text + strlen(text), size - strlen(text),
+             "%s%s of the particles (%zu of %zu) %s the "
+             "wrong %s%s%s%s",
+             *text ? "; " : "", share, wrong, gas->snapshot->n, wrong == 1 ? "has" : "have", what,
+             place, *cause ? ": " : "", cause);
+}
+
+/* False: of some field nothing explains what is wrong. */
+static bool explain(const struct start_gas *gas, char *text, size_t size)
+{
+    bool explained = true;
+    char cause[160] = "";
+    unsigned fields = 0, several = 0;
+    for (int f = 0; f < START_FIELDS; f++)
+        if (count_wrong(gas, 1u << f)) fields |= 1u << f, several++;
+    if (several > 1 && start_cause_places(gas, cause, sizeof cause)) {
+        say(gas, fields, "state for where they are", cause, text, size);
+        return true;
+    }
+    for (int f = 0; f < START_FIELDS; f++) {
+        if (!(fields & 1u << f)) continue;
+        cause[0] = '\0';
+        explained &=
+            start_cause(gas, (enum start_field)f, cause, sizeof cause) ||
+            (several == 1 && f <= START_ENERGY && start_cause_places(gas, cause, sizeof cause));
+        say(gas, 1u << f, names[f], cause, text, size);
+    }
+    return explained;
+}
+
+/* Is nearly each wrong particle no further from the gas of its place than a spacing makes?
+ * Particles that are moved at random keep the mass that they had, and in flows with jumps all. */
+static bool are_moved(const struct start_gas *gas)
+{
+    enum { PER_CENT = 100 };
+    const int dim = gas->problem->domain.dim;
+    size_t wrong = 0, moved = 0;
+    for (size_t i = 0; i < gas->snapshot->n; i++) {
+        double most[3] = {0};
+        if (gas->wrong[i] &
+            (gas->problem->problem->smooth ? ~(1u << START_MASS) : 1u << START_PRESSURE))
+            return false;
+        for (int k = 0; gas->wrong[i] && k < 2 * dim; k++) {
+            struct problem_state beside;
+            double x[3], squares = 0;
+            memcpy(x, gas->x[i], sizeof x);
+            x[k / 2] += (k % 2 ? -1 : 1) * gas->spacing;
+            problem_sample(gas->problem, x, 0, &beside);
+            for (int d = 0; d < dim; d++)
+                squares += (beside.v[d] - gas->exact[i].v[d]) * (beside.v[d] - gas->exact[i].v[d]);
+            most[0] = fmax(most[0], sqrt(squares) / gas->speed);
+            most[1] = fmax(most[1], energy_off(beside.u, gas->exact[i].u));
+            most[2] = fmax(most[2], energy_off(beside.rho, gas->exact[i].rho));
+        }
+        const double off[3] = {
+            start_off(gas, START_VELOCITY, i, &gas->exact[i]),
+            gas->problem->problem->mean_energy ? 0
+                                               : start_off(gas, START_ENERGY, i, &gas->exact[i]),
+            gas->wrong[i] & 1u << START_MASS ? start_off(gas, START_MASS, i, &gas->exact[i]) : 0};
+        wrong += gas->wrong[i] != 0;
+        moved += gas->wrong[i] && off[0] <= most[0] + WRONG && off[1] <= most[1] + WRONG &&
+                 off[2] <= most[2] + WRONG;
+    }
+    return PER_CENT * moved >= 98 * wrong;
+}
+
+/* All masses are so many times the case's: each for itself looks right. */
+static void look_at_all_mass(const struct start_gas *gas, double ratio, struct judge_start *start)
+{
+    enum { PER_CENT = 100 };
+    bool closed = true;
+    for (int d = 0; d < gas->problem->domain.dim; d++)
+        closed = closed && gas->problem->boundary[d] == BOUNDARY_PERIODIC;
+    if (start->wrong || !closed || !(fabs(ratio - 1) * PER_CENT > 2)) return;
+    start->wrong = gas->snapshot->n;
+    snprintf(start->message, sizeof start->message,
+             "all particles have the wrong mass: it is %.6g times the case's", ratio);
+    start->explained = true;
+}
+
+static void look(struct start_gas *gas, double precision, double mass_ratio, double *room,
+                 struct judge_start *start)
+{
+    const struct snapshot *s = gas->snapshot;
+    const struct problem *problem = gas->problem->problem;
+    measure_gas(gas);
+    const bool known[START_FIELDS] = {true, !problem->mean_energy, measure_masses(gas, room),
+                                      pressures_follow(gas)};
+    for (int f = 0; f < START_FIELDS; f++) {
+        start->worst[f] = known[f] ? 0 : (double)NAN;
+        for (size_t i = 0; known[f] && i < s->n; i++) {
+            const double off = least_off(gas, (enum start_field)f, i);
+            if (off > WRONG) gas->wrong[i] |= 1u << f;
+            start->worst[f] = fmax(start->worst[f], off);
+        }
+    }
+    start->looked = true;
+    start->wrong = count_wrong(gas, ~0u);
+    if (start->wrong) start->explained = explain(gas, start->message, sizeof start->message);
+    if (start->wrong && !start->explained && are_moved(gas)) {
+        start->wrong = 0;
+        snprintf(start->message, sizeof start->message,
+                 "particles have the case's state to a spacing, as if they had been moved after "
+                 "they had got it");
+    }
+    look_at_all_mass(gas, mass_ratio, start);
+    const double worst = fmax(start->worst[START_VELOCITY], start->worst[START_ENERGY]);
+    if (!start->wrong && precision < 1e-9 && worst > 1e-9 && worst < 1e-6)
+        snprintf(start->message, sizeof start->message,
+                 "as the case's but for %.1e, as if values had been rounded to single precision",
+                 worst);
+}
+
+enum status judge_start_look(const struct run_result *result, double precision, double mass_ratio,
+                             struct judge_start *start, struct error *error)
+{
+    const struct problem *problem = result->problem.problem;
+    const struct snapshot *s = &result->snapshot;
+    struct start_gas gas = {.problem = &result->problem, .snapshot = s, .spacing = result->spacing};
+    *start = (struct judge_start){.looked = false};
+    if (result->time != 0 || problem->liquid || problem->filed || problem->own != OWN_NOT ||
+        s->n < 4)
+        return STATUS_OK;
+    gas.exact = malloc(s->n * sizeof *gas.exact);
+    gas.x = calloc(s->n, sizeof *gas.x);
+    gas.wrong = calloc(s->n, sizeof *gas.wrong);
+    double *room = malloc(s->n * sizeof *room);
+    const bool sound = gas.exact && gas.x && gas.wrong && room;
+    for (size_t i = 0; sound && i < s->n; i++) {
+        for (int d = 0; d < result->problem.domain.dim; d++) gas.x[i][d] = s->x[d][i];
+        problem_sample(gas.problem, gas.x[i], 0, &gas.exact[i]);
+    }
+    if (sound) look(&gas, precision, mass_ratio, room, start);
+    free(gas.exact), free(gas.x), free(gas.wrong), free(room);
+    return sound ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory for a start");
+}

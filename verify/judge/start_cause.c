@@ -1,0 +1,451 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "start_cause.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PER_CENT = 100 };
+
+/* ---- how many ---- */
+
+void start_share(size_t part, size_t n, char *text, size_t size)
+{
+    static const struct {
+        double share;
+        const char *words;
+    } usual[] = {{3. / 4, "three quarters"}, {2. / 3, "two thirds"}, {1. / 2, "half"},
+                 {1. / 3, "a third"},        {1. / 4, "a quarter"},  {1. / 5, "a fifth"},
+                 {1. / 8, "an eighth"},      {1. / 10, "a tenth"}};
+    const double share = (double)part / (double)n;
+    snprintf(text, size, "%.2g %%", PER_CENT * share);
+    for (size_t k = 0; k < sizeof usual / sizeof *usual; k++)
+        if (fabs(share / usual[k].share - 1) <= 0.03) snprintf(text, size, "%s", usual[k].words);
+    if (part == n) snprintf(text, size, "all");
+    if (part == 1) snprintf(text, size, "one");
+}
+
+/* ---- where ---- */
+
+/* Particles in the order of one number each. */
+struct rank {
+    double at;
+    bool wrong;
+};
+
+static int by_number(const void *a, const void *b)
+{
+    const double x = ((const struct rank *)a)->at, y = ((const struct rank *)b)->at;
+    return (x > y) - (x < y);
+}
+
+/* From the first to the last that is wrong, if hardly any between them is right. */
+static bool name_range(struct rank *rank, size_t n, const char *what, char *text, size_t size)
+{
+    size_t first = 0, last = n - 1, right = 0;
+    qsort(rank, n, sizeof *rank, by_number);
+    while (first < n && !rank[first].wrong) first++;
+    while (last > first && !rank[last].wrong) last--;
+    for (size_t i = first; i <= last; i++) right += !rank[i].wrong;
+    if (first == n || 50 * right > last + 1 - first || last + 1 - first == n) return false;
+    const double from = first ? 0.5 * (rank[first - 1].at + rank[first].at) : rank[0].at,
+                 to = last + 1 < n ? 0.5 * (rank[last].at + rank[last + 1].at) : rank[last].at;
+    if (first == 0)
+        snprintf(text, size, ", at %s < %.4g", what, to);
+    else if (last == n - 1)
+        snprintf(text, size, ", at %s > %.4g", what, from);
+    else
+        snprintf(text, size, ", at %.4g < %s < %.4g", from, what, to);
+    return true;
+}
+
+/* Every so many rows of the file. */
+static bool name_stride(const struct start_gas *gas, unsigned fields, char *text, size_t size)
+{
+    const size_t n = gas->snapshot->n;
+    size_t first = 0, stride = 1;
+    while (first < n && !(gas->wrong[first] & fields)) first++;
+    while (first + stride < n && !(gas->wrong[first + stride] & fields)) stride++;
+    if (stride < 2 || first + stride >= n) return false;
+    for (size_t i = 0; i < n; i++)
+        if (((gas->wrong[i] & fields) != 0) != (i >= first && (i - first) % stride == 0))
+            return false;
+    snprintf(text, size, ", each %zuth in the file", stride);
+    if (stride < 4) snprintf(text, size, ", each %s in the file", stride == 2 ? "second" : "third");
+    return true;
+}
+
+void start_place(const struct start_gas *gas, unsigned fields, char *text, size_t size)
+{
+    static const char *const axes[] = {"x", "y", "z"};
+    const struct snapshot *s = gas->snapshot;
+    const size_t n = s->n;
+    struct rank *rank = malloc(n * sizeof *rank);
+    bool named = false;
+    *text = '\0';
+    for (int d = 0; rank && !named && d < gas->problem->domain.dim + 2; d++) {
+        const int axis = d < gas->problem->domain.dim ? d : -1;
+        if (d == gas->problem->domain.dim + 1 && gas->problem->domain.dim == 1) continue;
+        for (size_t i = 0; i < n; i++)
+            rank[i] = (struct rank){axis >= 0 ? gas->x[i][axis]
+                                    : d == gas->problem->domain.dim + 1
+                                        ? (double)i
+                                        : problem_radius(gas->problem, gas->x[i]),
+                                    (gas->wrong[i] & fields) != 0};
+        if (axis < 0 && d == gas->problem->domain.dim && !gas->problem->problem->circular) continue;
+        named = name_range(rank, n,
+                           axis >= 0                       ? axes[axis]
+                           : d == gas->problem->domain.dim ? "r"
+                                                           : "row",
+                           text, size);
+    }
+    free(rank);
+    size_t wrong = 0;
+    for (size_t i = 0; i < n; i++) wrong += (gas->wrong[i] & fields) != 0;
+    if (named || wrong == n || name_stride(gas, fields, text, size)) return;
+    snprintf(text, size, ", scattered over the box");
+}
+
+/* ---- wrong values ---- */
+
+/* Share of the wrong particles of which the value is near. */
+typedef double expected(const struct start_gas *gas, size_t i, double factor);
+
+static bool fits(const struct start_gas *gas, enum start_field field, const double *value,
+                 expected *value_of, double factor)
+{
+    size_t wrong = 0, near = 0;
+    for (size_t i = 0; i < gas->snapshot->n; i++) {
+        if (!(gas->wrong[i] & 1u << field)) continue;
+        wrong++;
+        const double want = value_of(gas, i, factor);
+        near += fabs(value[i] - want) <= 1e-3 * fabs(want) + 1e-12;
+    }
+    return wrong && PER_CENT * near >= 95 * wrong;
+}
+
+static double exact_energy(const struct start_gas *gas, size_t i, double factor)
+{
+    return factor * gas->exact[i].u;
+}
+static double exact_pressure(const struct start_gas *gas, size_t i, double factor)
+{
+    return factor * gas->exact[i].P;
+}
+static double exact_temperature(const struct start_gas *gas, size_t i, double factor)
+{
+    return factor * gas->exact[i].P / gas->exact[i].rho;
+}
+static double exact_entropy(const struct start_gas *gas, size_t i, double factor)
+{
+    return factor * gas->exact[i].P / pow(gas->exact[i].rho, gas->problem->gamma);
+}
+static double energy_of_volume(const struct start_gas *gas, size_t i, double factor)
+{
+    return factor * gas->exact[i].rho * gas->exact[i].u;
+}
+static double whole_energy(const struct start_gas *gas, size_t i, double factor)
+{
+    const double *v = gas->exact[i].v;
+    return factor * (gas->exact[i].u + 0.5 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+}
+static double exact_mass(const struct start_gas *gas, size_t i, double factor)
+{
+    return factor * start_mass(gas, gas->exact[i].rho);
+}
+static double exact_density(const struct start_gas *gas, size_t i, double factor)
+{
+    return factor * gas->exact[i].rho;
+}
+static double law(const struct start_gas *gas, size_t i, double factor)
+{
+    return factor * (gas->problem->gamma - 1) * gas->snapshot->rho[i] * gas->snapshot->u[i];
+}
+
+static const struct {
+    enum start_field field;
+    expected *value;
+    const char *words;
+} usual[] = {{START_ENERGY, exact_pressure, "the pressure"},
+             {START_ENERGY, exact_temperature, "P/rho, a temperature"},
+             {START_ENERGY, exact_entropy, "P/rho^gamma, an entropy"},
+             {START_ENERGY, energy_of_volume, "rho u, the energy of a volume"},
+             {START_ENERGY, whole_energy, "the total energy, u + v^2/2"},
+             {START_MASS, exact_density, "the density"},
+             {START_MASS, exact_energy, "the internal energy"}};
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The middle one of the factors between the values and what they should be; NaN: there is none. */
+static double factor_of(const struct start_gas *gas, enum start_field field, const double *value,
+                        expected *value_of)
+{
+    double *factors = malloc(gas->snapshot->n * sizeof *factors), found = (double)NAN;
+    size_t n = 0;
+    for (size_t i = 0; factors && i < gas->snapshot->n; i++)
+        if (gas->wrong[i] & 1u << field && fabs(value_of(gas, i, 1)) > 0)
+            factors[n++] = value[i] / value_of(gas, i, 1);
+    if (n) {
+        qsort(factors, n, sizeof *factors, ascending);
+        found = factors[n / 2];
+    }
+    free(factors);
+    return found;
+}
+
+static bool scalar_cause(const struct start_gas *gas, enum start_field field, char *text,
+                         size_t size)
+{
+    const struct snapshot *s = gas->snapshot;
+    const double *value = field == START_ENERGY ? s->u : field == START_MASS ? s->m : s->P;
+    expected *exact = field == START_ENERGY ? exact_energy : field == START_MASS ? exact_mass : law;
+    const char *should = field == START_PRESSURE ? "(gamma - 1) rho u" : "the case's";
+    const double factor = factor_of(gas, field, value, exact);
+    *text = '\0';
+    for (size_t k = 0; k < sizeof usual / sizeof *usual; k++)
+        if (usual[k].field == field && fits(gas, field, value, usual[k].value, 1))
+            snprintf(text + strlen(text), size - strlen(text), "%s%s", *text ? ", or " : "it is ",
+                     usual[k].words);
+    const double multiple = factor_of(gas, field, value, exact_density);
+    if (!*text && field == START_ENERGY && isfinite(multiple) &&
+        !fits(gas, field, value, exact, factor) && fits(gas, field, value, exact_density, multiple))
+        snprintf(text, size, "it is the mass, or another multiple of the density");
+    if (!*text && isfinite(factor) && fits(gas, field, value, exact, factor))
+        snprintf(text, size, "it is %.4g times %s", factor, should);
+    if (!*text) { /* a constant more, from the first that is wrong */
+        double more = 0;
+        size_t i = 0, all = 0, near = 0;
+        while (i < s->n && !(gas->wrong[i] & 1u << field)) i++;
+        if (i < s->n) more = value[i] - exact(gas, i, 1);
+        for (; i < s->n; i++) {
+            if (!(gas->wrong[i] & 1u << field)) continue;
+            all++;
+            near += fabs(value[i] - exact(gas, i, 1) - more) <= 1e-3 * fabs(more);
+        }
+        if (all > 1 && PER_CENT * near >= 95 * all)
+            snprintf(text, size, "it is %.4g %s than %s", fabs(more), more > 0 ? "more" : "less",
+                     should);
+    }
+    return *text;
+}
+
+/* Fits of velocities: the case's, turned and multiplied, or with something added. */
+static bool fits_velocity(const struct start_gas *gas, const int from[3], double factor,
+                          const double more[3], bool density)
+{
+    size_t wrong = 0, near = 0;
+    const int dim = gas->problem->domain.dim;
+    for (size_t i = 0; i < gas->snapshot->n; i++) {
+        if (!(gas->wrong[i] & 1u << START_VELOCITY)) continue;
+        double squares = 0;
+        for (int d = 0; d < dim; d++) {
+            const double want =
+                             factor * gas->exact[i].v[from[d]] * (density ? gas->exact[i].rho : 1) +
+                             more[d],
+                         off = gas->snapshot->v[d][i] - want;
+            squares += off * off;
+        }
+        wrong++;
+        near += sqrt(squares) <= 1e-3 * gas->speed;
+    }
+    return wrong && PER_CENT * near >= 95 * wrong;
+}
+
+static bool velocity_cause(const struct start_gas *gas, char *text, size_t size)
+{
+    static const int same[] = {0, 1, 2};
+    static const int turns[][3] = {{1, 0, 2}, {2, 1, 0}, {0, 2, 1}};
+    static const char *const turned[] = {"x and y", "x and z", "y and z"};
+    const double none[3] = {0};
+    const int dim = gas->problem->domain.dim;
+    double product = 0, square = 0, more[3] = {0};
+    size_t first = gas->snapshot->n;
+    for (size_t i = 0; i < gas->snapshot->n; i++) {
+        if (!(gas->wrong[i] & 1u << START_VELOCITY)) continue;
+        if (first == gas->snapshot->n) first = i;
+        for (int d = 0; d < dim; d++) {
+            product += gas->snapshot->v[d][i] * gas->exact[i].v[d];
+            square += gas->exact[i].v[d] * gas->exact[i].v[d];
+        }
+    }
+    for (int d = 0; d < dim && first < gas->snapshot->n; d++)
+        more[d] = gas->snapshot->v[d][first] - gas->exact[first].v[d];
+    const double factor = square > 0 ? product / square : 1;
+    if (fits_velocity(gas, same, 0, none, false)) return snprintf(text, size, "it is 0") > 0;
+    for (int k = 0; k < (dim == 1 ? 0 : dim == 2 ? 1 : 3); k++)
+        if (fits_velocity(gas, turns[k], 1, none, false))
+            return snprintf(text, size, "%s are exchanged", turned[k]) > 0;
+    if (fits_velocity(gas, same, factor, none, false))
+        return factor > -1.0005 && factor < -0.9995
+                   ? snprintf(text, size, "it has the other sign") > 0
+                   : snprintf(text, size, "it is %.4g times the case's", factor) > 0;
+    if (fits_velocity(gas, same, 1, none, true))
+        return snprintf(text, size, "it is rho v, a momentum") > 0;
+    if (!fits_velocity(gas, same, 1, more, false)) return false;
+    snprintf(text, size, "it is the case's and");
+    for (int d = 0; d < dim; d++)
+        snprintf(text + strlen(text), size - strlen(text), "%s%.4g", d ? ", " : " ", more[d]);
+    return true;
+}
+
+bool start_cause(const struct start_gas *gas, enum start_field field, char *text, size_t size)
+{
+    return field == START_VELOCITY ? velocity_cause(gas, text, size)
+                                   : scalar_cause(gas, field, text, size);
+}
+
+/* ---- other places ---- */
+
+/* Particles to try places with. */
+struct trial {
+    const struct start_gas *gas;
+    size_t n, id[96];
+};
+
+static void take(struct trial *trial, bool all)
+{
+    const struct start_gas *gas = trial->gas;
+    const size_t most = sizeof trial->id / sizeof *trial->id;
+    size_t wrong = 0;
+    for (size_t i = 0; i < gas->snapshot->n; i++) wrong += all || gas->wrong[i];
+    const size_t stride = wrong / most + 1;
+    wrong = trial->n = 0;
+    for (size_t i = 0; i < gas->snapshot->n; i++)
+        if ((all || gas->wrong[i]) && wrong++ % stride == 0) trial->id[trial->n++] = i;
+}
+
+/* How badly the particles have the gas of where they would be: 0 to 1, and how many have it. */
+static double miss(const struct trial *trial, const double by[3], double limit, size_t *near)
+{
+    const struct start_gas *gas = trial->gas;
+    double sum = 0;
+    *near = 0;
+    for (size_t k = 0; k < trial->n; k++) {
+        const size_t i = trial->id[k];
+        struct problem_state there;
+        double x[3] = {0};
+        for (int d = 0; d < gas->problem->domain.dim; d++) x[d] = gas->x[i][d] - by[d];
+        for (int d = 0; d < gas->problem->domain.dim; d++) {
+            const double length = domain_length(&gas->problem->domain, d);
+            x[d] -= length * floor((x[d] - gas->problem->domain.lo[d]) / length);
+        }
+        problem_sample(gas->problem, x, 0, &there);
+        double off = start_off(gas, START_VELOCITY, i, &there);
+        if (!gas->problem->problem->mean_energy)
+            off = fmax(off, start_off(gas, START_ENERGY, i, &there));
+        sum += fmin(off, limit) / limit;
+        *near += off <= 1e-3;
+    }
+    return sum / (double)trial->n;
+}
+
+/* From the best place of a grid downhill. */
+static size_t settle(const struct trial *trial, double by[3], double step)
+{
+    const int dim = trial->gas->problem->domain.dim;
+    size_t near;
+    double best = miss(trial, by, 1, &near);
+    for (int halvings = 0, rounds = 0; halvings < 40 && rounds < 120 && best > 0; rounds++) {
+        bool moved = false;
+        for (int k = 0; k < 2 * dim; k++) {
+            double to[3];
+            memcpy(to, by, sizeof to);
+            to[k / 2] += k % 2 ? step : -step;
+            size_t now;
+            const double other = miss(trial, to, 1, &now);
+            if (other >= best) continue;
+            best = other, near = now, moved = true;
+            memcpy(by, to, sizeof to);
+        }
+        if (!moved) step /= 2, halvings++;
+    }
+    return near;
+}
+
+/* The shift that explains the particles best; true: nearly all of them. */
+static bool find_shift(const struct trial *trial, double by[3])
+{
+    enum { SIDE_LINE = 480, SIDE_PLANE = 40, SIDE_SPACE = 12, KEPT = 3 };
+    const struct domain *box = &trial->gas->problem->domain;
+    const int side = box->dim == 1 ? SIDE_LINE : box->dim == 2 ? SIDE_PLANE : SIDE_SPACE;
+    const int cells = box->dim == 1 ? side : box->dim == 2 ? side * side : side * side * side;
+    double best[KEPT], at[KEPT][3] = {{0}};
+    for (int k = 0; k < KEPT; k++) best[k] = INFINITY;
+    for (int c = 1; c < cells; c++) {
+        const int place[3] = {c % side, c / side % side, c / side / side};
+        double to[3] = {0};
+        size_t near;
+        for (int d = 0; d < box->dim; d++)
+            to[d] = domain_length(box, d) * (place[d] - (place[d] > side / 2 ? side : 0)) / side;
+        const double now = miss(trial, to, 1, &near);
+        int k = KEPT - 1;
+        if (now >= best[k]) continue;
+        for (; k > 0 && now < best[k - 1]; k--) {
+            best[k] = best[k - 1];
+            memcpy(at[k], at[k - 1], sizeof at[k]);
+        }
+        best[k] = now;
+        memcpy(at[k], to, sizeof at[k]);
+    }
+    for (int k = 0; k < KEPT && isfinite(best[k]); k++) {
+        const size_t near = settle(trial, at[k], 0.5 * domain_length(box, 0) / side);
+        if (PER_CENT * near < 95 * trial->n) continue;
+        memcpy(by, at[k], sizeof at[k]);
+        return true;
+    }
+    return false;
+}
+
+/* Have nearly all wrong particles the state of where x and y exchanged, or a mirror, put them? */
+static bool turned(const struct start_gas *gas, int mirror)
+{
+    const struct domain *box = &gas->problem->domain;
+    size_t wrong = 0, near = 0;
+    for (size_t i = 0; i < gas->snapshot->n; i++) {
+        if (!gas->wrong[i]) continue;
+        struct problem_state there;
+        double x[3];
+        memcpy(x, gas->x[i], sizeof x);
+        if (mirror < 0)
+            x[0] = gas->x[i][1], x[1] = gas->x[i][0];
+        else
+            x[mirror] = box->lo[mirror] + box->hi[mirror] - x[mirror];
+        problem_sample(gas->problem, x, 0, &there);
+        wrong++;
+        near += start_off(gas, START_VELOCITY, i, &there) <= 1e-3 &&
+                start_off(gas, START_ENERGY, i, &there) <= 1e-3;
+    }
+    return PER_CENT * near >= 95 * wrong;
+}
+
+bool start_cause_places(const struct start_gas *gas, char *text, size_t size)
+{
+    const int dim = gas->problem->domain.dim;
+    struct trial trial = {.gas = gas};
+    double by[3] = {0};
+    if (dim > 1 && turned(gas, -1))
+        return snprintf(text, size, "x and y of their places are exchanged") > 0;
+    for (int d = 0; d < dim; d++)
+        if (turned(gas, d))
+            return snprintf(text, size, "%c of their places is mirrored", "xyz"[d]) > 0;
+    for (int all = 1; all >= 0; all--) {
+        take(&trial, all);
+        if (!find_shift(&trial, by)) continue;
+        size_t near;
+        take(&trial, false); /* all may be most that are right anyway */
+        miss(&trial, by, 1, &near);
+        if (PER_CENT * near < 95 * trial.n) continue;
+        snprintf(text, size,
+                 all ? "all particles of the file are shifted by" : "they are shifted by");
+        for (int d = 0; d < dim; d++)
+            snprintf(text + strlen(text), size - strlen(text), "%s%.4g", d ? ", " : " ",
+                     fabs(by[d]) < 1e-6 * domain_length(&gas->problem->domain, d) ? 0 : by[d]);
+        return true;
+    }
+    return false;
+}
