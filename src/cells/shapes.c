@@ -20,7 +20,7 @@
                                     const double *restrict m, double sums[2])                      \
     {                                                                                              \
         double value[8] = {0}, slope[8] = {0};                                                     \
-        for (size_t k = 0; k < n; k += 8) _Pragma("omp simd") for (size_t l = 0; l < 8; l++)       \
+        for (size_t k = 0; k < n; k += 8) SIMD_LANES for (size_t l = 0; l < 8; l++)                \
             {                                                                                      \
                 const double q = r[k + l] * h_inverse, shape = w(kernel, q, dim);                  \
                 value[l] += m[k + l] * shape;                                                      \

@@ -34,6 +34,14 @@ ALWAYS_INLINE double least(double a, double b)
     return a < b ? a : b;
 }
 
+/* Before the loop over the eight lanes of sums: clang unrolls it before it looks for vectors, and
+ * then finds none. */
+#ifdef __clang__
+#define SIMD_LANES _Pragma("clang loop vectorize(enable) vectorize_width(8) unroll(disable)")
+#else
+#define SIMD_LANES _Pragma("omp simd")
+#endif
+
 /* Eight lanes, then in pairs: the same order for every instruction set. */
 #define TREE(s) (((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7])))
 
