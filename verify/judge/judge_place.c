@@ -360,11 +360,6 @@ static enum status check_dimension(struct judged *judged, struct run_settings *a
     const int dim = judged->file.dim;
     char value[32];
     if (dim == asked->file.dimension) return STATUS_OK;
-    /* what has a form on a line varies along x alone, in any dimension */
-    if (dim == 3 && asked->file.dimension == 2 && (problem->least_dim == 2 || problem->circular)) {
-        take_slab(judged);
-        return STATUS_OK;
-    }
     if (dim < problem->least_dim || dim > problem->most_dim || problem->circular)
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s: particles in %d dimensions; the case %.60s has %d", judged->path,
@@ -427,7 +422,10 @@ enum status judge_place(const struct judge_request *given, struct judged *judged
         return error->status;
     judged->case_dim = asked.file.dimension;
     const struct problem *problem = problem_of(settings);
-    if (check_dimension(judged, &asked, problem, error)) return error->status;
+    /* what has a form on a line varies along x alone, in any dimension */
+    if (judged->file.dim == 3 && asked.file.dimension == 2 &&
+        (problem->least_dim == 2 || problem->circular))
+        take_slab(judged);
     if (strcmp(name, said) == 0 && !request->x0.known && take_keys(judged, settings, error))
         return error->status;
     if ((request->left &&
@@ -453,7 +451,8 @@ enum status judge_place(const struct judge_request *given, struct judged *judged
     }
     const double case_lo = settings_along(settings, SETTING_lo, 0),
                  case_hi = settings_along(settings, SETTING_hi, 0);
-    if (take_gamma(request, judged, settings, error) ||
+    if (check_dimension(judged, &asked, problem, error) ||
+        take_gamma(request, judged, settings, error) ||
         take_time(request, judged, settings, error) ||
         take_box(request, judged, settings, ends != NULL, &box, error))
         return error->status;
