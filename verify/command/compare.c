@@ -340,6 +340,8 @@ static void conclude(struct comparison *c)
     for (size_t r = 0; r < c->draws; r++) ratio[r] = c->sides[1].cpu_s[r] / c->sides[0].cpu_s[r];
     qsort(ratio, c->draws, sizeof *ratio, ascending);
     c->cpu = ratio[c->draws / 2], c->cpu_low = ratio[0], c->cpu_high = ratio[c->draws - 1];
+    for (size_t r = 0; r < c->draws; r++) /* a clock may be too coarse for one of them */
+        if (!isfinite(ratio[r])) c->cpu = c->cpu_low = c->cpu_high = (double)NAN;
     for (size_t v = 0; v < PAIRED_VERDICTS; v++) {
         size_t said = 0;
         for (size_t k = 0; k < count; k++) {
@@ -420,6 +422,8 @@ static void print_all(const struct comparison *c, const struct options *options)
            style.faint, style.end);
     if (!isnan(c->cpu))
         printf("%-18s b/a = %.3g (%.3g to %.3g)\n", "CPU time", c->cpu, c->cpu_low, c->cpu_high);
+    else if (!c->sides[0].is_snapshot && !c->sides[1].is_snapshot)
+        printf("%-18s too short for this clock\n", "CPU time");
     printf("\n%s", style.bold);
     table_wrap("", c->verdict);
     printf("%s", style.end);
