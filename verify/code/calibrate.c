@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "code_check.h"
 #include "problem_list.h"
 
 const char *const calibrate_sights[] = {"sees", "blind", "free"};
@@ -45,10 +46,12 @@ static enum status plan_study(const struct calibrate *calibrate, struct calibrat
                      error) ||
         sweep_parse(&study->sweep, NULL, error))
         return error->status;
-    if (s >= calibrate->runs)
+    if (s >= calibrate->runs) {
         external->of = &one->faulty[s - calibrate->runs];
-    else if (vary(&study->settings, external, s, error))
+        if (code_check_program(calibrate->code, &external->of->way, error)) return error->status;
+    } else if (vary(&study->settings, external, s, error)) {
         return error->status;
+    }
     memcpy(study->ladder, file->ladder, sizeof study->ladder);
     study->level_count = file->ladder_count;
     study->replicates = study_replicates(&study->settings);

@@ -84,28 +84,12 @@ static void check_files(const struct code *code, struct ini_text *at, enum code_
             template_known(at, path);
 }
 
-static void check_command(const struct code *code, struct ini_text *at, enum code_key key,
-                          const char *value)
-{
-    char path[CODE_PATH];
-    size_t length;
-    const char *rest = value, *word = code_next_word(&rest, &length);
-    if (!word)
-        ini_text_fail_value(at, code_keys[key].name, value, code_keys[key].allowed);
-    else if (words_known(at, value, NULL, 0) && !memchr(word, '@', length) &&
-             !code_find_program(code, word, length, path))
-        ini_text_fail_value(at, code_keys[key].name, value,
-                            "a program beside the code file, or in PATH");
-}
-
-static void check_ic(const struct code *code, struct ini_text *at, const char *value)
+static void check_ic(struct ini_text *at, const char *value)
 {
     struct error reason;
     char where[CODE_PATH];
     if (strchr(value, '@')) {
-        if (strstr(value, "@IC@"))
-            check_command(code, at, CODE_ic, value);
-        else if (words_known(at, value, NULL, 0))
+        if (words_known(at, value, NULL, 0) && !strstr(value, "@IC@"))
             ini_text_fail_value(at, "ic", value, code_keys[CODE_ic].allowed);
         return;
     }
@@ -135,7 +119,7 @@ void code_check_value(const struct code *code, struct ini_text *at, enum code_ke
             words_known(at, value, NULL, 0);
         return;
     case CODE_ic:
-        check_ic(code, at, value);
+        check_ic(at, value);
         return;
     case CODE_parameters:
     case CODE_depends:
@@ -168,8 +152,34 @@ void code_check_value(const struct code *code, struct ini_text *at, enum code_ke
     }
 }
 
-void code_check_command(const struct code *code, struct ini_text *at, const struct code_way *way)
+/* The first word of a command if it is no program that is there; NULL: it is one, or the shell's.
+ */
+static const char *missing(const struct code *code, const struct code_way *way, enum code_key key,
+                           size_t *length)
 {
-    at->line = way->line[CODE_command];
-    if (!code_shell(way)) check_command(code, at, CODE_command, way->value[CODE_command]);
+    char path[CODE_PATH];
+    const char *rest = way->value[key];
+    const char *word = code_shell(way) ? NULL : code_next_word(&rest, length);
+    const bool there =
+        !word || memchr(word, '@', *length) || code_find_program(code, word, *length, path);
+    return there ? NULL : word;
+}
+
+const char *code_missing_program(const struct code *code, const struct code_way *way,
+                                 enum code_key *key, size_t *length)
+{
+    const char *word = missing(code, way, *key = CODE_command, length);
+    return word || code_format(way) ? word : missing(code, way, *key = CODE_ic, length);
+}
+
+enum status code_check_program(const struct code *code, const struct code_way *way,
+                               struct error *error)
+{
+    enum code_key key;
+    size_t length;
+    struct ini_text at = {.path = code->path, .error = error};
+    if (!code_missing_program(code, way, &key, &length)) return STATUS_OK;
+    at.line = way->line[key];
+    return ini_text_fail_value(&at, code_keys[key].name, way->value[key],
+                               "a program beside the code file, or in PATH");
 }

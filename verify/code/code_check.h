@@ -9,8 +9,13 @@
 void code_check_value(const struct code *code, struct ini_text *at, enum code_key key,
                       const char *value);
 
-/* Is the command's program there? Fails with its line. way: complete. */
-void code_check_command(const struct code *code, struct ini_text *at, const struct code_way *way);
+/* The program, of the command or of ic, that a run would need and that is not there: the word that
+ * names it, of *length characters, and its key; NULL: all is there. way: complete. */
+const char *code_missing_program(const struct code *code, const struct code_way *way,
+                                 enum code_key *key, size_t *length);
+/* STATUS_BAD_INPUT of such a program, with file and line. */
+enum status code_check_program(const struct code *code, const struct code_way *way,
+                               struct error *error);
 
 /* The program that a word of a command means, in CODE_PATH bytes: a file beside the code file, else
  * found by PATH; false: there is none that can be executed. */

@@ -191,12 +191,7 @@ static enum status check_fault(struct parser *parser, const struct code_fault *f
                          "%.200s: [fault %.60s] has no key; allowed: those of [code] that differ, "
                          "such as command",
                          parser->at.path, fault->name);
-    for (size_t c = 0; c < parser->code->case_count && !parser->at.failed; c++) {
-        struct code_way way = fault->way;
-        complete(&way, &parser->code->cases[c].way);
-        code_check_command(parser->code, &parser->at, &way);
-    }
-    return parser->at.failed ? parser->at.error->status : STATUS_OK;
+    return STATUS_OK;
 }
 
 static enum status finish(struct parser *parser)
@@ -218,8 +213,6 @@ static enum status finish(struct parser *parser)
                                  "%.200s: key %s is missing in [code] or [case %.60s]",
                                  parser->at.path, code_keys[needed[k]].name,
                                  code->cases[c].file.asked);
-        code_check_command(code, &parser->at, way);
-        if (parser->at.failed) return parser->at.error->status;
     }
     for (size_t f = 0; f < code->fault_count; f++)
         if (check_fault(parser, &code->faults[f])) return parser->at.error->status;

@@ -15,7 +15,8 @@
  *
  * Each run has a folder of its own, in which the command starts. A word of a command that names a
  * file beside the code file stands for that file. Paths of templates and `depends` are relative to
- * the code file. Every key and every @WORD@ is checked when the file is read. */
+ * the code file. Every key and every @WORD@ is checked when the file is read; whether a
+ * program is there, when a case is run. */
 #ifndef SPHPROOF_CODE_FILE_H
 #define SPHPROOF_CODE_FILE_H
 

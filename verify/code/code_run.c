@@ -11,6 +11,7 @@
 #include "buffer.h"
 #include "cloud_profile.h"
 #include "code_call.h"
+#include "code_check.h"
 #include "code_process.h"
 #include "code_snapshot.h"
 #include "equal_masses.h"
@@ -145,6 +146,19 @@ static void vary_start(struct run_result *start, const struct start_format *form
     }
 }
 
+/* Nothing is then written. */
+static void check_program(struct course *course)
+{
+    const struct code_external *external = course->external;
+    enum code_key key;
+    size_t length;
+    const char *word = code_missing_program(external->code, &external->of->way, &key, &length);
+    if (!word) return;
+    course->reason = REASON_no_program;
+    snprintf(course->message, sizeof course->message, "the program %.*s is not there", (int)length,
+             word);
+}
+
 static enum status prepare(struct course *course, struct error *error)
 {
     const struct code_external *external = course->external;
@@ -156,6 +170,8 @@ static enum status prepare(struct course *course, struct error *error)
     if (external->variation) vary_start(&course->start, format, external->variation);
     course->words = code_words_of(external, external->of->way.value[CODE_command], &course->values);
     if (!course->words) return error_set(error, STATUS_ENVIRONMENT, "no memory for a command");
+    check_program(course);
+    if (course->reason) return STATUS_OK;
     if (make_folder(course, error) || write_start(course, error)) return error->status;
     return code_write_templates(external, &course->values, course->folder, error);
 }
@@ -437,7 +453,8 @@ static void add_code(const struct course *course, const char *log, json_t *docum
     json_object_set_new(code, "exit_status", json_integer(outcome->exit));
     json_object_set_new(code, "wall_s", result_number(outcome->wall_s));
     json_object_set_new(code, "cpu_s", result_number(outcome->cpu_s));
-    if (course->external->work) json_object_set_new(code, "folder", json_string(course->folder));
+    if (course->external->work && course->folder[0])
+        json_object_set_new(code, "folder", json_string(course->folder));
     json_object_set_new(document, "code", code);
     free(command);
 }
@@ -504,7 +521,7 @@ static enum status tell_failed(const struct course *course, json_t *document, st
     error_set(error, STATUS_BROKE_DOWN, "%.80s: %s: %.180s%s%.160s%s", course->external->base.title,
               code_reason_names[course->reason], course->message,
               *last ? "; its log ends with: " : "", last,
-              course->external->work ? "" : " (--work DIR keeps its files)");
+              course->external->work || !course->folder[0] ? "" : " (--work DIR keeps its files)");
     struct run_result start = course->start;
     if (course->run->asked.layers) start.n /= (size_t)course->run->asked.layers;
     run_add_plan(&course->run->asked, &start, document);
@@ -599,9 +616,9 @@ static enum status compute(const struct run_external *external, const struct run
     return STATUS_OK;
 }
 
-enum status code_prepare(const struct code *code, const char *case_name, const char *work, int n,
-                         char *const *arguments, struct code_external *external,
-                         struct run_settings *settings, struct error *error)
+enum status code_plan(const struct code *code, const char *case_name, const char *work, int n,
+                      char *const *arguments, struct code_external *external,
+                      struct run_settings *settings, struct error *error)
 {
     const struct code_case *of = code_case_of(code, case_name, error);
     if (!of) return error->status;
@@ -619,4 +636,13 @@ enum status code_prepare(const struct code *code, const char *case_name, const c
     return of->file.dimension == 2 && strcmp(layers, "no") != 0
                ? slab_ask(settings, layers, "as_3d", error)
                : STATUS_OK;
+}
+
+enum status code_prepare(const struct code *code, const char *case_name, const char *work, int n,
+                         char *const *arguments, struct code_external *external,
+                         struct run_settings *settings, struct error *error)
+{
+    if (code_plan(code, case_name, work, n, arguments, external, settings, error))
+        return error->status;
+    return code_check_program(code, &external->of->way, error);
 }

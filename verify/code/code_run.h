@@ -29,6 +29,10 @@ struct code_external {
 
 /* The settings of a case of the code with KEY=VALUE arguments; settings->external becomes external.
  * STATUS_BAD_INPUT: the code has no such case, or keys are wrong. */
+enum status code_plan(const struct code *code, const char *case_name, const char *work, int n,
+                      char *const *arguments, struct code_external *external,
+                      struct run_settings *settings, struct error *error);
+/* The same for a command that is of no use without this case: its program has to be there, too. */
 enum status code_prepare(const struct code *code, const char *case_name, const char *work, int n,
                          char *const *arguments, struct code_external *external,
                          struct run_settings *settings, struct error *error);

@@ -13,6 +13,7 @@
 
 /* Why a run has no result; REASON_NONE: it has one. */
 #define CODE_REASON_LIST(REASON)                                                                   \
+    REASON(no_program)                                                                             \
     REASON(exit_status)                                                                            \
     REASON(timeout)                                                                                \
     REASON(memory)                                                                                 \

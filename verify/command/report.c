@@ -236,8 +236,8 @@ static enum status add_code(struct codes *codes, const char *path, const struct 
     if (!externals || !settings)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for the cases of %.200s", path);
     for (size_t c = 0; c < code->case_count; c++) {
-        if (code_prepare(code, code->cases[c].file.asked, options_value(options, "work"), 0, NULL,
-                         &externals[c], &settings[c], error))
+        if (code_plan(code, code->cases[c].file.asked, options_value(options, "work"), 0, NULL,
+                      &externals[c], &settings[c], error))
             return error->status;
         settings[c].threads = options->threads;
     }

@@ -83,6 +83,23 @@ def test_same(nodes):
     expect("nobody is left", not nodes.tasks(), nodes.tasks())
 
 
+def test_code():
+    """Another code, of which a template and the program stand beside its file, which is named from this folder on."""
+    os.mkdir("mine")
+    for name, text in (("mine/code.sh", "#!/bin/sh\nexec %s run $(cat keys) --quiet --snapshot $1_1.csv\n" % program),
+                       ("mine/keys.in", "@CASE@ n=@N@ t_end=@T_END@ seed=@SEED@\n"),
+                       ("mine/code.ini", "[code]\nparameters = keys.in\ncommand = ./code.sh @OUT@\nsnapshot = @OUT@_*.csv\n"
+                        "[case sod]\n")):
+        with open(name, "w", encoding="ascii") as file:
+            file.write(text)
+    os.chmod("mine/code.sh", 0o700)
+    words = [*QUICK[:5], "--replicates", "1", "--code", "mine/code.ini"]
+    running = start(words, "coded", "--engine-tasks", "2", "--json", "coded.json")
+    said = running.communicate()[1]
+    expect("another code", running.returncode in (0, 1) and load("coded.json") == alone(words), (running.returncode, said))
+    expect("another code: by tasks alone", "submitted again" not in said and load("coded.json")["code"]["title"] == "code", said)
+
+
 def test_refused(nodes):
     """What cannot be: exit 4 with the reason, and nothing is left in the queue."""
     path = dict(os.environ, PATH="/nowhere")
@@ -273,6 +290,7 @@ def main():
                 test_report(nodes)
             else:
                 test_same(nodes)
+                test_code()
                 test_worker(nodes)
                 power = test_power(nodes)
                 next(power)
