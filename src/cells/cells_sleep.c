@@ -72,7 +72,7 @@ void cells_wake(struct cells *cells, const struct cells_fields *fields,
         if (!grid_in_rim(cells->grid, slot)) continue;
         if (!cells->lists[slot].kept) continue; /* it sleeps, or is an image */
         const size_t i = cells->order[slot];
-        const double expected = expected_at(cells, fields, quiet, slot);
+        double expected = -1; /* most have no neighbour that sleeps and would need it */
         const int32_t *slots = list_of(cells, slot);
         const double limit2 = square_of_limit(fields, quiet, i);
         const int32_t count = cells->lists[slot].count;
@@ -80,6 +80,7 @@ void cells_wake(struct cells *cells, const struct cells_fields *fields,
             int mirrored;
             const size_t j = lanes_source(cells, fields->n, (size_t)slots[k], &mirrored);
             if (!asleep[j]) continue;
+            if (expected < 0) expected = expected_at(cells, fields, quiet, slot);
             if (!(expected <= 1))
                 quiet->arriving[j] +=
                     expected * part_of(cells, fields, slot, (size_t)slots[k], j, i);
