@@ -38,7 +38,8 @@ static void shares_table(struct buffer *to, const json_t *skips)
 {
     size_t i;
     const json_t *document;
-    html_table(to, "costs", "setup|#skipped|#possible|#CPU time|#spread|#difference|#bound|answer");
+    html_table(to, "costs",
+               "setup|#skipped|#allowed|#possible|#CPU time|#spread|#difference|#bound|answer");
     json_array_foreach(skips, i, document) {
         const json_t *sleep = sleep_of(document);
         char setup[NAME];
@@ -47,6 +48,7 @@ static void shares_table(struct buffer *to, const json_t *skips)
         buffer_add(to, "<tr>");
         html_cell_code(to, setup);
         percent(to, value_member(sleep, "skipped_fraction"), "");
+        percent(to, value_member(sleep, "allowed_fraction"), "");
         percent(to, value_member(sleep, "possible_fraction"), coarse ? "*" : "");
         buffer_format(to, "<td class=\"n\">%.2f</td>", 1 / value_member(sleep, "saves"));
         percent(to, value_member(sleep, "spread"), "");
@@ -111,9 +113,13 @@ void page_skips(struct page_writer *writer, const json_t *skips)
     buffer_add(
         to,
         "<section id=\"skips\"><h2>What is left out where no signal has been</h2>\n<p>Particles "
-        "whose rates and velocity differences are below a tolerance of about 1e-11 sleep: their "
+        "whose rates and velocity differences are below a tolerance sleep (1e-11 in 1D, 1e-8 of "
+        "the "
+        "largest rate at the start in 2D and 3D): their "
         "sums are left out until a disturbance comes near. Skipped: share of the particle updates "
-        "of the run. Possible: gas further than three smoothing lengths ahead of every wave of the "
+        "of the run. Allowed: gas that has not changed by more than the tolerance, nor stands "
+        "within h of gas that has. Possible: gas further than three smoothing lengths ahead of "
+        "every wave of the "
         "exact solution; with *, where that has no waves with an edge, gas that changes by less "
         "than 1e-7 in the time h/c. CPU time: that of the run with skips over that of the run "
         "without, and the larger spread of the two. Difference: the largest of any field at t_end "
