@@ -6,7 +6,6 @@
 #include <math.h>
 
 #include "initial.h"
-#include "problem_list.h"
 #include "quasi_random.h"
 #include "relax.h"
 
@@ -88,22 +87,6 @@ enum status equal_masses_fill(const struct prepared *p, const struct settings *s
         initial_sample(initial, p, i);
         initial->m[i] = gas.mass;
     }
-    return STATUS_OK;
-}
-
-enum status equal_masses_ask(struct run_settings *asked, struct error *error)
-{
-    static const struct {
-        enum setting key;
-        const char *value;
-    } ways[] = {{SETTING_equal_masses, "yes"}, {SETTING_mass_ratio, "1"}};
-    struct settings *settings = &asked->settings;
-    asked->equal_masses = true;
-    for (size_t k = 0; k < sizeof ways / sizeof *ways; k++)
-        if (problem_reads(problem_of(settings), ways[k].key) &&
-            settings->value[ways[k].key].source != SOURCE_USER &&
-            settings_set(settings, ways[k].key, ways[k].value, SOURCE_USER, NULL, error))
-            return error->status;
     return STATUS_OK;
 }
 

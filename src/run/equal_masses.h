@@ -10,9 +10,6 @@
 enum status equal_masses_fill(const struct prepared *p, const struct settings *settings,
                               struct initial *initial, struct error *error);
 
-/* Asks for them: by the keys with which the case's problem lays them, where it has such. */
-enum status equal_masses_ask(struct run_settings *asked, struct error *error);
-
 /* STATUS_BAD_INPUT: masses differ. */
 enum status equal_masses_check(const struct initial *initial, struct error *error);
 

@@ -11,6 +11,7 @@
 #include "equal_masses.h"
 #include "initial.h"
 #include "initial_create.h"
+#include "problem_list.h"
 #include "problem_prepare.h"
 #include "run_keep.h"
 #include "run_measure.h"
@@ -193,6 +194,22 @@ enum status run_execute(const struct run *run, struct run_result *result, struct
     if (result->status == STATUS_BROKE_DOWN)
         error_set(error, STATUS_BROKE_DOWN, "%s", result->message);
     return result->status;
+}
+
+enum status run_ask_equal_masses(struct run_settings *asked, struct error *error)
+{
+    static const struct {
+        enum setting key;
+        const char *value;
+    } ways[] = {{SETTING_equal_masses, "yes"}, {SETTING_mass_ratio, "1"}};
+    struct settings *settings = &asked->settings;
+    asked->equal_masses = true;
+    for (size_t k = 0; k < sizeof ways / sizeof *ways; k++)
+        if (problem_reads(problem_of(settings), ways[k].key) &&
+            settings->value[ways[k].key].source != SOURCE_USER &&
+            settings_set(settings, ways[k].key, ways[k].value, SOURCE_USER, NULL, error))
+            return error->status;
+    return STATUS_OK;
 }
 
 /* With equal masses: lattices of two spacings, or parts of a line, have them for some numbers of

@@ -166,6 +166,9 @@ enum status run_explain(const struct run *run, struct run_result *result, struct
  * as run_execute, and only STATUS_OK leaves a result. */
 enum status run_start(const struct run *run, struct run_result *result, struct error *error);
 
+/* Asks run_start for equal masses, and the case's problem by the keys with which it lays them. */
+enum status run_ask_equal_masses(struct run_settings *asked, struct error *error);
+
 /* No run: errors and functionals of a state that another code has computed, by the problem of a run
  * whose t_end is the state's time. In 1D sorted by position; id: 0 ... n - 1.
  * STATUS_BAD_INPUT where the exact solution does not hold in the window. */

@@ -14,7 +14,6 @@
 #include "code_check.h"
 #include "code_process.h"
 #include "code_snapshot.h"
-#include "equal_masses.h"
 #include "output.h"
 #include "places.h"
 #include "profile.h"
@@ -630,7 +629,7 @@ enum status code_plan(const struct code *code, const char *case_name, const char
     *settings = (struct run_settings){
         .file = of->file, .settings = of->file.settings, .threads = 1, .external = &external->base};
     if (settings_apply(&settings->settings, n, arguments, error) ||
-        (code_equal_masses(&of->way) && equal_masses_ask(settings, error)))
+        (code_equal_masses(&of->way) && run_ask_equal_masses(settings, error)))
         return error->status;
     const char *layers = code_value(&of->way, CODE_as_3d);
     return of->file.dimension == 2 && strcmp(layers, "no") != 0

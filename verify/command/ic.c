@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "command.h"
-#include "equal_masses.h"
 #include "output.h"
 #include "result.h"
 #include "slab.h"
@@ -57,7 +56,7 @@ static enum status ask_shape(const struct options *options, struct run_settings 
 {
     const char *layers = options_value(options, "as-3d");
     if (layers && slab_ask(settings, layers, "ic: --as-3d", error)) return error->status;
-    return options_value(options, "equal-masses") ? equal_masses_ask(settings, error) : STATUS_OK;
+    return options_value(options, "equal-masses") ? run_ask_equal_masses(settings, error) : STATUS_OK;
 }
 
 static enum status write_ic(const struct options *options, int n, char **arguments,

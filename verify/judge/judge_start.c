@@ -16,11 +16,6 @@ static const char *const names[START_FIELDS] = {"velocity", "internal energy", "
 
 /* ---- what differs ---- */
 
-static double energy_off(double u, double exact)
-{
-    return exact > 0 ? fabs(u / exact - 1) : u > 0 ? 1 : 0;
-}
-
 /* On a line a particle may also have the mass of the room that it has: spacings may be graded. */
 static bool fills_room(const struct start_gas *gas, size_t i)
 {
@@ -53,25 +48,6 @@ static double least_off(const struct start_gas *gas, enum start_field field, siz
     return least;
 }
 
-double start_off(const struct start_gas *gas, enum start_field field, size_t i,
-                 const struct problem_state *exact)
-{
-    const struct snapshot *s = gas->snapshot;
-    double squares = 0;
-    switch (field) {
-    case START_VELOCITY:
-        for (int d = 0; d < gas->problem->domain.dim; d++)
-            squares += (s->v[d][i] - exact->v[d]) * (s->v[d][i] - exact->v[d]);
-        return sqrt(squares) / gas->speed;
-    case START_ENERGY:
-        return energy_off(s->u[i], exact->u);
-    case START_MASS:
-        return fabs(s->m[i] / start_mass(gas, exact->rho) - 1);
-    default:
-        return energy_off(s->P[i], (gas->problem->gamma - 1) * s->rho[i] * s->u[i]);
-    }
-}
-
 static int ascending(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -92,11 +68,6 @@ static size_t near(const double *values, size_t n, double value)
     return count;
 }
 
-static bool alike(double a, double b, double tolerance)
-{
-    return fabs(a / b - 1) <= tolerance;
-}
-
 /* The densities that the case's gas has, if they are few, and the middle mass of each; false: they
  * are many, or in one of them most masses differ. */
 static bool find_gases(struct start_gas *gas, double *room)
@@ -104,14 +75,14 @@ static bool find_gases(struct start_gas *gas, double *room)
     const struct snapshot *s = gas->snapshot;
     for (size_t i = 0; i < s->n; i++) {
         size_t k = 0;
-        while (k < gas->gases && !alike(gas->exact[i].rho, gas->of[k].rho, 1e-9)) k++;
+        while (k < gas->gases && !start_alike(gas->exact[i].rho, gas->of[k].rho, 1e-9)) k++;
         if (k == START_GASES_MAX) return false;
         if (k == gas->gases) gas->of[gas->gases++].rho = gas->exact[i].rho;
     }
     for (size_t k = 0; k < gas->gases; k++) {
         size_t n = 0;
         for (size_t i = 0; i < s->n; i++)
-            if (alike(gas->exact[i].rho, gas->of[k].rho, 1e-9)) room[n++] = s->m[i];
+            if (start_alike(gas->exact[i].rho, gas->of[k].rho, 1e-9)) room[n++] = s->m[i];
         gas->of[k].mass = median(room, n);
         if (2 * near(room, n, gas->of[k].mass) <= n) return false;
     }
@@ -124,18 +95,12 @@ static bool gases_fit(const struct start_gas *gas)
 {
     bool fit = true;
     for (size_t k = 0; k < gas->gases; k++)
-        fit = fit &&
-              (problem_reads(gas->problem->problem, SETTING_mass_ratio) ||
-               alike(gas->of[k].mass, gas->mass, 0.15) ||
-               (gas->volume > 0 && alike(gas->of[k].mass, gas->of[k].rho * gas->volume, 0.15)));
+        fit =
+            fit &&
+            (problem_reads(gas->problem->problem, SETTING_mass_ratio) ||
+             start_alike(gas->of[k].mass, gas->mass, 0.15) ||
+             (gas->volume > 0 && start_alike(gas->of[k].mass, gas->of[k].rho * gas->volume, 0.15)));
     return fit;
-}
-
-double start_mass(const struct start_gas *gas, double rho)
-{
-    for (size_t k = 0; k < gas->gases; k++)
-        if (alike(rho, gas->of[k].rho, 1e-9)) return gas->of[k].mass;
-    return gas->volume > 0 ? rho * gas->volume : gas->mass;
 }
 
 /* Masses are equal, or volumes are, or masses of each gas; false: none of it. */
@@ -244,8 +209,8 @@ static bool are_moved(const struct start_gas *gas)
             for (int d = 0; d < dim; d++)
                 squares += (beside.v[d] - gas->exact[i].v[d]) * (beside.v[d] - gas->exact[i].v[d]);
             most[0] = fmax(most[0], sqrt(squares) / gas->speed);
-            most[1] = fmax(most[1], energy_off(beside.u, gas->exact[i].u));
-            most[2] = fmax(most[2], energy_off(beside.rho, gas->exact[i].rho));
+            most[1] = fmax(most[1], start_relative(beside.u, gas->exact[i].u));
+            most[2] = fmax(most[2], start_relative(beside.rho, gas->exact[i].rho));
         }
         const double off[3] = {
             start_off(gas, START_VELOCITY, i, &gas->exact[i]),

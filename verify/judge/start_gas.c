@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "start_gas.h"
+
+#include <math.h>
+
+bool start_alike(double a, double b, double tolerance)
+{
+    return fabs(a / b - 1) <= tolerance;
+}
+
+double start_relative(double value, double exact)
+{
+    return exact > 0 ? fabs(value / exact - 1) : value > 0 ? 1 : 0;
+}
+
+double start_mass(const struct start_gas *gas, double rho)
+{
+    for (size_t k = 0; k < gas->gases; k++)
+        if (start_alike(rho, gas->of[k].rho, 1e-9)) return gas->of[k].mass;
+    return gas->volume > 0 ? rho * gas->volume : gas->mass;
+}
+
+double start_off(const struct start_gas *gas, enum start_field field, size_t i,
+                 const struct problem_state *exact)
+{
+    const struct snapshot *s = gas->snapshot;
+    double squares = 0;
+    switch (field) {
+    case START_VELOCITY:
+        for (int d = 0; d < gas->problem->domain.dim; d++)
+            squares += (s->v[d][i] - exact->v[d]) * (s->v[d][i] - exact->v[d]);
+        return sqrt(squares) / gas->speed;
+    case START_ENERGY:
+        return start_relative(s->u[i], exact->u);
+    case START_MASS:
+        return fabs(s->m[i] / start_mass(gas, exact->rho) - 1);
+    default:
+        return start_relative(s->P[i], (gas->problem->gamma - 1) * s->rho[i] * s->u[i]);
+    }
+}
