@@ -160,18 +160,19 @@ void cells_signal(struct cells *cells, const struct cells_fields *fields);
 enum { CELLS_AWAKE, CELLS_ASLEEP, CELLS_JUST_ASLEEP };
 struct cells_quiet {
     const double *disturbance; /* of each particle, in tolerances; of sleepers 0 */
-    double *arriving;          /* n for use inside */
+    double *arriving;          /* scratch of n: what arrives at each particle, in tolerances */
     double tolerance, sound;   /* neighbours that move against each other at more than tolerance
                                   times c, or times this where it is more, are not at rest */
-    double calm;               /* times the tolerance: for who is to fall asleep */
+    double calm;               /* times the tolerance: for particles that are to fall asleep */
 };
 
-/* Wakes the sleepers at whom more than the tolerance arrives, or whose neighbours move against
+/* Wakes the sleepers at which more than the tolerance arrives, or whose neighbours move against
  * them. */
 void cells_wake(struct cells *cells, const struct cells_fields *fields,
                 const struct cells_quiet *quiet, unsigned char *asleep);
 
-/* CELLS_JUST_ASLEEP: who is awake and calm, and has calm around. Returns how many. */
+/* Marks as CELLS_JUST_ASLEEP the awake particles that are calm and have calm neighbours. Returns
+ * how many. */
 size_t cells_lull(struct cells *cells, const struct cells_fields *fields,
                   const struct cells_quiet *quiet, unsigned char *asleep);
 

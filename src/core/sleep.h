@@ -8,9 +8,8 @@
  * more than 1 make of its rates in a step comes to more than 1: the sum of K V h |dW/dr| times
  * their disturbance, as pressure acts in the equation of motion. K = 4 stands for viscosity,
  * matrices and growth within the step as well. In 1D whole ranges wake around a particle disturbed
- * by more than
- * 1. Everywhere a sleeper wakes for a neighbour that moves against it at more than tol c. Whoever
- * is calm, to a quarter of these limits, falls asleep (again).
+ * by more than 1. Everywhere a sleeper wakes for a neighbour that moves against it at more than
+ * tol c. A particle that is calm, to a quarter of these limits, falls asleep (again).
  *
  * tol is 1e-8 of the largest rate at the start in 2D and 3D, at least 1e-11, but 1e-11 in 1D, where
  * strong fronts amplify any change by 1e7. In weak waves it is smaller in proportion.
