@@ -6,7 +6,7 @@
 
 #include "command.h"
 
-/* Is this `--threads 1`, where nobody waits? */
+/* Is this `--threads 1`, where no thread waits for another? */
 static bool one_thread(char *const *argument)
 {
     const char *end = *argument + strlen("--threads"), *count = *end == '=' ? end + 1 : argument[1];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How much of a run the promise of sleep allows to be left out, whoever decides on it. */
+ * How much of a run the promise of sleep allows to be left out, by whatever rule. */
 #ifndef SPHPROOF_BENCH_ALLOWED_H
 #define SPHPROOF_BENCH_ALLOWED_H
 

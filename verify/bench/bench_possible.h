@@ -14,7 +14,7 @@ struct bench_shares {
      * exact solution; or, where that has no waves with an edge, particles whose velocity and
      * density change more slowly than a coarse threshold. */
     double possible;
-    /* What the promise of sleep allows whoever decides, from a run without skips: bench_allowed.h;
+    /* What the promise of sleep allows by whatever rule, from a run without skips: bench_allowed.h;
      * NaN: the run has no tolerance of sleep. */
     double allowed;
     bool coarse; /* possible is found with the coarse threshold */

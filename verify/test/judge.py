@@ -70,7 +70,7 @@ def with_hdf5():
 
 
 def without_its_library(folder):
-    """Where the library of HDF5 cannot be loaded, only those who ask for it are told."""
+    """Where the library of HDF5 cannot be loaded, only commands that need it fail."""
     with open(PROGRAM, "rb") as program:
         name = re.search(rb"\0(libhdf5\w*\.so[.\d]*)\0", program.read())
     if not name:

@@ -521,7 +521,8 @@ TEST(test_no_position)
  * flag. */
 static void expect_bytes(int dim, const struct scheme *scheme, int arrays, int record)
 {
-    for (int sleep = 0; sleep < 2; sleep++) { /* who may sleep has 1/h, two disturbances, a flag */
+    for (int sleep = 0; sleep < 2;
+         sleep++) { /* a particle that may sleep has 1/h, two disturbances, a flag */
         const struct setup setup = {
             .dim = dim, .scheme = *scheme, .n = 1000, .threads = 1, .skip = sleep};
         struct simulation simulation = {.scheme = *scheme, .plan = plan_of_setup(&setup)};

@@ -29,7 +29,7 @@ static struct bench_shares shares_of(const char *name, const char *words)
     return shares;
 }
 
-/* Four fifths of what is allowed, and not more than that: nor does anybody sleep who should not. */
+/* At least four fifths of what is allowed sleep, and no particle that should not. */
 TEST(test_shares)
 {
     static const struct {
