@@ -84,8 +84,9 @@ void sleep_begin(struct simulation *simulation, ptrdiff_t first, ptrdiff_t len)
     }
 }
 
-/* Sums over all that are awake: rates of momentum and total energy, which sleepers do not get the
- * opposite of, and what the two are shared out by. long double: rounding is not to be shared out */
+/* Sums over all awake particles: the rates of momentum and total energy whose opposite would go to
+ * sleepers, and the masses and energies by which they are shared out. In long double, so that
+ * rounding is not shared out. */
 struct leak {
     long double force[3], power, mass, momentum[3], heat;
 };
