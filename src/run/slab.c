@@ -31,6 +31,22 @@ enum status slab_ask(struct run_settings *asked, const char *layers, const char 
     return STATUS_OK;
 }
 
+/* Two reaches of the largest particle, a cube of its area times what layers are apart; where
+ * density jumps, some reach a little further, and are refused by the search. */
+static enum status check_reach(const struct initial *plane, int layers, double apart,
+                               const struct scheme *scheme, struct error *error)
+{
+    double largest = 0;
+    for (size_t i = 0; i < plane->n; i++)
+        largest = fmax(largest, cbrt(plane->m[i] / plane->rho[i] * apart));
+    const double least = ceil(2 * scheme->eta * largest / apart);
+    if (layers >= least) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "%d layers are %g thick, and smoothing lengths up to %g, beyond half of that: "
+                     "at least %.0f layers or a smaller eta are needed",
+                     layers, layers * apart, scheme->eta * largest, least);
+}
+
 static enum status stack(struct initial *initial, int layers, double lo, double apart,
                          struct error *error)
 {
@@ -61,7 +77,8 @@ enum status slab_lay(struct run *run, struct initial *initial, struct error *err
     struct settings settings = run->asked.settings; /* what is automatic is another in 3D */
     struct prepared plane;
     if (problem_prepare(&plane, &settings, 2, error) ||
-        settings_scheme(&settings, 3, &run->scheme, error))
+        settings_scheme(&settings, 3, &run->scheme, error) ||
+        check_reach(initial, layers, apart, &run->scheme, error))
         return error->status;
     box->dim = run->problem.window.dim = 3;
     box->lo[2] = 0;

@@ -304,7 +304,7 @@ def test_slab(draw):
     """A code in 3D runs a case in 2D as layers: its errors are nearly ours in 2D, n is that of a layer."""
     write("slab.sh", SLAB % program)
     os.chmod("slab.sh", 0o700)
-    write("slab.ini", GOOD.replace("[case gresho]", "[case gresho]\nas_3d = %d\nequal_masses = yes" % draw.randint(7, 9))
+    write("slab.ini", GOOD.replace("[case gresho]", "[case gresho]\nas_3d = %d\nequal_masses = yes" % draw.randint(8, 10))
           .replace("./code.py good gresho @N@ @T_END@ @SEED@ @OUT@", "./slab.sh @T_END@ @OUT@ @LO@ @HI@"))
     words = ("run", "gresho", "n=14^2", "t_end=0.1")
     ours, theirs = document(*words), document(*words, "--code", "slab.ini")
