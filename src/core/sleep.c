@@ -110,10 +110,32 @@ static struct leak find_leak(const struct simulation *simulation)
     return leak;
 }
 
-void sleep_balance(struct simulation *simulation)
+/* NaN stays. */
+static double within(double value, double most)
+{
+    return value > most ? most : value < -most ? -most : value;
+}
+
+/* To the rates of a particle that is awake: its share, but no more than the tolerance, which is all
+ * that sleep explains. What is left stays in the sums, where faults of the forces are looked for.
+ */
+static void take_share(struct simulation *simulation, ptrdiff_t i, const double g[3], double part)
 {
     const struct particles *a = &simulation->particles;
     const bool total = simulation->scheme.energy == ENERGY_TOTAL;
+    const double c = fmax(a->c[i], simulation->sleep.sound);
+    const double force = simulation->sleep.tolerance * a->m[i] * c * c / a->h[i];
+    a->de[i] -= within(part * a->U[i], force * c);
+    for (int k = 0; k < a->dim; k++) {
+        const double share = within(a->m[i] * g[k], force);
+        a->F[k][i] += share;
+        if (total) a->de[i] += share * a->v[k][i];
+    }
+}
+
+void sleep_balance(struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
     const ptrdiff_t awake = simulation->sleep.awake_count;
     if (awake == a->n || awake == 0) return;
     const struct leak leak = find_leak(simulation);
@@ -126,12 +148,6 @@ void sleep_balance(struct simulation *simulation)
         power += g[k] * leak.momentum[k];
     }
     const double part = (double)(power / leak.heat); /* of internal energy, which stays positive */
-    for (ptrdiff_t i = 0; i < a->n; i++) {
-        if (simulation->plan.sums->sleeps(simulation, i)) continue;
-        a->de[i] -= part * a->U[i];
-        for (int k = 0; k < a->dim; k++) {
-            a->F[k][i] += a->m[i] * g[k];
-            if (total) a->de[i] += a->m[i] * g[k] * a->v[k][i];
-        }
-    }
+    for (ptrdiff_t i = 0; i < a->n; i++)
+        if (!simulation->plan.sums->sleeps(simulation, i)) take_share(simulation, i, g, part);
 }

@@ -23,8 +23,9 @@
  * with those of a cold gas that a blast will run over. A flow that amplifies round-off amplifies
  * this as well: skips act as a change of the start by the tolerance does.
  *
- * Momentum and energy that sleepers do not get are shared out among those awake, each of which
- * feels less than the tolerance of it (sleep_balance), so that sums stay to round-off.
+ * Momentum and energy that sleepers do not get are shared out among those awake, to each at most
+ * the tolerance of it (sleep_balance; a hundredth and less was seen), so that sums stay to
+ * round-off and a force that is not antisymmetric still shows in them.
  *
  * Of particles that are awake, what vanishes of their pairs is left out, too (plan.quiet):
  * - in 2D and 3D viscosity, where all neighbours move with the particle to a hundredth of tol c and
@@ -78,8 +79,8 @@ double sleep_disturbance(const struct simulation *simulation, ptrdiff_t first, p
 void sleep_begin(struct simulation *simulation, ptrdiff_t first, ptrdiff_t len);
 
 /* After the rates of a state have been found: shares out among those awake what sleepers do not
- * get, so that momentum and total energy stay to round-off. Where walls or fixed layers take
- * momentum or energy, too, these are left alone. */
+ * get, up to the tolerance of each, so that momentum and total energy stay to round-off. Where
+ * walls or fixed layers take momentum or energy, too, these are left alone. */
 void sleep_balance(struct simulation *simulation);
 
 #endif

@@ -387,6 +387,35 @@ TEST(test_awake)
     }
 }
 
+/* What sleepers do not get is shared out, and no more than the tolerance of each particle: a force
+ * without its reaction, or work that nothing pays for, still shows in the sums. */
+TEST(test_shared_out)
+{
+    const struct scheme scheme = made_scheme();
+    for (int size = 0; size < 2; size++) {
+        const struct setup setup = long_box(&scheme);
+        u[8 * 20] = 3;
+        struct simulation *simulation = made_of(&setup);
+        const struct particles *p = &simulation->particles;
+        const double c = simulation->sleep.sound; /* more than that of the gas at rest */
+        const double most = simulation->sleep.tolerance * m[0] * c * c / p->h[8 * 64];
+        const double planted = size ? 1e-3 : 10 * most;
+        double force = 0, power = 0;
+        ptrdiff_t pushed = 0;
+        for (ptrdiff_t i = 1; i < p->n; i++)
+            if (fabs(p->F[1][i]) > fabs(p->F[1][pushed])) pushed = i;
+        p->F[1][pushed] += planted;
+        p->de[pushed] += planted;
+        sleep_balance(simulation);
+        for (ptrdiff_t i = 0; i < p->n; i++) force += p->F[1][i], power += p->de[i];
+        const ptrdiff_t awake = simulation->sleep.awake_count;
+        assert_true(awake > 30 && awake < 300);
+        near_inside(force, size ? 0.999 * planted : -1e-15, size ? planted : 1e-15);
+        near_inside(power, size ? 0.999 * planted : -1e-15, size ? planted : 1e-15);
+        simulation_destroy(simulation);
+    }
+}
+
 /* Gas that moves as one sleeps; where it slides along other gas, however slowly, and feels no
  * force, neighbours on both sides are awake. */
 TEST(test_awake_in_flow)
