@@ -166,7 +166,7 @@ def test_refused():
         assert not os.path.exists("a.csv") and not os.path.exists("a"), words
 
 
-seed = random.randrange(10**6)
+seed = random.randrange(10**6) if len(sys.argv) < 3 else int(sys.argv[2])
 print("seed", seed)
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)

@@ -545,7 +545,7 @@ def test_nothing_left():
         until(lambda: not glob.glob("tmp/*"), "files are left after signal %d" % number)
 
 
-seed = random.randrange(10**6)
+seed = random.randrange(10**6) if len(sys.argv) < 3 else int(sys.argv[2])
 print("seed", seed)
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)
