@@ -76,33 +76,37 @@ static bool name_stride(const struct start_gas *gas, unsigned fields, char *text
     return true;
 }
 
+/* What particles can be put in order by. */
+enum way { WAY_X, WAY_Y, WAY_Z, WAY_RADIUS, WAY_ROW, WAYS };
+
+static bool has_way(const struct problem *problem, int dim, enum way way)
+{
+    if (way == WAY_RADIUS) return problem->circular;
+    return way == WAY_ROW ? dim > 1 : (int)way < dim; /* in 1D rows are as good as x */
+}
+
+static double along(const struct start_gas *gas, enum way way, size_t i)
+{
+    if (way == WAY_RADIUS) return problem_radius(gas->problem, gas->x[i]);
+    return way == WAY_ROW ? (double)i : gas->x[i][way];
+}
+
 void start_place(const struct start_gas *gas, unsigned fields, char *text, size_t size)
 {
-    static const char *const axes[] = {"x", "y", "z"};
-    const struct snapshot *s = gas->snapshot;
-    const size_t n = s->n;
+    static const char *const names[WAYS] = {"x", "y", "z", "r", "row"};
+    const size_t n = gas->snapshot->n;
     struct rank *rank = malloc(n * sizeof *rank);
+    size_t wrong = 0;
     bool named = false;
     *text = '\0';
-    for (int d = 0; rank && !named && d < gas->problem->domain.dim + 2; d++) {
-        const int axis = d < gas->problem->domain.dim ? d : -1;
-        if (d == gas->problem->domain.dim + 1 && gas->problem->domain.dim == 1) continue;
+    for (size_t i = 0; i < n; i++) wrong += (gas->wrong[i] & fields) != 0;
+    for (enum way way = 0; rank && !named && way < WAYS; way++) {
+        if (!has_way(gas->problem->problem, gas->problem->domain.dim, way)) continue;
         for (size_t i = 0; i < n; i++)
-            rank[i] = (struct rank){axis >= 0 ? gas->x[i][axis]
-                                    : d == gas->problem->domain.dim + 1
-                                        ? (double)i
-                                        : problem_radius(gas->problem, gas->x[i]),
-                                    (gas->wrong[i] & fields) != 0};
-        if (axis < 0 && d == gas->problem->domain.dim && !gas->problem->problem->circular) continue;
-        named = name_range(rank, n,
-                           axis >= 0                       ? axes[axis]
-                           : d == gas->problem->domain.dim ? "r"
-                                                           : "row",
-                           text, size);
+            rank[i] = (struct rank){along(gas, way, i), (gas->wrong[i] & fields) != 0};
+        named = name_range(rank, n, names[way], text, size);
     }
     free(rank);
-    size_t wrong = 0;
-    for (size_t i = 0; i < n; i++) wrong += (gas->wrong[i] & fields) != 0;
     if (named || wrong == n || name_stride(gas, fields, text, size)) return;
     snprintf(text, size, ", scattered over the box");
 }

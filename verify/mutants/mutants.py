@@ -135,8 +135,11 @@ class Worker:
             command = self.command_of(os.path.join(self.build, target))
         try:
             # there, since what a faulty test leaves behind must not lie in anybody's tree
-            return quietly(command, timeout=PATIENCE, cwd=self.build).returncode
+            result = quietly(command, timeout=PATIENCE, cwd=self.build)
+            self.said = result.stdout
+            return result.returncode
         except subprocess.TimeoutExpired:
+            self.said = "not ended after %d s" % PATIENCE
             return "hangs"
 
     def command_of(self, program):
@@ -175,9 +178,9 @@ def run(source, work, names):
     for worker in workers:  # after the copies: all of them are of the same moment
         worker.prepare()
     judges = {m.group or m.test: m for m in mutants}
-    failing = [name for name, m in sorted(judges.items()) if workers[0].verify(m) != 0]
+    failing = {name: workers[0].said for name, m in sorted(judges.items()) if workers[0].verify(m) != 0}
     if failing:
-        sys.exit("without any fault these fail already: " + " ".join(failing))
+        sys.exit("without any fault these fail already: " + "".join("\n%s: %s" % (name, said[-2000:]) for name, said in failing.items()))
 
     def work_off(worker):
         while True:
