@@ -86,10 +86,21 @@ void sleep_begin(struct simulation *simulation, ptrdiff_t first, ptrdiff_t len)
 
 /* Sums over all awake particles: the rates of momentum and total energy whose opposite would go to
  * sleepers, and the masses and energies by which they are shared out. In long double, so that
- * rounding is not shared out. */
+ * rounding is not shared out. Over sleepers: the most that they would get, the tolerance of each.
+ */
 struct leak {
     long double force[3], power, mass, momentum[3], heat;
+    double most_force, most_power;
 };
+
+static void add_sleeper(const struct simulation *simulation, ptrdiff_t i, struct leak *leak)
+{
+    const struct particles *a = &simulation->particles;
+    const double c = fmax(a->c[i], simulation->sleep.sound);
+    const double force = simulation->sleep.tolerance * a->m[i] * c * c / a->h[i];
+    leak->most_force += force;
+    leak->most_power += force * (c + particles_norm(a, a->v, i));
+}
 
 static struct leak find_leak(const struct simulation *simulation)
 {
@@ -97,7 +108,10 @@ static struct leak find_leak(const struct simulation *simulation)
     const bool total = simulation->scheme.energy == ENERGY_TOTAL;
     struct leak leak = {0};
     for (ptrdiff_t i = 0; i < a->n; i++) {
-        if (simulation->plan.sums->sleeps(simulation, i)) continue;
+        if (simulation->plan.sums->sleeps(simulation, i)) {
+            add_sleeper(simulation, i, &leak);
+            continue;
+        }
         leak.mass += a->m[i];
         leak.heat += a->U[i];
         leak.power += a->de[i];
@@ -110,44 +124,35 @@ static struct leak find_leak(const struct simulation *simulation)
     return leak;
 }
 
-/* NaN stays. */
-static double within(double value, double most)
+/* What sleep explains of it; the rest stays in the sums, where faults of forces are looked for. NaN
+ * stays. */
+static long double within(long double leak, double most)
 {
-    return value > most ? most : value < -most ? -most : value;
-}
-
-/* To the rates of a particle that is awake: its share, but no more than the tolerance, which is all
- * that sleep explains. What is left stays in the sums, where faults of the forces are looked for.
- */
-static void take_share(struct simulation *simulation, ptrdiff_t i, const double g[3], double part)
-{
-    const struct particles *a = &simulation->particles;
-    const bool total = simulation->scheme.energy == ENERGY_TOTAL;
-    const double c = fmax(a->c[i], simulation->sleep.sound);
-    const double force = simulation->sleep.tolerance * a->m[i] * c * c / a->h[i];
-    a->de[i] -= within(part * a->U[i], force * c);
-    for (int k = 0; k < a->dim; k++) {
-        const double share = within(a->m[i] * g[k], force);
-        a->F[k][i] += share;
-        if (total) a->de[i] += share * a->v[k][i];
-    }
+    return leak > most ? most : leak < -most ? -most : leak;
 }
 
 void sleep_balance(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
+    const bool total = simulation->scheme.energy == ENERGY_TOTAL;
     const ptrdiff_t awake = simulation->sleep.awake_count;
     if (awake == a->n || awake == 0) return;
     const struct leak leak = find_leak(simulation);
-    long double power = leak.power;
+    long double power = within(leak.power, leak.most_power);
     double g[3] = {0};
     for (int k = 0; k < a->dim; k++) {
         if (simulation->boundary[k] == BOUNDARY_FIXED) return; /* layers take what they get */
         if (simulation->boundary[k] == BOUNDARY_REFLECTING) continue; /* so do walls */
-        g[k] = (double)(-leak.force[k] / leak.mass);
+        g[k] = (double)(-within(leak.force[k], leak.most_force) / leak.mass);
         power += g[k] * leak.momentum[k];
     }
     const double part = (double)(power / leak.heat); /* of internal energy, which stays positive */
-    for (ptrdiff_t i = 0; i < a->n; i++)
-        if (!simulation->plan.sums->sleeps(simulation, i)) take_share(simulation, i, g, part);
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        if (simulation->plan.sums->sleeps(simulation, i)) continue;
+        a->de[i] -= part * a->U[i];
+        for (int k = 0; k < a->dim; k++) {
+            a->F[k][i] += a->m[i] * g[k];
+            if (total) a->de[i] += a->m[i] * g[k] * a->v[k][i];
+        }
+    }
 }

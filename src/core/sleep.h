@@ -23,9 +23,9 @@
  * with those of a cold gas that a blast will run over. A flow that amplifies round-off amplifies
  * this as well: skips act as a change of the start by the tolerance does.
  *
- * Momentum and energy that sleepers do not get are shared out among those awake, to each at most
- * the tolerance of it (sleep_balance; a hundredth and less was seen), so that sums stay to
- * round-off and a force that is not antisymmetric still shows in them.
+ * Momentum and energy that sleepers do not get are shared out among those awake (sleep_balance), so
+ * that sums stay to round-off, but no more than the tolerance of each sleeper: a force that is not
+ * antisymmetric still shows in the sums.
  *
  * Of particles that are awake, what vanishes of their pairs is left out, too (plan.quiet):
  * - in 2D and 3D viscosity, where all neighbours move with the particle to a hundredth of tol c and

@@ -201,7 +201,7 @@ static enum status run_counting(const struct run *run, struct counting *counting
     find_calm(counting, &start, 0);
     status = simulation_run(counting->simulation, setup.t_end, count, counting, error);
     simulation_cost(counting->simulation, &cost);
-    const double tolerance = counting->simulation->sleep.tolerance;
+    shares->tolerance = counting->simulation->sleep.tolerance;
     simulation_destroy(counting->simulation);
     const double skipped = (double)cost.skipped_particle_updates;
     shares->skipped = skipped / (skipped + (double)cost.particle_updates);
@@ -212,9 +212,14 @@ static enum status run_counting(const struct run *run, struct counting *counting
     shares->columns = counting->columns;
     fill_map(counting, shares);
     shares->allowed = (double)NAN;
-    return status || tolerance <= 0 ? status
-                                    : bench_allowed(run, counting->initial, tolerance,
-                                                    counting->sound, &shares->allowed, error);
+    if (status || shares->tolerance <= 0) return status;
+    return bench_allowed(run, counting->initial, shares->tolerance, counting->sound,
+                         &shares->allowed, error);
+}
+
+bool bench_shares_enough(const struct bench_shares *shares)
+{
+    return !(shares->skipped < 0.8 * shares->allowed - 0.02);
 }
 
 enum status bench_possible(const struct run *run, struct bench_shares *shares, struct error *error)

@@ -17,7 +17,8 @@ struct bench_shares {
     /* What the promise of sleep allows by whatever rule, from a run without skips: bench_allowed.h;
      * NaN: the run has no tolerance of sleep. */
     double allowed;
-    bool coarse; /* possible is found with the coarse threshold */
+    double tolerance; /* of sleep: sleep.h; 0: the run has none */
+    bool coarse;      /* possible is found with the coarse threshold */
     /* Of what is possible and was done: particles whose own rates are above the tolerance of sleep,
      * so that a precursor has reached them; and particles that are awake for their neighbours. */
     double reached, layers;
@@ -26,6 +27,10 @@ struct bench_shares {
     int columns;
     double asleep[BENCH_ROWS][BENCH_COLUMNS];
 };
+
+/* Is at least four fifths skipped of what is allowed, but for two in a hundred of all updates? True
+ * where nothing tells. */
+bool bench_shares_enough(const struct bench_shares *shares);
 
 /* Runs it, with or without skips as its keys say. STATUS_*: as run_execute. */
 enum status bench_possible(const struct run *run, struct bench_shares *shares, struct error *error);

@@ -177,7 +177,8 @@ static struct bench_skip *new_skip(struct bench *bench, size_t c, const char *na
                                 .error = {(double)NAN, (double)NAN},
                                 .without_viscosity = (double)NAN,
                                 .without_slope = (double)NAN,
-                                .kept = true};
+                                .kept = true,
+                                .enough = true};
     return skip;
 }
 
@@ -323,13 +324,12 @@ static enum status add_case(struct bench *bench, size_t c, struct error *error)
 /* What steps that are longer by a part of the tolerance of sleep do to the answer: strong shocks
  * and noise behind them amplify round-off, and no promise can be kept to less. 0 where it cannot be
  * measured. */
-static double sensitivity(const struct job *job)
+static double sensitivity(const struct job *job, double nudge)
 {
     struct error ignored = {0};
     struct run_result result = {0};
     double difference = 0;
     char cfl[40];
-    const double nudge = job->run->problem.domain.dim == 1 ? 1e-11 : 1e-8; /* see sleep.h */
     snprintf(cfl, sizeof cfl, "cfl=%.17g", job->run->scheme.cfl * (1 + nudge));
     struct run *nudged = run_with(&job->run->asked, cfl, NULL, &ignored);
     if (!nudged) return 0;
@@ -385,7 +385,10 @@ static void judge(struct bench_skip *skip, const struct job *job)
                            : bench_skips_difference(&a->snapshot, &b->snapshot,
                                                     domain_length(&a->problem.domain, 0));
     if (skip->promise == PROMISE_ROUND_OFF && skip->difference > skip->bound)
-        skip->bound = fmax(skip->bound, 10 * sensitivity(&job[BENCH_WITH]));
+        skip->bound =
+            fmax(skip->bound, 10 * sensitivity(&job[BENCH_WITH],
+                                               skip->shares ? skip->shares->tolerance : 1e-11));
+    skip->enough = !skip->shares || bench_shares_enough(skip->shares);
     skip->kept = skip->difference <= skip->bound ||
                  (skip->promise == PROMISE_ERROR && !skip->measured); /* nothing tells */
 }

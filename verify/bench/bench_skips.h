@@ -43,7 +43,8 @@ struct bench_skip {
     struct bench_shares *shares; /* which and how many: bench_possible.h; NULL: no such thing */
     /* fractions of the sums over neighbours from which these were left out; NaN: not known */
     double without_viscosity, without_slope;
-    bool kept; /* the promise */
+    bool kept;   /* the promise */
+    bool enough; /* is skipped of what is allowed */
 };
 
 struct bench_skips {
@@ -58,7 +59,8 @@ struct bench_skips {
 enum bench_part { BENCH_WORK, BENCH_SLEEP, BENCH_STEPS };
 
 /* cases: count prepared settings, copied; those without such work have no entry. STATUS_OK also
- * where a promise is broken: see kept. Free with bench_skips_free, also after a failure. */
+ * where a promise is broken or too little skipped: see kept and enough. Free with bench_skips_free,
+ * also after a failure. */
 enum status bench_skips_measure(const struct run_settings *cases, size_t count,
                                 const struct bench_rules *rules, enum bench_part part,
                                 struct bench_skips *result, struct error *error);

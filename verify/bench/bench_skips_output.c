@@ -64,7 +64,7 @@ void bench_skips_add_json(const struct bench_skips *result, bool maps, json_t *d
                 "without_slope_fraction", result_number_or_null(skip->without_slope), "promise",
                 promises[skip->promise], "difference", result_number_or_null(skip->difference),
                 "bound", skip->promise == PROMISE_UNUSED ? json_null() : result_number(skip->bound),
-                "status", skip->kept ? "pass" : "fail"));
+                "status", skip->kept && skip->enough ? "pass" : "fail"));
         json_t *entry = json_array_get(list, json_array_size(list) - 1);
         if (skip->promise != PROMISE_UNUSED) add_drift(entry, skip);
         if (!shares) continue;
@@ -120,6 +120,9 @@ void bench_skips_print(const struct bench_skips *result, const struct table_styl
             else
                 printf(" %8.0f%%", 0 - 100 * shares[k]);
         print_answer(skip, style);
+        if (!skip->enough)
+            printf("  %sTOO FEW UPDATES LEFT OUT: fewer than four fifths of those allowed%s",
+                   style->bad, style->end);
         printf("\n");
     }
     printf(
@@ -136,7 +139,7 @@ void bench_skips_print(const struct bench_skips *result, const struct table_styl
         "of the updates that are done, those without. Differences: "
         "largest of "
         "any field at t_end over the field's largest value;\nbound of round-off: 1e-8, or ten "
-        "times what steps longer by a part of 1e-11 change%s\n",
+        "times what steps change that are longer by the tolerance of skips%s\n",
         style->faint, BENCH_LOOPS_PARTICLES, style->end);
 }
 

@@ -266,7 +266,8 @@ static enum status leave_out(struct request *request, enum bench_part part, cons
                            "bench: --steps: %s has no local steps; allowed: cases in 2D and 3D "
                            "with a scheme that steps=local goes with",
                            request->case_name);
-    for (size_t s = 0; s < result.count; s++) kept = kept && result.skips[s].kept;
+    for (size_t s = 0; s < result.count; s++)
+        kept = kept && result.skips[s].kept && result.skips[s].enough;
     if (!status) {
         json_t *document = result_new("bench");
         json_object_set_new(document, "points", json_array());

@@ -387,7 +387,7 @@ TEST(test_awake)
     }
 }
 
-/* What sleepers do not get is shared out, and no more than the tolerance of each particle: a force
+/* What sleepers do not get is shared out, and no more than the tolerance of each sleeper: a force
  * without its reaction, or work that nothing pays for, still shows in the sums. */
 TEST(test_shared_out)
 {

@@ -42,10 +42,27 @@ TEST(test_shares)
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const struct bench_shares shares = shares_of(cases[k].name, cases[k].keys);
         near_inside(shares.allowed, cases[k].allowed, 1);
+        assert_true(bench_shares_enough(&shares));
         near_inside(shares.skipped / shares.allowed, 0.8, 1.05);
         /* what could sleep does, or it is told why not (a step sees who sleeps after it) */
         assert_true(shares.reached >= 0 && shares.layers >= 0);
         near_inside(shares.possible - shares.reached - shares.layers, 0, shares.skipped + 0.03);
+    }
+}
+
+/* The bound itself: half of what is allowed is too little; a hundredth of all updates is nothing.
+ */
+TEST(test_enough)
+{
+    static const struct {
+        double skipped, allowed;
+        bool enough;
+    } cases[] = {{0.4, 0.8, false}, {0.6, 0.8, false}, {0.63, 0.8, true}, {0.8, 0.8, true},
+                 {0, 0.02, true},   {0, 0.1, false},   {0, NAN, true}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const struct bench_shares shares = {.skipped = cases[k].skipped,
+                                            .allowed = cases[k].allowed};
+        assert_true(bench_shares_enough(&shares) == cases[k].enough);
     }
 }
 
