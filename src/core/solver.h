@@ -46,8 +46,7 @@ static inline bool simulation_evaluates(const struct simulation *simulation, ptr
     return level < 0 || (int)simulation->particles.level[i] == level;
 }
 
-/* --- the evaluation (evaluate.c) ---------------------------------------------------------------
- */
+/* --- the evaluation (evaluate.c) -------------------------------------------------------------- */
 
 /* Order, density and smoothing length, equation of state: everything that a state implies. */
 enum status evaluate_state(struct simulation *simulation, struct error *error);
@@ -55,8 +54,8 @@ enum status evaluate_state(struct simulation *simulation, struct error *error);
 enum status evaluate_rates(struct simulation *simulation, struct error *error);
 /* The same where x, v and U are there already (an integrator that predicts them directly). */
 enum status evaluate_rates_of_primitives(struct simulation *simulation, struct error *error);
-/* The same rates as evaluate_rates after a change of p, e and alpha alone: neighbours and widths are
- * those of the evaluation before. */
+/* The same rates as evaluate_rates after a change of p, e and alpha alone: neighbours and widths
+ * are those of the evaluation before. */
 enum status evaluate_rates_in_place(struct simulation *simulation, struct error *error);
 /* The time-step limit alone, where velocities have changed since the last rates. */
 void evaluate_signal(struct simulation *simulation);

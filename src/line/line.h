@@ -89,8 +89,7 @@ void reach_tighten(const struct simulation *simulation, struct range *range);
  * touches this one. */
 ptrdiff_t reach_of_pairs(const struct simulation *simulation, const struct range *range);
 
-/* --- the passes: widths.c, forces.c, groups.c; members of struct sums --------------------------
- */
+/* --- the passes: widths.c, forces.c, groups.c; members of struct sums ------------------------- */
 
 enum status widths_find(struct simulation *simulation, bool newton, double ratio,
                         struct error *error);

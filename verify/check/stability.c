@@ -68,8 +68,7 @@ static enum status solver_response(const struct stability *lattice, double kappa
     return STATUS_OK;
 }
 
-/* --- rates -------------------------------------------------------------------------------------
- */
+/* --- rates ------------------------------------------------------------------------------------ */
 
 static struct scheme lattice_scheme(void)
 {
@@ -192,8 +191,7 @@ CHECK_DEFINE(stability, rates, 908,
              .property = "linearised rates of a wave equal differences of the solver's, c/dx = 1",
              .subjects = subjects, .measure = measure_rates, .mutants = rates_mutants);
 
-/* --- time steps --------------------------------------------------------------------------------
- */
+/* --- time steps ------------------------------------------------------------------------------- */
 
 struct stepping {
     const char *followed; /* the integrator that the theory takes; NULL: the right ones */
@@ -283,8 +281,7 @@ CHECK_DEFINE(stability, steps, 950,
              .property = "a wave after 32 steps is where the amplification matrix puts it",
              .measure = measure_steps, .mutants = steps_mutants);
 
-/* --- limits of eta -----------------------------------------------------------------------------
- */
+/* --- limits of eta ---------------------------------------------------------------------------- */
 
 /* The eta at which a wave first grows, as the kernel's descriptor states it; the plan warns from
  * there on. */

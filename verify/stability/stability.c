@@ -15,8 +15,7 @@
 enum { WAVES = 96 };
 static const double growth_floor = 1e-6; /* growth below it is round-off of a stable wave */
 
-/* --- the kernel's derivatives on the lattice ---------------------------------------------------
- */
+/* --- the kernel's derivatives on the lattice -------------------------------------------------- */
 
 /* w''(q) from inside its piece; at a knot the mean of both sides. */
 static double curvature(const struct pieces *pieces, double q)
@@ -107,8 +106,7 @@ enum status stability_begin(struct stability *lattice, const struct scheme *sche
     return STATUS_OK;
 }
 
-/* --- variation of everything that a state implies ----------------------------------------------
- */
+/* --- variation of everything that a state implies --------------------------------------------- */
 
 /* From one particle to its neighbour. */
 static double complex phase(double angle)
@@ -181,8 +179,7 @@ static void vary_sums(const struct stability *lattice, double kappa, struct wave
         below;
 }
 
-/* --- the pair force ----------------------------------------------------------------------------
- */
+/* --- the pair force --------------------------------------------------------------------------- */
 
 struct gradient_terms {
     double G;                  /* at offset s */
@@ -235,8 +232,7 @@ static void vary_force(const struct stability *lattice, double kappa, const stru
     }
 }
 
-/* --- rates, growth -----------------------------------------------------------------------------
- */
+/* --- rates, growth ---------------------------------------------------------------------------- */
 
 /* Real waves: cos for x, v and forces (amplitude a), sin for U, h and sums (amplitude -i a). */
 static void respond(const struct stability *lattice, double kappa, struct wave w, double *force,
@@ -294,8 +290,7 @@ double stability_worst(const struct stability *lattice, double *kappa)
     return worst;
 }
 
-/* --- intervals of eta --------------------------------------------------------------------------
- */
+/* --- intervals of eta ------------------------------------------------------------------------- */
 
 static bool stable_at(const struct scheme *scheme, double gamma, double eta)
 {

@@ -16,8 +16,7 @@ enum { STEPS_QUICK = 30000, STEPS_NIGHTLY = 3000000 };
 /* Steps times n^2, which is what they cost where few particles see all: about a minute. */
 static const double work_nightly = 1e11;
 
-/* --- the cells ---------------------------------------------------------------------------------
- */
+/* --- the cells -------------------------------------------------------------------------------- */
 
 /* Appends "KEY=VALUE;KEY=VALUE" to the cell's arguments. */
 static enum status add_keys(struct stress_cell *cell, const char *keys, struct error *error)
@@ -137,8 +136,7 @@ static enum status compute(const void *context, json_t **document, struct error 
     return run ? stress_run(cell, document, error) : stress_linear(cell, document, error);
 }
 
-/* --- the pool ----------------------------------------------------------------------------------
- */
+/* --- the pool --------------------------------------------------------------------------------- */
 
 static enum status add_cell(struct stress_cell *cell, struct pool *pool, struct error *error)
 {
@@ -191,8 +189,7 @@ void stress_free(struct stress *stress)
     *stress = (struct stress){0};
 }
 
-/* --- judging -----------------------------------------------------------------------------------
- */
+/* --- judging ---------------------------------------------------------------------------------- */
 
 static json_t *cell_json(const struct stress_cell *cell, const struct pool_job *job)
 {

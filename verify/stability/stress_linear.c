@@ -14,8 +14,7 @@
 #define ETA_MAX 9.5
 enum { WAVES = 64, ETAS = 86, BISECTIONS = 7 };
 
-/* --- limits of eta -----------------------------------------------------------------------------
- */
+/* --- limits of eta ---------------------------------------------------------------------------- */
 
 static double growth_at(const struct scheme *scheme, double gamma, double eta)
 {
@@ -69,8 +68,7 @@ static json_t *limit(const struct stress_cell *cell, const struct scheme *scheme
                           fabs(measured / predicted - 1) <= 0.05 ? "ok" : "inaccurate", reason);
 }
 
-/* --- largest time steps ------------------------------------------------------------------------
- */
+/* --- largest time steps ----------------------------------------------------------------------- */
 
 /* Viscosity acts on approaching pairs: on half of those of noise at rest, which is what the cells
  * measure. A sound wave switches it off where gas expands, and rk2 and vl2, which live on it
@@ -112,8 +110,7 @@ static json_t *time_step(const struct stress_cell *cell, const struct scheme *sc
     return stress_outcome(predicted, measured, good ? "ok" : "inaccurate", reason);
 }
 
-/* --- pairing -----------------------------------------------------------------------------------
- */
+/* --- pairing ---------------------------------------------------------------------------------- */
 
 static json_t *pairing(const struct stress_cell *cell, const struct scheme *scheme)
 {
@@ -141,8 +138,7 @@ enum status stress_linear(const struct stress_cell *cell, json_t **document, str
     return *document ? STATUS_OK : error->status;
 }
 
-/* --- the atlas ---------------------------------------------------------------------------------
- */
+/* --- the atlas -------------------------------------------------------------------------------- */
 
 static struct scheme atlas_scheme(const char *kernel, enum gradient gradient, double eta)
 {

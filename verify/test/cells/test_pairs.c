@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What dissipates between one particle and drawn neighbours, stage by stage, against the equations
  * of CONVENTIONS in extended precision. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "test.h"
 
 #include "near.h"
 
@@ -217,9 +212,8 @@ static long double term_of(const struct drawn *drawn, int k, long double *size)
 
 /* Every viscosity in both forms, with and without Balsara's factor. The damping of close pairs has
  * seven digits (reconstructed.h), the rest all. */
-static void test_viscosity(void **state)
+TEST(test_viscosity)
 {
-    (void)state;
     static const enum viscosity all[] = {VISCOSITY_CONSTANT,      VISCOSITY_TIME_DEPENDENT,
                                          VISCOSITY_RECONSTRUCTED, VISCOSITY_FADING,
                                          VISCOSITY_CULLEN_DEHNEN, VISCOSITY_PROJECTED};
@@ -263,9 +257,8 @@ static void test_viscosity(void **state)
 }
 
 /* None at all is 0 for every pair, and for no lane behind them. */
-static void test_no_viscosity(void **state)
+TEST(test_no_viscosity)
 {
-    (void)state;
     struct kernel kernel;
     assert_int_equal(kernel_select(&kernel, "wendland_c4", 5, NULL), STATUS_OK);
     const struct cells_method method = {.box = {.dim = 2, .hi = {1, 1, 1}},
@@ -283,9 +276,8 @@ static void test_no_viscosity(void **state)
 }
 
 /* Heat that is conducted (Price 2008), and the divergence by the pair gradient. */
-static void test_sums(void **state)
+TEST(test_sums)
 {
-    (void)state;
     struct kernel kernel;
     assert_int_equal(kernel_select(&kernel, "wendland_c4", 5, NULL), STATUS_OK);
     for (int trial = 0; trial < 20; trial++) {
@@ -339,9 +331,8 @@ static void expect_layout(const struct lanes_layout *layout, const int values[RE
 }
 
 /* Records hold what their passes read, and nothing else. */
-static void test_records(void **state)
+TEST(test_records)
 {
-    (void)state;
     struct kernel kernel;
     assert_int_equal(kernel_select(&kernel, "cubic_spline", 5, NULL), STATUS_OK);
     for (int dim = 2; dim <= 3; dim++)
@@ -407,15 +398,4 @@ static void test_records(void **state)
                         cells->matrix.geometry == LANES_DIRECTION);
             cells_destroy(cells);
         }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_viscosity),
-        cmocka_unit_test(test_no_viscosity),
-        cmocka_unit_test(test_sums),
-        cmocka_unit_test(test_records),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The passes over small clouds that make matrices, slopes, projectors and the switch of Cullen &
  * Dehnen, against direct sums over all particles and their images in extended precision. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "test.h"
 
 #include "near.h"
 
@@ -447,9 +442,8 @@ static void check(enum setup setup, int dim, enum gradient gradient, enum walls 
     cells_destroy(cells);
 }
 
-static void test_passes(void **state)
+TEST(test_passes)
 {
-    (void)state;
     static const enum gradient gradients[] = {GRADIENT_STANDARD, GRADIENT_IA, GRADIENT_CORRECTED};
     int between = 0;
     for (int round = 0; round < 12; round++)
@@ -476,9 +470,8 @@ static void test_passes(void **state)
 }
 
 /* The worst condition number that is allowed is allowed. */
-static void test_worst(void **state)
+TEST(test_worst)
 {
-    (void)state;
     static struct gas gas;
     assert_int_equal(kernel_select(&gas.kernel, "quartic_spline", 5, NULL), STATUS_OK);
     gas.method = (struct cells_method){.box = {.dim = 2, .hi = {1, 1, 1}},
@@ -501,13 +494,4 @@ static void test_worst(void **state)
         gas.method.worst_condition = gas.fields.condition[20];
         cells_destroy(cells);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_passes),
-        cmocka_unit_test(test_worst),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -242,8 +242,7 @@ TEST(evaluations_that_fail)
     }
 }
 
-/* --- predicted_midpoint ------------------------------------------------------------------------
- */
+/* --- predicted_midpoint ----------------------------------------------------------------------- */
 
 /* The middle of a step from a state, as the evaluation sees it: x, v and U, and alpha. */
 static void middle(int evaluation, ptrdiff_t i, const struct point *from, const struct slope *slope,

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The equation of state and what goes with it, particle by particle, against CONVENTIONS in
  * extended precision, on sums that are drawn; what lies beside a range stays. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "near.h"
 #include "state.h"
@@ -42,9 +39,8 @@ static struct particles gas(int dim)
 }
 
 /* v and U, and how many are left without: exactly nothing is as bad as less, and as no number. */
-static void primitives(void **state)
+TEST(primitives)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int total = 0; total < 2; total++) {
             struct particles a = gas(dim);
@@ -83,9 +79,8 @@ static void draw_sums(struct density_sums *sums, const struct gas *gas, const st
     sums->Z[k] = draw(0.5, 2) * s, sums->Z_dh[k] = draw(-1, 1);
 }
 
-static void closed(void **state)
+TEST(closed)
 {
-    (void)state;
     static const struct {
         ptrdiff_t first;
         int len;
@@ -155,9 +150,8 @@ static void closed(void **state)
 }
 
 /* CONVENTIONS eq. 5.9. */
-static void alpha_grows_and_decays(void **state)
+TEST(alpha_grows_and_decays)
 {
-    (void)state;
     const struct scheme scheme = {
         .viscosity = VISCOSITY_TIME_DEPENDENT, .alpha_min = 0.1, .alpha_max = 1.5};
     struct particles a = gas(2);
@@ -173,9 +167,8 @@ static void alpha_grows_and_decays(void **state)
 }
 
 /* The largest one is found wherever it stands, and no other. */
-static void largest_rates(void **state)
+TEST(largest_rates)
 {
-    (void)state;
     struct particles a = gas(1);
     for (int len = 1; len <= 64; len++)
         for (int at = 0; at < len; at++) {
@@ -187,15 +180,4 @@ static void largest_rates(void **state)
             a.signal[40 + at] = kept, a.signal[39] = a.signal[40 + len] = 1;
         }
     particles_destroy(&a);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(primitives),
-        cmocka_unit_test(closed),
-        cmocka_unit_test(alpha_grows_and_decays),
-        cmocka_unit_test(largest_rates),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,8 +16,7 @@
 #include "near.h"
 #include "solver.h"
 
-/* --- steps -------------------------------------------------------------------------------------
- */
+/* --- steps ------------------------------------------------------------------------------------ */
 
 static struct {
     int steps, sleep_updates, synchronised, signals, switched, widths, looked;
@@ -189,8 +188,7 @@ TEST(a_run_that_stops)
     }
 }
 
-/* --- breaking down -----------------------------------------------------------------------------
- */
+/* --- breaking down ---------------------------------------------------------------------------- */
 
 /* A billionth of the longest step is too short, and one that time does not notice; not the last. */
 TEST(steps_that_collapse)
@@ -314,8 +312,7 @@ TEST(half_of_the_energy)
     }
 }
 
-/* --- kept and restored -------------------------------------------------------------------------
- */
+/* --- kept and restored ------------------------------------------------------------------------ */
 
 /* The clocks of a simulation that is restored go on from where the other's stood. */
 TEST(clocks_go_on)

@@ -410,22 +410,3 @@ TEST(a_setup_that_is_none_is_refused)
     setup = setup_of_a_wave(), setup.gamma = 1;
     assert_int_equal(sphproof_rates_evaluate(&setup, &rates, NULL), SPHPROOF_BAD_INPUT);
 }
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_kernel_of_ones_own_is_certified),
-        cmocka_unit_test(a_kernel_that_is_none_is_refused),
-        cmocka_unit_test(an_operator_is_held_to_its_promise),
-        cmocka_unit_test(densities_of_a_lattice),
-        cmocka_unit_test(solutions_obey_their_equations),
-        cmocka_unit_test(nonsense_is_refused),
-        cmocka_unit_test(an_order_passes_its_gate),
-        cmocka_unit_test(rates_conserve),
-        cmocka_unit_test(a_simulation_conserves),
-        cmocka_unit_test(times_of_a_simulation),
-        cmocka_unit_test(gas_falls),
-        cmocka_unit_test(a_setup_that_is_none_is_refused),
-    };
-    return cmocka_run_group_tests_name("library", tests, NULL, NULL);
-}

@@ -2,13 +2,10 @@
  * The sums in 1D, range by range, against the equations of CONVENTIONS in extended precision, on
  * particles whose every value is drawn: every kernel with every kind of density sum, matrix and
  * gradient, every formulation with every viscosity and energy. What was not asked for stays. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "line/loops.h"
 #include "near.h"
@@ -100,9 +97,8 @@ static struct kernel asking(const struct kernel *kernel, bool specialised)
     return asks;
 }
 
-static void density(void **state)
+TEST(density)
 {
-    (void)state;
     const struct particles a = gas();
     for (size_t k = 0; k < kernel_family.n; k++)
         for (int terms = 0; terms < DENSITY_TERMS; terms++)
@@ -138,9 +134,8 @@ static void density(void **state)
     particles_destroy(&done);
 }
 
-static void matrices(void **state)
+TEST(matrices)
 {
-    (void)state;
     for (size_t k = 0; k < kernel_family.n; k++)
         for (int way = 1; way < 4; way++) /* bit 0: with a matrix; bit 1: with slopes */
             for (int specialised = 0; specialised < 2; specialised++)
@@ -186,9 +181,8 @@ static real gradient_at(const struct kernel *kernel, bool ia, real g, real r, re
     return g * (ia ? r * w_of(kernel, r * h_inverse) : -dw_of(kernel, r * h_inverse));
 }
 
-static void gradients(void **state)
+TEST(gradients)
 {
-    (void)state;
     struct particles a = gas();
     for (size_t k = 0; k < kernel_family.n; k++)
         for (int ia = 0; ia < 2; ia++)
@@ -232,8 +226,7 @@ static void gradients(void **state)
     particles_destroy(&a);
 }
 
-/* --- forces ------------------------------------------------------------------------------------
- */
+/* --- forces ----------------------------------------------------------------------------------- */
 
 /* Gradients of a pair that are no kernel's. */
 static double known_G(ptrdiff_t i, ptrdiff_t d)
@@ -316,9 +309,8 @@ __attribute__((noinline)) static void poison_the_stack(void)
     __asm__ volatile("" : : "r"(deep) : "memory");
 }
 
-static void forces(void **state)
+TEST(forces)
 {
-    (void)state;
     const int viscosities = (int)scheme_members(&scheme_viscosity_family, 1);
     static double scratch[FORCE_STRIPS * (BATCH_MAX + 16)];
     for (int way = 0; way < 32; way++)
@@ -366,9 +358,8 @@ static void forces(void **state)
 }
 
 /* Where nobody is near, twice the speed of sound alone, however cold the gas is. */
-static void rates_of_cold_gas(void **state)
+TEST(rates_of_cold_gas)
 {
-    (void)state;
     static double scratch[FORCE_STRIPS * (BATCH_MAX + 16)];
     struct particles a = gas();
     const struct loops loops = {.gradient = known_gradient};
@@ -392,9 +383,8 @@ static void rates_of_cold_gas(void **state)
 
 /* CONVENTIONS eq. 5.14, of those within the wider of two widths, and twice the own speed of sound.
  */
-static void signals(void **state)
+TEST(signals)
 {
-    (void)state;
     for (int r = 0; r < RANGES; r++) {
         struct particles a = gas();
         const ptrdiff_t first = ranges[r].first, end = first + ranges[r].len;
@@ -421,13 +411,11 @@ static void signals(void **state)
     }
 }
 
-/* --- choosing ----------------------------------------------------------------------------------
- */
+/* --- choosing --------------------------------------------------------------------------------- */
 
 /* Every kernel has its own, and so has none. */
-static void specialised_ones_differ(void **state)
+TEST(specialised_ones_differ)
 {
-    (void)state;
     const int kernels = (int)kernel_family.n;
     for (int k = -1; k < kernels; k++)
         for (int other = -1; other < k; other++) {
@@ -447,9 +435,8 @@ static void specialised_ones_differ(void **state)
         }
 }
 
-static void chosen_by_plan_and_scheme(void **state)
+TEST(chosen_by_plan_and_scheme)
 {
-    (void)state;
     for (size_t k = 0; k < kernel_family.n; k++)
         for (int way = 0; way < 128; way++) {
             const struct plan plan = {.specialised = way & 1,
@@ -491,19 +478,4 @@ static void chosen_by_plan_and_scheme(void **state)
             assert_true(loops.force == loop_force(way & 1, FORMULATION_LAGRANGIAN, VISCOSITY_FADING,
                                                   ENERGY_TOTAL));
         }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(density),
-        cmocka_unit_test(matrices),
-        cmocka_unit_test(gradients),
-        cmocka_unit_test(forces),
-        cmocka_unit_test(signals),
-        cmocka_unit_test(rates_of_cold_gas),
-        cmocka_unit_test(specialised_ones_differ),
-        cmocka_unit_test(chosen_by_plan_and_scheme),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,8 +22,7 @@
 #include "made_simulation.h"
 #include "near.h"
 
-/* --- passes ------------------------------------------------------------------------------------
- */
+/* --- passes ----------------------------------------------------------------------------------- */
 
 enum { RANGES_MOST = 80 };
 
@@ -79,8 +78,7 @@ TEST(every_range_once)
             }
 }
 
-/* --- widths ------------------------------------------------------------------------------------
- */
+/* --- widths ----------------------------------------------------------------------------------- */
 
 static struct range *range_of(const struct simulation *simulation, ptrdiff_t i)
 {
@@ -243,8 +241,7 @@ TEST(ghosts_are_kept_filled)
     }
 }
 
-/* --- room --------------------------------------------------------------------------------------
- */
+/* --- room ------------------------------------------------------------------------------------- */
 
 /* Room for eight times the reach, and 8 more to read; ghosts that it moves are filled again. */
 TEST(room_for_eight_times_the_reach)
@@ -290,8 +287,7 @@ TEST(scratch_is_made_rarely)
     simulation_destroy(s);
 }
 
-/* --- the force loop ----------------------------------------------------------------------------
- */
+/* --- the force loop --------------------------------------------------------------------------- */
 
 static struct simulation *with(size_t n, int count, char *const *keys)
 {
@@ -367,8 +363,7 @@ TEST(rates_and_scratch_of_a_range)
             }
 }
 
-/* --- the passes over pairs ---------------------------------------------------------------------
- */
+/* --- the passes over pairs -------------------------------------------------------------------- */
 
 static struct {
     ptrdiff_t first, len, D, thread;

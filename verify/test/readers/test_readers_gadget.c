@@ -2,17 +2,12 @@
  * Binaries of GADGET, made with random particles of all types in every form: formats 1 and 2, both
  * byte orders, words of 4 and 8 bytes, masses in the header or in a block, blocks left out. What is
  * planted must be read; what is spoilt must be refused. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "made_gadget.h"
 
-static void every_form(void **state)
+TEST(every_form)
 {
-    (void)state;
     for (int draw = 0; draw < 400; draw++) {
         struct binary b = made(1 + draw % 3);
         b.tagged = draw % 2, b.swapped = draw / 2 % 2;
@@ -34,9 +29,8 @@ static void every_form(void **state)
     is_read(&b, "without widths");
 }
 
-static void left_out(void **state)
+TEST(left_out)
 {
-    (void)state;
     static const char *const says[BLOCKS] = {
         "positions of",    "velocities of",   NULL, "no block 'MASS'",
         "neither u nor P", "no block 'RHO '", NULL, NULL};
@@ -76,9 +70,8 @@ static void left_out(void **state)
 }
 
 /* Every byte that is missing, and every count that is another. */
-static void cut_off(void **state)
+TEST(cut_off)
 {
-    (void)state;
     for (int form = 0; form < 4; form++) {
         struct binary b = made(1);
         b.tagged = form % 2, b.swapped = form / 2;
@@ -115,9 +108,8 @@ static void cut_off(void **state)
     }
 }
 
-static void headers(void **state)
+TEST(headers)
 {
-    (void)state;
     static const struct {
         const char *says;
         int count; /* of this type is changed; -1: none */
@@ -160,9 +152,8 @@ static void headers(void **state)
 }
 
 /* Format 1 names nothing: a reading must be the only one in which all is plausible. */
-static void inferred(void **state)
+TEST(inferred)
 {
-    (void)state;
     static const struct {
         int block;
         double factor; /* of all its values */
@@ -211,9 +202,8 @@ static void inferred(void **state)
     refuses(size, "twice", "more than one choice fits");
 }
 
-static void records(void **state)
+TEST(records)
 {
-    (void)state;
     for (int more = 0; more < 2; more++) {
         struct binary b = made(2);
         b.there[MASS] = true;
@@ -243,9 +233,5 @@ static void records(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_form), cmocka_unit_test(left_out), cmocka_unit_test(cut_off),
-        cmocka_unit_test(headers),    cmocka_unit_test(inferred), cmocka_unit_test(records),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

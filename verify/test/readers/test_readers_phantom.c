@@ -2,14 +2,11 @@
  * Phantom's own dumps, made in every form: both byte orders, default numbers of 4 and 8 bytes,
  * arrays of any kind of real in any order, types that sleep, dead particles, sinks. What is planted
  * must be read; what is left out or spoilt must be refused. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "made_place.h"
 #include "snapshot_file.h"
@@ -249,9 +246,8 @@ static void is_read(const struct dump *d)
     snapshot_file_free(&file);
 }
 
-static void every_form(void **state)
+TEST(every_form)
 {
-    (void)state;
     for (int draw = 0; draw < 300; draw++) {
         struct dump d = made();
         d.swapped = draw % 2;
@@ -269,7 +265,7 @@ static void every_form(void **state)
     }
 }
 
-static void left_out(void **state)
+TEST(left_out)
 {
     static const char *const says[ARRAYS] = {"need real arrays x, y, z and h; they have:",
                                              "need real arrays x, y, z and h; they have:",
@@ -281,7 +277,6 @@ static void left_out(void **state)
                                              NULL,
                                              NULL,
                                              NULL};
-    (void)state;
     for (int a = 0; a < ARRAYS; a++) {
         struct dump d = made();
         d.kind[a] = -1;
@@ -310,10 +305,9 @@ static void left_out(void **state)
     refuses(put_all(&d), "neither u nor P");
 }
 
-static void names(void **state)
+TEST(names)
 {
     static const char *const kinds[] = {"ST:Phantom", "F :Phantom", "FX", "AT", "T"};
-    (void)state;
     for (int k = 0; k < 5; k++) {
         struct dump d = made();
         snprintf(d.name, sizeof d.name, "%-100s", kinds[k]);
@@ -338,9 +332,8 @@ static void names(void **state)
 }
 
 /* A file may end anywhere, and any of its bytes may be another: it is refused or read. */
-static void damaged(void **state)
+TEST(damaged)
 {
-    (void)state;
     for (int swapped = 0; swapped < 2; swapped++) {
         struct dump d = made();
         d.swapped = swapped;
@@ -372,11 +365,5 @@ static void damaged(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_form),
-        cmocka_unit_test(left_out),
-        cmocka_unit_test(names),
-        cmocka_unit_test(damaged),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

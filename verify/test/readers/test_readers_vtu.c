@@ -2,11 +2,7 @@
  * XML of VTK: documents drawn in every form that the format has (numbers as text, in base64, raw
  * and appended; both byte orders and sizes of sizes) are read to the bit, and a document that is
  * wrong at one place is refused with what was found there and what is allowed. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "made_table.h"
 
@@ -123,9 +119,8 @@ static void write_out(struct document *d)
     add(d, "</VTKFile>\n");
 }
 
-static void every_form(void **state)
+TEST(every_form)
 {
-    (void)state;
     for (int draw = 0; draw < 200; draw++) {
         struct document d = made();
         struct snapshot_file file;
@@ -199,9 +194,8 @@ static void replace(struct document *d, const char *old, const char *new)
     d->text[d->length] = '\0';
 }
 
-static void one_fault(void **state)
+TEST(one_fault)
 {
-    (void)state;
     for (size_t k = 0; k < sizeof faults / sizeof *faults; k++) {
         struct document d = made();
         d.form = faults[k].form, d.single = d.big = d.wide = false, d.base64 = true;
@@ -217,9 +211,8 @@ static void one_fault(void **state)
 }
 
 /* A document may end anywhere. */
-static void cut_off(void **state)
+TEST(cut_off)
 {
-    (void)state;
     for (int draw = 0; draw < 100; draw++) {
         struct document d = made();
         write_out(&d);
@@ -230,7 +223,5 @@ static void cut_off(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_form), cmocka_unit_test(one_fault),
-                                       cmocka_unit_test(cut_off)};
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

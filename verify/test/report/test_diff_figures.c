@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a diff says of figures of every kind, both ways round, of wholes and their parts, and in
  * which order, on documents that are drawn. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -48,9 +44,8 @@ static void add_figure(json_t *document, const struct kind *kind, const char *te
 }
 
 /* Each kind alone, in each pair of: not there, null, good, bad. */
-static void each_kind(void **state)
+TEST(each_kind)
 {
-    (void)state;
     for (size_t f = 0; f < KINDS; f++) {
         const char *const texts[] = {NULL, "null", kinds[f].good, kinds[f].bad};
         for (int i = 0; i < 4; i++)
@@ -164,10 +159,9 @@ static void drawn(json_t *document)
     json_object_set_new(document, "studies", studies);
 }
 
-static void order(void **state)
+TEST(order)
 {
     size_t seen[READING_VERDICTS + 1] = {0};
-    (void)state;
     srand(3);
     for (int draw = 0; draw < 150; draw++) {
         json_t *old = json_pack("{s:s, s:f}", "command", "report", "error_l1", 1.),
@@ -195,14 +189,13 @@ static void order(void **state)
 }
 
 /* What vanishes one way is new the other way; what stays stays. */
-static void both_ways_round(void **state)
+TEST(both_ways_round)
 {
     static const enum metric_verdict back[] = {
         [VERDICT_SAME] = VERDICT_SAME,    [VERDICT_BETTER] = VERDICT_WORSE,
         [VERDICT_WORSE] = VERDICT_BETTER, [VERDICT_INCOMPARABLE] = VERDICT_INCOMPARABLE,
         [VERDICT_VANISHED] = VERDICT_NEW, [VERDICT_NEW] = VERDICT_VANISHED,
     };
-    (void)state;
     srand(4);
     for (int draw = 0; draw < 100; draw++) {
         json_t *old = json_pack("{s:s, s:f}", "command", "report", "error_l1", 1.),
@@ -243,10 +236,9 @@ static json_t *runs(const char *one, const char *two, const char *verdict)
 }
 
 /* Of a run that broke down its status is compared, before or after, and nothing else of it. */
-static void runs_that_break_down(void **state)
+TEST(runs_that_break_down)
 {
     static const char *const words[] = {"ok", "broke_down", "fail"};
-    (void)state;
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) {
             json_t *old = runs(words[i], "ok", "pass"), *new = runs(words[k], "ok", "pass");
@@ -274,9 +266,8 @@ static void runs_that_break_down(void **state)
 }
 
 /* A whole that fails because a part of it does is no regression of its own. */
-static void causes(void **state)
+TEST(causes)
 {
-    (void)state;
     for (int one = 0; one < 2; one++)
         for (int verdict = 0; verdict < 2; verdict++) {
             json_t *old = runs("ok", "ok", "pass"),
@@ -305,10 +296,9 @@ static void causes(void **state)
 }
 
 /* Beyond the threshold an error is a regression, an order beyond its interval is one anyway. */
-static void thresholds(void **state)
+TEST(thresholds)
 {
     static const double factors[] = {1.04, 1.06, 1.2};
-    (void)state;
     for (size_t i = 0; i < 3; i++)
         for (int t = 0; t < 3; t++) {
             const double threshold = (double[]){0, 0.05, 0.1}[t];
@@ -323,14 +313,4 @@ static void thresholds(void **state)
             diff_free(&diff);
             json_decref(old), json_decref(new);
         }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_kind),       cmocka_unit_test(order),
-        cmocka_unit_test(both_ways_round), cmocka_unit_test(runs_that_break_down),
-        cmocka_unit_test(causes),          cmocka_unit_test(thresholds),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The closed page: what is folded opens to what it was, each case has a picture with its error, its
  * order and its state, and maps that stand side by side have one colour scale. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "base64.h"
 #include "fold.h"
@@ -27,9 +23,8 @@ static json_t *loaded(const char *text)
 }
 
 /* RFC 4648, section 10, and bytes beyond ASCII. */
-static void base64(void **state)
+TEST(base64)
 {
-    (void)state;
     static const struct {
         const char *bytes, *text;
     } rows[] = {{"f", "Zg=="},          {"fo", "Zm8="},           {"foo", "Zm9v"},
@@ -44,9 +39,8 @@ static void base64(void **state)
 
 /* Sections of any length open to the same text; what stands before them stays, their heading is
  * seen. What is no section is left alone. */
-static void sections_open_again(void **state)
+TEST(sections_open_again)
 {
-    (void)state;
     unsigned random = 7;
     for (size_t n = 0; n < 3000; n += 1 + n / 3) {
         struct buffer to = {0}, inside = {0}, expected = {0};
@@ -84,9 +78,8 @@ static void sections_open_again(void **state)
 }
 
 /* What fails with any scheme fails the case; what is open counts of the first scheme alone. */
-static void states_of_cases(void **state)
+TEST(states_of_cases)
 {
-    (void)state;
     static const struct {
         const char *first, *second, *gate, *state;
     } rows[] = {{"pass", "pass", "pass", "ok"},
@@ -153,9 +146,8 @@ static int free_page(void **state)
 }
 
 /* Closed, each case has its picture in the page itself, with what a reader asks first. */
-static void closed_page(void **state)
+TEST(closed_page)
 {
-    (void)state;
     char fault[256] = "";
     if (!markup_well_formed(page.html, fault, sizeof fault)) fail_msg("%s", fault);
     const char *card = strstr(page.html, "<a class=\"card ok\" href=\"#case-tube\">");
@@ -181,9 +173,8 @@ static void closed_page(void **state)
 }
 
 /* Both schemes' errors, from 0.125 to 0.75, have one scale of colours. */
-static void one_scale(void **state)
+TEST(one_scale)
 {
-    (void)state;
     size_t found = 0;
     for (size_t k = 0; k < page.plots.file_count; k++) {
         const struct page_file *file = &page.plots.files[k];
@@ -198,10 +189,5 @@ static void one_scale(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(base64),          cmocka_unit_test(sections_open_again),
-        cmocka_unit_test(states_of_cases), cmocka_unit_test(closed_page),
-        cmocka_unit_test(one_scale),
-    };
-    return cmocka_run_group_tests(tests, make_page, free_page);
+    return test_run(make_page, free_page);
 }

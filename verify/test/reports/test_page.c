@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The report's page, JUnit file and summary: well-formed, self-contained, and the verdict in them
  * is that of the results, also where results are missing, odd or not finite. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "findings.h"
 #include "markup.h"
@@ -128,9 +124,8 @@ static void judge_page(json_t *results, const char *const *contents, size_t n)
     json_decref(results);
 }
 
-static void good_page(void **state)
+TEST(good_page)
 {
-    (void)state;
     const char *const contents[] = {"<h1>All is well</h1>",
                                     "a &lt;b&gt; &amp; c",
                                     "q &lt; 1 &amp; more",
@@ -149,9 +144,8 @@ static void good_page(void **state)
     judge_page(sound(), contents, sizeof contents / sizeof *contents);
 }
 
-static void bad_page(void **state)
+TEST(bad_page)
 {
-    (void)state;
     const char *const contents[] = {
         "<h1>5 failures; look first at kernels: sign (q &lt; 1 &amp; more)</h1>",
         "particle 7 &lt;negative u&gt;",
@@ -177,9 +171,8 @@ static char *page_of(json_t *results)
 }
 
 /* A case is folded, unless something is wrong with it. */
-static void folded_cases(void **state)
+TEST(folded_cases)
 {
-    (void)state;
     json_t *results = sound();
     char *good = page_of(results);
     assert_non_null(strstr(good, "<details class=\"case\" id=\"case-sod\"><summary>"));
@@ -202,9 +195,8 @@ static void folded_cases(void **state)
 }
 
 /* What is skipped: shares, whose source they name, the ratio of CPU times, and a map. */
-static void skips(void **state)
+TEST(skips)
 {
-    (void)state;
     static const char *const contents[] = {"id=\"skips\"",
                                            "<code>sod n=8</code>",
                                            "<td class=\"n\">25 %</td>",
@@ -227,9 +219,8 @@ static void skips(void **state)
 }
 
 /* Other codes' errors stand beside ours where the same error is meant, and only there. */
-static void other_codes(void **state)
+TEST(other_codes)
 {
-    (void)state;
     for (int same = 0; same < 2; same++) {
         json_t *results = sound();
         json_object_set_new(results, "bench",
@@ -247,9 +238,8 @@ static void other_codes(void **state)
 }
 
 /* What orders are lost to: the sentence, the shares of the finest level, and a picture. */
-static void autopsies(void **state)
+TEST(autopsies)
 {
-    (void)state;
     static const char *const contents[] = {"id=\"autopsies\"",
                                            "href=\"#autopsies\"",
                                            "The order, 1, is lost to disorder from 8^2 on: it is",
@@ -282,9 +272,8 @@ static void autopsies(void **state)
 }
 
 /* One profile: density from 2 to 1 at x = 0, where pressure is 4 and one particle has 5. */
-static void overshoots(void **state)
+TEST(overshoots)
 {
-    (void)state;
     json_t *results = sound();
     json_t *run = json_array_get(json_object_get(results, "runs"), 0);
     json_object_set_new(run, "settings", json_pack("{s:f}", "gamma", 1.5));
@@ -308,9 +297,8 @@ static void overshoots(void **state)
 
 /* A case in 2D that is judged by a scalar: its error falls by 4 where n does by 4, which is order 2
  * against n^(1/2). */
-static void in_two_dimensions(void **state)
+TEST(in_two_dimensions)
 {
-    (void)state;
     json_t *results = sound(), *run = first(results, "runs"), *study = first(results, "studies");
     json_object_set_new(run, "dimension", json_integer(2));
     json_object_set_new(study, "dimension", json_integer(2));
@@ -346,9 +334,8 @@ static void in_two_dimensions(void **state)
 }
 
 /* What is known to fail is shown with its reason, and fails nothing. */
-static void known(void **state)
+TEST(known)
 {
-    (void)state;
     json_t *results = sound(), *order = first(first(results, "studies"), "orders");
     json_object_set_new(order, "status", json_string("known"));
     json_object_set_new(order, "known", json_string("few particles <there>"));
@@ -360,9 +347,8 @@ static void known(void **state)
 }
 
 /* What a run in 2D has to keep: shown, and where it does not keep it the case is not well. */
-static void gates(void **state)
+TEST(gates)
 {
-    (void)state;
     static const char *const statuses[] = {"pass", "known", "fail"};
     for (size_t k = 0; k < sizeof statuses / sizeof *statuses; k++) {
         json_t *results = sound(), *run = first(results, "runs");
@@ -382,9 +368,8 @@ static void gates(void **state)
 }
 
 /* What was reported a while ago was not last night. */
-static void since(void **state)
+TEST(since)
 {
-    (void)state;
     static const struct {
         const char *before, *words;
     } pairs[] = {{"2001-02-03T03:36:00Z", "24 minutes before"},
@@ -406,9 +391,8 @@ static void since(void **state)
 }
 
 /* What survived in the report before and breaks down now is a failure. */
-static void broke_since(void **state)
+TEST(broke_since)
 {
-    (void)state;
     static const struct {
         const char *old, *new, *verdict;
         size_t failures;
@@ -430,9 +414,8 @@ static void broke_since(void **state)
 }
 
 /* Not by a colour alone; a scalar whose error falls does not diverge; one count of faults. */
-static void words(void **state)
+TEST(words)
 {
-    (void)state;
     json_t *results = sound(), *scalar, *checks = json_object_get(results, "verify");
     scalar = json_array_get(
         json_object_get(json_array_get(json_object_get(results, "studies"), 0), "functionals"), 0);
@@ -456,9 +439,8 @@ static void words(void **state)
 
 /* Where no growth is predicted and none was found, round-off is no growth rate; and every map says
  * what its numbers are. */
-static void growth_on_lattices(void **state)
+TEST(growth_on_lattices)
 {
-    (void)state;
     json_t *results = sound();
     json_object_set_new(
         results, "stress",
@@ -479,16 +461,14 @@ static void growth_on_lattices(void **state)
 }
 
 /* Results with nothing in them still make a page, and no verdict out of nothing. */
-static void empty_page(void **state)
+TEST(empty_page)
 {
-    (void)state;
     const char *const contents[] = {"<h1>Nothing was checked</h1>"};
     judge_page(judged(json_object()), contents, 1);
 }
 
-static void page_without_gnuplot(void **state)
+TEST(page_without_gnuplot)
 {
-    (void)state;
     char *path = strdup(getenv("PATH") ? getenv("PATH") : "");
     json_t *results = sound();
     struct page page;
@@ -516,9 +496,8 @@ static size_t occurrences(const char *text, const char *what)
     return n;
 }
 
-static void junit(void **state)
+TEST(junit)
 {
-    (void)state;
     char fault[256];
     json_t *good = sound(), *bad = unsound();
     char *passes = findings_junit(findings_of_report, good),
@@ -534,9 +513,8 @@ static void junit(void **state)
     json_decref(bad);
 }
 
-static void summary(void **state)
+TEST(summary)
 {
-    (void)state;
     json_t *good = sound(), *bad = unsound();
     char *passes = summary_text(good), *fails = summary_text(bad);
     assert_non_null(strstr(passes, "All is well"));
@@ -559,9 +537,8 @@ static void add_figure(json_t *checks, const char *group, const char *name, int 
 }
 
 /* A wrong kernel: its own check leads, by its worst figure; what follows from it comes after. */
-static void cause_first(void **state)
+TEST(cause_first)
 {
-    (void)state;
     json_t *results = sound(),
            *checks = json_object_get(json_object_get(results, "verify"), "checks");
     json_t *run = first(results, "runs"), *study = first(results, "studies");
@@ -601,9 +578,8 @@ static void cause_first(void **state)
 }
 
 /* Nothing passes for well whose status nobody can read. */
-static void unreadable(void **state)
+TEST(unreadable)
 {
-    (void)state;
     static const char *const lists[][2] = {
         {"runs", NULL}, {"studies", "orders"}, {"verify", "checks"}, {"faults", "faults"}};
     for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) {
@@ -618,31 +594,4 @@ static void unreadable(void **state)
         assert_non_null(strstr(detail, "'status' is 'passed'; allowed: "));
         json_decref(results);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(good_page),
-        cmocka_unit_test(bad_page),
-        cmocka_unit_test(known),
-        cmocka_unit_test(gates),
-        cmocka_unit_test(folded_cases),
-        cmocka_unit_test(in_two_dimensions),
-        cmocka_unit_test(overshoots),
-        cmocka_unit_test(since),
-        cmocka_unit_test(words),
-        cmocka_unit_test(growth_on_lattices),
-        cmocka_unit_test(broke_since),
-        cmocka_unit_test(empty_page),
-        cmocka_unit_test(page_without_gnuplot),
-        cmocka_unit_test(junit),
-        cmocka_unit_test(summary),
-        cmocka_unit_test(cause_first),
-        cmocka_unit_test(unreadable),
-        cmocka_unit_test(skips),
-        cmocka_unit_test(autopsies),
-        cmocka_unit_test(other_codes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,14 +2,11 @@
  * Snapshots that are written in HDF5: every attribute and array of the file, and that a call of the
  * library that fails leaves neither a file nor anything open. Those of the C library come by
  * way of the linker's --wrap (meson.build). */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "made_place.h"
 #include "snapshot_writer.h"

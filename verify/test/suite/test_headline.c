@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Which of many failing figures is told first, in which words, and of whom. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -48,9 +44,8 @@ static const char *text_of(const json_t *list, size_t i, const char *name)
 
 /* The member is what stands before a comma or a colon, cut where there is no room for it; the place
  * is the rest. */
-static void members_and_places(void **state)
+TEST(members_and_places)
 {
-    (void)state;
     for (int length = 62; length <= 66; length++) {
         char subject[128], member[64], headline[128];
         memset(subject, 'm', sizeof subject);
@@ -79,9 +74,8 @@ static void members_and_places(void **state)
 }
 
 /* Of figures that are as far off the first one is told, also where none is off its bound. */
-static void the_worst_figure(void **state)
+TEST(the_worst_figure)
 {
-    (void)state;
     json_t *list = told(4, (const struct row[]){{&one, "a: near", 2, 1},
                                                 {&one, "a: first", 6, 2},
                                                 {&one, "a: second", 9, 3},
@@ -98,9 +92,8 @@ static void the_worst_figure(void **state)
 }
 
 /* The most elementary check first, then what is farthest off, then what came first. */
-static void the_order(void **state)
+TEST(the_order)
 {
-    (void)state;
     json_t *list = told(6, (const struct row[]){{&two, "early", 4, 2},
                                                 {&one, "near", 3, 2},
                                                 {&one, "far", 9, 2},
@@ -127,9 +120,8 @@ static void the_order(void **state)
 }
 
 /* Mutants that were missed come after all figures, each of them. */
-static void missed_mutants(void **state)
+TEST(missed_mutants)
 {
-    (void)state;
     static const struct check_mutant sign = {"sign", "a sign", NULL}, power = {"power", "", NULL};
     struct mutant_outcome outcomes[] = {
         {&one, &sign, 0.5, 1, false}, {&one, &power, 2, 1, true}, {&two, &power, 0.25, 1, false}};
@@ -150,9 +142,8 @@ static void missed_mutants(void **state)
 
 /* What a person reads, to the last letter: with and without colour; figures or none; how many other
  * checks are named. */
-static void what_is_printed(void **state)
+TEST(what_is_printed)
 {
-    (void)state;
     static struct check others[9] = {{0}};
     static char names[9][8];
     struct row rows[9];
@@ -193,14 +184,4 @@ static void what_is_printed(void **state)
         assert_string_equal(text, list[k].text);
         json_decref(headlines);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(members_and_places), cmocka_unit_test(the_worst_figure),
-        cmocka_unit_test(the_order),          cmocka_unit_test(missed_mutants),
-        cmocka_unit_test(what_is_printed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

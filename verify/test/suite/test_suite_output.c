@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What `verify` says of figures: table, JSON, JUnit file and headlines of a suite in which every
  * count is another one, word for word as written down in data/suite. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "headline.h"
 #include "suite_output.h"
@@ -108,9 +105,8 @@ static void table_is(const struct suite *of, bool color, bool details, const cha
     free(text);
 }
 
-static void table(void **state)
+TEST(table)
 {
-    (void)state;
     table_is(&suite, false, true, "table.txt");
     table_is(&suite, true, false, "colours.txt");
     struct suite well = suite; /* the last check but one, without mutants */
@@ -121,9 +117,8 @@ static void table(void **state)
     table_is(&well, false, true, "missed.txt");
 }
 
-static void json(void **state)
+TEST(json)
 {
-    (void)state;
     json_t *document = json_object();
     suite_output_json(&suite, document);
     json_object_set_new(document, "headlines", headline_list(&suite));
@@ -142,9 +137,8 @@ static void read_all(const char *path, char *text, size_t size)
     unlink(path);
 }
 
-static void junit(void **state)
+TEST(junit)
 {
-    (void)state;
     static char text[1 << 15];
     char path[] = "sphproof-junit-XXXXXX";
     const int file = mkstemp(path);
@@ -157,9 +151,8 @@ static void junit(void **state)
 }
 
 /* A file for each check that fails, with its series; one of an earlier failure goes. */
-static void failures(void **state)
+TEST(failures)
 {
-    (void)state;
     char place[] = "sphproof-failures-XXXXXX", path[128];
     static char text[1 << 14];
     static const struct {
@@ -208,9 +201,8 @@ static void failures(void **state)
 }
 
 /* Six other checks that fail on the same member are named, the rest is counted. */
-static void many(void **state)
+TEST(many)
 {
-    (void)state;
     struct check checks[9];
     struct figure fails[9];
     char names[9][16], subject[] = "cubic";
@@ -241,11 +233,7 @@ static void many(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(table),    cmocka_unit_test(json), cmocka_unit_test(junit),
-        cmocka_unit_test(failures), cmocka_unit_test(many),
-    };
     folder = argc > 1 ? argv[1] : "";
     writing = argc > 2 && strcmp(argv[2], "--write") == 0;
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

@@ -1,29 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Words and numbers as people type them, and files that appear whole. */
+#include "test.h"
+
 #include <locale.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "near.h"
 #include "output.h"
 #include "sha256.h"
 #include "text.h"
 
-static void numbers_are_strict(void **state)
+TEST(numbers_are_strict)
 {
     static const char *const good[] = {"1", "-1", "+1", "1e3", ".5", "5.", "1E-3", "-0", "2.385"};
     static const char *const bad[] = {"",    " ",     " 1",    "1 ",  "1e3x",    "0x10", "nan",
                                       "inf", "-inf",  "1e999", "1,5", "--1",     "e3",   "1e",
                                       ".",   "1.2.3", "1\n",   "1_0", "infinity"};
     double value;
-    (void)state;
     for (size_t i = 0; i < sizeof good / sizeof *good; i++) assert_true(text_real(good[i], &value));
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         value = 2.385;
@@ -37,7 +33,7 @@ static void numbers_are_strict(void **state)
 }
 
 /* A program that uses the library may have set a locale that writes a comma: nothing changes. */
-static void a_comma_changes_nothing(void **state)
+TEST(a_comma_changes_nothing)
 {
     static const char *const names[] = {"", "de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8",
                                         "pl_PL.UTF-8"};
@@ -55,10 +51,9 @@ static void a_comma_changes_nothing(void **state)
     setlocale(LC_NUMERIC, "C");
 }
 
-static void lists_have_their_length(void **state)
+TEST(lists_have_their_length)
 {
     double v[3];
-    (void)state;
     assert_true(text_reals("1 -2  0.4", " \t,", 3, v));
     near_relative(v[1], -2, 1e-16);
     near_relative(v[2], 0.4, 1e-16);
@@ -76,9 +71,8 @@ static void lists_have_their_length(void **state)
     assert_false(text_reals("", " \t,", 1, v));
 }
 
-static void distances(void **state)
+TEST(distances)
 {
-    (void)state;
     assert_int_equal(text_distance("", ""), 0);
     assert_int_equal(text_distance("abc", ""), 3);
     assert_int_equal(text_distance("kitten", "sitting"), 3);
@@ -87,10 +81,9 @@ static void distances(void **state)
     assert_int_equal(text_distance("SOD", "sod"), 0);
 }
 
-static void near_misses(void **state)
+TEST(near_misses)
 {
     static const char *const names[] = {"quadratic_spline", "cubic_spline", "wendland_c2", "sinc"};
-    (void)state;
     assert_string_equal(text_nearest("cubic", names, 4), "cubic_spline");
     assert_string_equal(text_nearest("Cubic_Spline", names, 4), "cubic_spline");
     assert_string_equal(text_nearest("wendlandc2", names, 4), "wendland_c2");
@@ -99,11 +92,10 @@ static void near_misses(void **state)
     assert_null(text_nearest("", names, 4));
 }
 
-static void messages_are_printable(void **state)
+TEST(messages_are_printable)
 {
     static const char *const names[] = {"one", "two"};
     struct error error;
-    (void)state;
     assert_int_equal(text_unknown(&error, "f:3", "key", "t\nw\x80o", names, 2), STATUS_BAD_INPUT);
     for (const char *c = error.message; *c; c++) assert_in_range(*c, ' ', '~');
     assert_non_null(strstr(error.message, "f:3"));
@@ -128,12 +120,11 @@ static void expect_text(const char *path, const char *text)
     assert_string_equal(got, text);
 }
 
-static void files_appear_whole(void **state)
+TEST(files_appear_whole)
 {
     char folder[] = "sphproof-test-XXXXXX", path[64], link[64];
     struct output output;
     struct error error;
-    (void)state;
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/file", folder);
     snprintf(link, sizeof link, "%s/link", folder);
@@ -163,12 +154,11 @@ static void files_appear_whole(void **state)
 }
 
 /* A file without a name comes where TMPDIR says, and nowhere else where there is no such folder. */
-static void temporaries(void **state)
+TEST(temporaries)
 {
     char folder[] = "sphproof-test-XXXXXX", text[8] = "";
     const char *old = getenv("TMPDIR");
     char *before = old ? strdup(old) : NULL;
-    (void)state;
     assert_non_null(mkdtemp(folder));
     setenv("TMPDIR", folder, 1);
     FILE *file = output_temporary();
@@ -188,9 +178,8 @@ static void temporaries(void **state)
 }
 
 /* Examples of FIPS 180, given in parts that do not fit its blocks. */
-static void sums_are_those_of_the_standard(void **state)
+TEST(sums_are_those_of_the_standard)
 {
-    (void)state;
     static const struct {
         const char *text, *sum;
         size_t times;
@@ -209,20 +198,4 @@ static void sums_are_those_of_the_standard(void **state)
         sha256_end(&of, sum);
         assert_string_equal(sum, examples[k].sum);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers_are_strict),
-        cmocka_unit_test(a_comma_changes_nothing),
-        cmocka_unit_test(lists_have_their_length),
-        cmocka_unit_test(distances),
-        cmocka_unit_test(near_misses),
-        cmocka_unit_test(messages_are_printable),
-        cmocka_unit_test(files_appear_whole),
-        cmocka_unit_test(temporaries),
-        cmocka_unit_test(sums_are_those_of_the_standard),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }
