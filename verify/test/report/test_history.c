@@ -1,33 +1,429 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The history of a report: lines as they are added, cut off, mixed; what changed since last night
- * and where figures moved. */
+ * The history of a report: the line that a night adds, and histories that are generated, of no
+ * night, of as many as are kept and of more, with damaged lines, the same night twice and missing
+ * fields; and which way a change is better. */
 #include "test.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "history.h"
+#include "made_place.h"
 #include "near.h"
 #include "result.h"
 #include "value.h"
 
-/* A report whose one study has this error and order. */
-static json_t *report(const char *mode, const char *git, double error, double order)
+enum { NIGHTS_MOST = 500, KEPT = 120 };
+
+static const char error_path[] = "studies[sod, ia].levels[n 400].errors.density.l1",
+                  order_path[] = "studies[sod, ia].orders[density, l1].order";
+
+/* What a night says; a field that is NULL or NaN is missing in its line. */
+struct night {
+    const char *mode;
+    char git[16], date[16];
+    double error, order;
+};
+
+static json_t *results_of(const struct night *night)
 {
     json_t *results = result_new("report");
-    json_object_set_new(results, "git", json_string(git));
-    json_object_set_new(results, "mode", json_string(mode));
+    json_object_set_new(results, "git", json_string(night->git));
+    json_object_set_new(results, "date", json_string(night->date));
+    json_object_set_new(results, "mode", json_string(night->mode));
     json_object_set_new(results, "verdict", json_pack("{s:s, s:[]}", "status", "pass", "failures"));
-    json_object_set_new(
-        results, "studies",
-        json_pack("[{s:s, s:s, s:s, s:[{s:i, s:{s:{s:f, s:f}}, s:f}], s:[{s:s, s:s, s:f, s:f, "
-                  "s:f}], s:[s,s]}]",
-                  "case", "sod", "label", "ia", "status", "pass", "levels", "n", 400, "errors",
-                  "density", "l1", error, "l2", 2 * error, "cpu_s", 5 * error, "orders", "field",
-                  "density", "norm", "l1", "order", order, "low", order - 0.01, "high",
-                  order + 0.01, "measured", "mode_amplitude", "density"));
+    json_object_set_new(results, "studies",
+                        json_pack("[{s:s, s:s, s:s, s:[{s:i, s:{s:{s:f, s:f}}}], s:[{s:s, s:s, "
+                                  "s:f, s:f, s:f}], s:[s,s]}]",
+                                  "case", "sod", "label", "ia", "status", "pass", "levels", "n",
+                                  400, "errors", "density", "l1", night->error, "l2",
+                                  2 * night->error, "orders", "field", "density", "norm", "l1",
+                                  "order", night->order, "low", night->order - 0.01, "high",
+                                  night->order + 0.01, "measured", "mode_amplitude", "density"));
+    return results;
+}
+
+static void write_night(FILE *file, const struct night *night)
+{
+    json_t *figures = json_object();
+    if (!isnan(night->error)) json_object_set_new(figures, error_path, json_real(night->error));
+    if (!isnan(night->order)) json_object_set_new(figures, order_path, json_real(night->order));
+    json_t *line = json_pack("{s:s, s:s, s:o}", "schema", "sphproof-history/1", "mode", night->mode,
+                             "figures", figures);
+    if (night->git[0]) json_object_set_new(line, "git", json_string(night->git));
+    if (night->date[0]) json_object_set_new(line, "date", json_string(night->date));
+    json_dumpf(line, file, JSON_COMPACT);
+    fputc('\n', file);
+    json_decref(line);
+}
+
+static json_t *told(const struct night *now)
+{
+    struct error error = {0};
+    json_t *history, *results = results_of(now);
+    assert_int_equal(history_tell(results, path_of("history"), &history, &error), STATUS_OK);
+    json_decref(results);
+    return history;
+}
+
+static struct night usual_night(int number)
+{
+    struct night night = {.mode = "quick", .error = 1e-3, .order = 0.95};
+    snprintf(night.git, sizeof night.git, "git%d", number);
+    snprintf(night.date, sizeof night.date, "day%d", number);
+    return night;
+}
+
+/* A trend is of what the study is judged by, of the first that has errors and orders. */
+static const json_t *trend_of(const json_t *history, const char *what)
+{
+    const json_t *trends = json_object_get(history, "trends");
+    assert_int_equal(json_array_size(trends), 1);
+    assert_string_equal(value_text(json_array_get(trends, 0), "field"), "density");
+    return json_object_get(json_array_get(trends, 0), what);
+}
+
+/* Are these the history's nights, oldest first? `now` is the last of them. */
+static void same_nights(const json_t *history, const struct night *const *nights, size_t count)
+{
+    const json_t *heads = json_object_get(history, "nights"), *errors = trend_of(history, "error"),
+                 *orders = trend_of(history, "order");
+    assert_int_equal(json_array_size(heads), count);
+    assert_int_equal(json_array_size(errors), count);
+    assert_int_equal(json_array_size(orders), count);
+    for (size_t i = 0; i < count; i++) {
+        const double error = value_real(json_array_get(errors, i)),
+                     order = value_real(json_array_get(orders, i));
+        assert_string_equal(value_text(json_array_get(heads, i), "git"), nights[i]->git);
+        assert_string_equal(value_text(json_array_get(heads, i), "date"), nights[i]->date);
+        assert_int_equal(isnan(error), isnan(nights[i]->error));
+        assert_int_equal(isnan(order), isnan(nights[i]->order));
+        if (!isnan(error)) near_relative(error, nights[i]->error, 1e-12);
+        if (!isnan(order)) near_relative(order, nights[i]->order, 1e-12);
+    }
+}
+
+static void same_since(const json_t *history, const struct night *const *nights, size_t count)
+{
+    const json_t *since = json_object_get(history, "since");
+    if (count < 2) {
+        assert_true(json_is_null(since));
+    } else {
+        assert_string_equal(value_text(since, "git"), nights[count - 2]->git);
+        assert_string_equal(value_text(since, "date"), nights[count - 2]->date);
+    }
+}
+
+/* Of however many nights the newest 120 are told, this one the last of them. */
+TEST(the_newest_are_kept)
+{
+    static const int counts[] = {0, 1, 2, 3, 118, 119, 120, 121, 122, 240, NIGHTS_MOST};
+    static struct night made[NIGHTS_MOST + 1];
+    const struct night *expected[NIGHTS_MOST + 1];
+    for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
+        FILE *file = fopen(path_of("history"), "w");
+        for (int i = 0; i <= counts[c]; i++) {
+            made[i] = usual_night(i);
+            made[i].error *= 1 + 1e-6 * i;
+            made[i].order *= 1 + 1e-6 * i;
+            expected[i] = &made[i];
+            if (i < counts[c]) write_night(file, &made[i]);
+        }
+        fclose(file);
+        const size_t count = (size_t)counts[c] + 1, kept = count < KEPT ? count : KEPT;
+        json_t *history = told(&made[counts[c]]);
+        same_nights(history, expected + count - kept, kept);
+        same_since(history, expected + count - kept, kept);
+        near_absolute(value_member(history, "unreadable"), 0, 0);
+        assert_int_equal(json_array_size(json_object_get(history, "changes")), 0);
+        json_decref(history);
+        unlink(path_of("history"));
+    }
+}
+
+/* The change of one figure from `before` to `after` at night `at` of `count`, as it is told. */
+static json_t *changed(const char *path, double before, double after, int at, int count)
+{
+    FILE *file = fopen(path_of("history"), "w");
+    struct night night;
+    for (int i = 0; i < count; i++) {
+        night = usual_night(i);
+        *(path == error_path ? &night.error : &night.order) = i < at ? before : after;
+        if (i < count - 1) write_night(file, &night);
+    }
+    fclose(file);
+    json_t *history = told(&night);
+    unlink(path_of("history"));
+    return history;
+}
+
+/* A smaller error and a larger order are better, before and after the oldest nights are left out.
+ */
+TEST(which_way_is_better)
+{
+    static const struct {
+        const char *path;
+        double before, after;
+        const char *verdict;
+    } rows[] = {
+        {error_path, 1e-3, 2e-3, "worse"},    {error_path, 2e-3, 1e-3, "better"},
+        {error_path, 1e-3, 1.05e-3, "worse"}, {error_path, 1.05e-3, 1e-3, "better"},
+        {order_path, 0.95, 0.80, "worse"},    {order_path, 0.80, 0.95, "better"},
+        {order_path, 0.95, 1.95, "better"},   {order_path, 1.95, 0.95, "worse"},
+        {order_path, 0.50, -0.5, "worse"},    {order_path, -0.5, 0.50, "better"},
+    };
+    static const int counts[] = {2, 12, 119, 120, 121, 150};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
+        for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
+            const int count = counts[c], at = count - (count > 2 ? 6 : 1);
+            const int first = count > KEPT ? count - KEPT : 0;
+            json_t *history = changed(rows[r].path, rows[r].before, rows[r].after, at, count);
+            const json_t *changes = json_object_get(history, "changes"),
+                         *change = json_array_get(changes, 0);
+            char git[32];
+            assert_int_equal(json_array_size(changes), 1);
+            assert_string_equal(value_text(change, "path"), rows[r].path);
+            assert_string_equal(value_text(change, "verdict"), rows[r].verdict);
+            near_absolute(value_member(change, "night"), at - first, 0);
+            near_relative(value_member(change, "before"), rows[r].before, 1e-12);
+            near_relative(value_member(change, "after"), rows[r].after, 1e-12);
+            near_relative(value_member(change, "ratio"), rows[r].after / rows[r].before, 1e-12);
+            snprintf(git, sizeof git, "git%d", at);
+            assert_string_equal(value_text(change, "git"), git);
+            snprintf(git, sizeof git, "day%d", at);
+            assert_string_equal(value_text(change, "date"), git);
+            snprintf(git, sizeof git, "git%d", at - 1);
+            assert_string_equal(value_text(change, "git_before"), git);
+            json_decref(history);
+        }
+    /* within the noise nothing has changed: 1 % of an error, 0.03 of an order */
+    for (int sign = -1; sign <= 1; sign += 2) {
+        json_t *history = changed(error_path, 1e-3, 1e-3 * (1 + 0.009 * sign), 6, 12);
+        assert_int_equal(json_array_size(json_object_get(history, "changes")), 0);
+        json_decref(history);
+        history = changed(order_path, 0.95, 0.95 + 0.029 * sign, 6, 12);
+        assert_int_equal(json_array_size(json_object_get(history, "changes")), 0);
+        json_decref(history);
+        history = changed(order_path, 0.95, 0.95 + 0.031 * sign, 6, 12);
+        assert_int_equal(json_array_size(json_object_get(history, "changes")), 1);
+        json_decref(history);
+    }
+}
+
+/* Faults first, then what has moved most, up or down, and what has no ratio before it; counts of
+ * work last; by path where two have moved alike. */
+static void in_order_of_since(const json_t *figures)
+{
+    const json_t *figure, *last = NULL;
+    size_t i;
+    json_array_foreach(figures, i, figure) {
+        int group[2] = {0};
+        double moved[2];
+        const json_t *const both[] = {last, figure};
+        for (int k = last ? 0 : 1; k < 2; k++) {
+            const double ratio = value_member(both[k], "ratio");
+            group[k] = json_is_true(json_object_get(both[k], "fault"))  ? 0
+                       : json_is_true(json_object_get(both[k], "work")) ? 2
+                                                                        : 1;
+            moved[k] = ratio > 0 ? fabs(log(ratio)) : HUGE_VAL;
+        }
+        if (last && (group[0] > group[1] || (group[0] == group[1] && moved[0] < moved[1]) ||
+                     (group[0] == group[1] && moved[0] == moved[1] &&
+                      strcmp(value_text(last, "path"), value_text(figure, "path")) >= 0)))
+            fail_msg("%s stands before %s", value_text(last, "path"), value_text(figure, "path"));
+        last = figure;
+    }
+}
+
+/* Since last night: each figure's verdict, what is a fault first, and how many there are of each.
+ */
+TEST(since_says_which_way)
+{
+    static const struct {
+        double error, order; /* last night; this night they are 1e-3 and 0.95 */
+        const char *of_error, *of_order;
+    } rows[] = {
+        {1e-3, 0.95, "same", "same"},       {2e-3, 0.95, "better", "same"},
+        {5e-4, 0.95, "worse", "same"},      {1e-3, 0.50, "same", "better"},
+        {1e-3, 1.50, "same", "worse"},      {5e-4, 0.50, "worse", "better"},
+        {2e-3, 1.50, "better", "worse"},    {5e-4, 1.50, "worse", "worse"},
+        {2e-3, 0.50, "better", "better"},   {(double)NAN, 0.95, "new", "same"},
+        {1e-3, (double)NAN, "same", "new"}, {1.2e-3, 0.20, "better", "better"},
+        {9e-3, 0.50, "better", "better"},   {8e-4, 4, "worse", "worse"},
+        {1e-4, 1.50, "worse", "worse"},     {9e-3, -0.95, "better", "better"},
+    };
+    static const char *const words[] = {"same", "better", "worse", "new"};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        struct night last = usual_night(0), now = usual_night(1);
+        FILE *file = fopen(path_of("history"), "w");
+        last.error = rows[r].error, last.order = rows[r].order;
+        write_night(file, &last);
+        fclose(file);
+        json_t *history = told(&now);
+        const json_t *since = json_object_get(history, "since"),
+                     *figures = json_object_get(since, "figures"), *figure;
+        const char *of_error = "same", *of_order = "same";
+        bool fault_ended = false;
+        size_t i;
+        json_array_foreach(figures, i, figure) {
+            const char *path = value_text(figure, "path");
+            const bool fault = json_is_true(json_object_get(figure, "fault"));
+            assert_false(fault && fault_ended);
+            fault_ended = !fault;
+            if (strcmp(path, error_path) == 0) {
+                of_error = value_text(figure, "verdict");
+                if (!isnan(last.error))
+                    near_relative(value_member(figure, "old"), last.error, 1e-12);
+                near_relative(value_member(figure, "new"), now.error, 1e-12);
+            }
+            if (strcmp(path, order_path) == 0) of_order = value_text(figure, "verdict");
+            assert_string_not_equal(value_text(figure, "verdict"), "same");
+            assert_int_equal(fault, strcmp(value_text(figure, "verdict"), "worse") == 0);
+        }
+        in_order_of_since(figures);
+        assert_string_equal(of_error, rows[r].of_error);
+        assert_string_equal(of_order, rows[r].of_order);
+        for (size_t w = 1; w < sizeof words / sizeof *words; w++) {
+            size_t count = 0;
+            if (w < 3) /* statuses are new, too: no line here has them */
+                json_array_foreach(figures, i, figure)
+                    count += strcmp(value_text(figure, "verdict"), words[w]) == 0;
+            if (w < 3) near_absolute(value_member(since, words[w]), (double)count, 0);
+        }
+        json_decref(history);
+    }
+    unlink(path_of("history"));
+}
+
+/* Which lines are nights, and what is told of those that are not whole. */
+TEST(lines_of_every_kind)
+{
+    static const char *const damaged[] = {
+        "no JSON",
+        "[1, 2]",
+        "{}",
+        "null",
+        "3",
+        "{\"schema\": 1}",
+        "{\"schema\": \"sphproof-history/2\", \"mode\": \"quick\"}",
+        "{\"schema\": \"sphproof-history/1\", \"mode\": \"quick\"",
+        "{\"schema\": \"sphproof-history/1\", \"mode\": \"quick\"} {}",
+        "\xff\xfe",
+        " ",
+    };
+    enum { DAMAGED = sizeof damaged / sizeof *damaged, DRAWS = 40 };
+    static struct night made[NIGHTS_MOST + 1];
+    srand(1);
+    for (int draw = 0; draw < DRAWS; draw++) {
+        const struct night *expected[NIGHTS_MOST + 1];
+        size_t nights = 0, unreadable = 0;
+        const int lines = rand() % 30 + (draw % 4 == 3 ? 130 : 0);
+        FILE *file = fopen(path_of("history"), "w");
+        for (int i = 0; i < lines; i++) {
+            const int kind = rand() % 10;
+            made[i] = usual_night(i);
+            made[i].error *= 1 + 1e-6 * i;
+            if (kind == 0) {
+                fprintf(file, "%s\n", damaged[rand() % DAMAGED]);
+                unreadable++;
+                continue;
+            }
+            if (kind == 1) {
+                fputc('\n', file); /* nothing is no damage */
+                continue;
+            }
+            if (kind == 2) made[i].mode = "nightly";
+            if (kind == 3) made[i].git[0] = '\0';
+            if (kind == 4) made[i].date[0] = '\0';
+            if (kind == 5) made[i].error = (double)NAN;
+            if (kind == 6) made[i].order = (double)NAN;
+            if (kind == 7 && i) made[i] = made[i - 1]; /* once more */
+            write_night(file, &made[i]);
+            if (strcmp(made[i].mode, "quick") == 0) expected[nights++] = &made[i];
+        }
+        if (draw % 3 == 0) { /* the last line was cut off */
+            fputs("{\"schema\": \"sphproof-hi", file);
+            unreadable++;
+        }
+        fclose(file);
+        made[lines] = usual_night(lines);
+        expected[nights++] = &made[lines];
+        json_t *history = told(&made[lines]);
+        const size_t kept = nights < KEPT ? nights : KEPT;
+        same_nights(history, expected + nights - kept, kept);
+        same_since(history, expected + nights - kept, kept);
+        near_absolute(value_member(history, "unreadable"), (double)unreadable, 0);
+        json_decref(history);
+    }
+    unlink(path_of("history"));
+}
+
+/* Nights without a figure do not count where it moves, nor are they a change. */
+TEST(nights_that_lack_a_figure)
+{
+    for (int lacking = 0; lacking < 3; lacking++) { /* before the change, around it, at its night */
+        FILE *file = fopen(path_of("history"), "w");
+        struct night night;
+        for (int i = 0; i < 15; i++) {
+            night = usual_night(i);
+            night.error = i < 8 ? 1e-3 : 2e-3;
+            if (lacking == 0 && (i == 2 || i == 5)) night.error = (double)NAN;
+            if (lacking == 1 && (i == 6 || i == 9)) night.error = (double)NAN;
+            if (lacking == 2 && (i == 7 || i == 8)) night.error = (double)NAN;
+            if (i < 14) write_night(file, &night);
+        }
+        fclose(file);
+        json_t *history = told(&night);
+        const json_t *changes = json_object_get(history, "changes"),
+                     *change = json_array_get(changes, 0);
+        assert_int_equal(json_array_size(changes), 1);
+        assert_string_equal(value_text(change, "git"), lacking == 2 ? "git9" : "git8");
+        assert_string_equal(value_text(change, "git_before"), lacking == 2 ? "git6" : "git7");
+        near_absolute(value_member(change, "night"), lacking == 2 ? 9 : 8, 0);
+        json_decref(history);
+    }
+    unlink(path_of("history"));
+}
+
+/* Newest changes first; of one night the larger one, whichever figure's it is. */
+TEST(changes_in_order)
+{
+    for (int larger = 0; larger < 2; larger++) {
+        FILE *file = fopen(path_of("history"), "w");
+        struct night night;
+        for (int i = 0; i < 24; i++) {
+            night = usual_night(i);
+            night.error = (i < 8 ? 1e-3 : 2e-3) * (i < 16 ? 1 : larger ? 1.2 : 3);
+            night.order = i < 16 ? 1 : 2;
+            if (i < 23) write_night(file, &night);
+        }
+        fclose(file);
+        json_t *history = told(&night);
+        const json_t *changes = json_object_get(history, "changes");
+        assert_int_equal(json_array_size(changes), 3);
+        const char *paths[3];
+        for (size_t i = 0; i < 3; i++) {
+            paths[i] = value_text(json_array_get(changes, i), "path");
+            near_absolute(value_member(json_array_get(changes, i), "night"), i < 2 ? 16 : 8, 0);
+        }
+        assert_string_equal(paths[0], larger ? order_path : error_path);
+        assert_string_equal(paths[1], larger ? error_path : order_path);
+        assert_string_equal(paths[2], error_path);
+        json_decref(history);
+    }
+    unlink(path_of("history"));
+}
+
+/* Every check has one figure in a night's line, its worst; what is no headline is not there. A line
+ * that was cut off does not harm the one that is added after it. */
+TEST(lines_that_are_added)
+{
+    const struct night night = usual_night(0);
+    struct error error = {0};
+    json_t *results = results_of(&night);
     json_object_set_new(
         results, "verify",
         json_pack("{s:[{s:s, s:s, s:s, s:f, s:f, s:f, s:s}, {s:s, s:s, s:s, s:f, s:f, s:f, s:s}]}",
@@ -35,143 +431,30 @@ static json_t *report(const char *mode, const char *git, double error, double or
                   "bound", 1e-13, "floor", 1e-16, "status", "pass", "group", "norms", "name", "sum",
                   "subject", "b", "value", 5e-14, "bound", 1e-13, "floor", 1e-16, "status",
                   "pass"));
-    return results;
-}
-
-static const char error_path[] = "studies[sod, ia].levels[n 400].errors.density.l1";
-
-/* Tells the history of a night, adds its line, and returns what it told. */
-static json_t *night(const char *path, const char *mode, const char *git, double l1, double order)
-{
-    json_t *results = report(mode, git, l1, order), *told;
-    struct error error = {0};
-    assert_int_equal(history_tell(results, path, &told, &error), STATUS_OK);
-    assert_int_equal(history_append(results, path, &error), STATUS_OK);
-    json_decref(results);
-    return told;
-}
-
-static double number(const json_t *object, const char *name)
-{
-    return value_real(json_object_get(object, name));
-}
-
-static void new_file(char *path)
-{
-    strcpy(path, "history.XXXXXX");
-    const int file = mkstemp(path);
-    assert_true(file >= 0);
-    close(file);
-    unlink(path);
-}
-
-TEST(since_last_night)
-{
-    char path[32];
-    new_file(path);
-    json_t *told = night(path, "quick", "one", 1e-3, 0.95);
-    assert_int_equal(json_array_size(json_object_get(told, "nights")), 1);
-    assert_true(json_is_null(json_object_get(told, "since")));
-    json_decref(told);
-
-    told = night(path, "quick", "two", 1.0001e-3, 0.951); /* within the noise */
-    json_t *since = json_object_get(told, "since");
-    assert_string_equal(json_string_value(json_object_get(since, "git")), "one");
-    near_absolute(number(since, "worse"), 0, 0);
-    near_absolute(number(since, "better"), 0, 0);
-    assert_true(number(since, "same") >= 3);
-    json_decref(told);
-
-    told = night(path, "nightly", "three", 9e-4, 0.9); /* another mode has another history */
-    assert_true(json_is_null(json_object_get(told, "since")));
-    json_decref(told);
-
-    told = night(path, "quick", "four", 1.3e-3, 0.9);
-    since = json_object_get(told, "since");
-    near_absolute(number(since, "worse"), 2, 0);
-    const json_t *figures = json_object_get(since, "figures"), *figure;
-    size_t i, seen = 0;
-    json_array_foreach(figures, i, figure) {
-        if (strcmp(json_string_value(json_object_get(figure, "path")), error_path)) continue;
-        seen++;
-        near_relative(number(figure, "old"), 1.0001e-3, 1e-12);
-        near_relative(number(figure, "new"), 1.3e-3, 1e-12);
-        assert_string_equal(json_string_value(json_object_get(figure, "verdict")), "worse");
-    }
-    assert_int_equal(seen, 1);
-    json_decref(told);
-    unlink(path);
-}
-
-/* A line that was cut off, and others that are none, neither count nor harm what comes next. */
-TEST(broken_lines)
-{
-    char path[32];
-    new_file(path);
-    json_decref(night(path, "quick", "one", 1e-3, 0.95));
-    FILE *file = fopen(path, "a");
-    fputs("no JSON\n[1, 2]\n{\"schema\": \"other\"}\n\n{\"schema\": \"sphproof-hist", file);
-    fclose(file);
-    json_decref(night(path, "quick", "two", 1e-3, 0.95));
-    json_t *told = night(path, "quick", "three", 1e-3, 0.95);
-    assert_int_equal(json_array_size(json_object_get(told, "nights")), 3);
-    near_absolute(number(told, "unreadable"), 4, 0);
-    json_decref(told);
-    unlink(path);
-}
-
-TEST(moves_are_dated)
-{
-    char path[32], git[16];
-    json_t *told = NULL;
-    new_file(path);
-    for (int i = 0; i < 12; i++) {
-        json_decref(told);
-        snprintf(git, sizeof git, "rev%d", i);
-        told = night(path, "quick", git, i < 7 ? 1e-3 : 1.2e-3, 0.95);
-    }
-    const json_t *changes = json_object_get(told, "changes"),
-                 *trend = json_array_get(json_object_get(told, "trends"), 0);
-    assert_int_equal(json_array_size(changes), 1);
-    const json_t *change = json_array_get(changes, 0);
-    assert_string_equal(json_string_value(json_object_get(change, "path")), error_path);
-    assert_string_equal(json_string_value(json_object_get(change, "git")), "rev7");
-    assert_string_equal(json_string_value(json_object_get(change, "git_before")), "rev6");
-    assert_string_equal(json_string_value(json_object_get(change, "verdict")), "worse");
-    near_relative(number(change, "ratio"), 1.2, 1e-9);
-    /* of what the study is judged by, the first that has errors and orders */
-    assert_string_equal(json_string_value(json_object_get(trend, "field")), "density");
-    assert_int_equal(json_array_size(json_object_get(told, "trends")), 1);
-    assert_int_equal(json_array_size(json_object_get(trend, "error")), 12);
-    near_relative(value_real(json_array_get(json_object_get(trend, "error"), 11)), 1.2e-3, 1e-12);
-    near_relative(value_real(json_array_get(json_object_get(trend, "order"), 0)), 0.95, 1e-12);
-    json_decref(told);
-    unlink(path);
-}
-
-/* Every check has one figure, its worst; what is no headline is not there. */
-TEST(one_line)
-{
-    char path[32];
-    new_file(path);
-    json_decref(night(path, "quick", "one", 1e-3, 0.95));
-    json_error_t fault;
-    json_t *line = json_load_file(path, 0, &fault);
-    assert_non_null(line);
+    assert_int_equal(history_append(results, path_of("history"), &error), STATUS_OK);
+    json_t *line = json_load_file(path_of("history"), 0, NULL);
     const json_t *figures = json_object_get(line, "figures");
-    near_relative(number(figures, "verify[norms, sum].value_over_bound"), 0.5, 1e-12);
-    near_relative(number(figures, error_path), 1e-3, 1e-12);
+    near_relative(value_member(figures, "verify[norms, sum].value_over_bound"), 0.5, 1e-12);
+    near_relative(value_member(figures, error_path), 1e-3, 1e-12);
     assert_null(json_object_get(figures, "studies[sod, ia].levels[n 400].errors.density.l2"));
     json_decref(line);
-    unlink(path);
+    FILE *file = fopen(path_of("history"), "a");
+    fputs("{\"schema\": \"sphproof-hist", file);
+    fclose(file);
+    assert_int_equal(history_append(results, path_of("history"), &error), STATUS_OK);
+    json_t *history = told(&night);
+    same_nights(history, (const struct night *const[]){&night, &night, &night}, 3);
+    near_absolute(value_member(history, "unreadable"), 1, 0);
+    json_decref(history);
+    unlink(path_of("history"));
+    history = told(&night); /* before there is any line */
+    same_nights(history, (const struct night *const[]){&night}, 1);
+    json_decref(history);
+    assert_int_equal(history_append(results, path_of("no/history"), &error), STATUS_ENVIRONMENT);
+    json_decref(results);
 }
 
-TEST(cannot_write)
+int main(void)
 {
-    struct error error = {0};
-    json_t *results = report("quick", "one", 1e-3, 1), *told;
-    assert_int_equal(history_append(results, "missing/history", &error), STATUS_ENVIRONMENT);
-    assert_int_equal(history_tell(results, "missing/history", &told, &error), STATUS_OK);
-    json_decref(told);
-    json_decref(results);
+    return test_run(make_place, remove_place);
 }

@@ -14,8 +14,7 @@
 #include "suite_output.h"
 
 static const struct check first = {.group = "a", .name = "first", .property = "one is one"},
-                          second = {.group = "a", .name = "second", .property = "p"},
-                          other = {.group = "b", .name = "other", .property = "p"};
+                          second = {.group = "a", .name = "second", .property = "p"};
 
 static const char *text_of(const char *name)
 {
@@ -184,32 +183,6 @@ TEST(tables)
                                  "        2x         0       2    0.00\n"));
     struct figure close[] = {FIGURE(&first, 1, 1.0049999, FINDING_PASS)};
     assert_non_null(strstr(table_of(1, close), "        1x "));
-}
-
-/* Each group of a JUnit file has its own counts, wherever they stand. */
-TEST(groups)
-{
-    static const enum finding_status kinds[] = {FINDING_PASS, FINDING_FAIL, FINDING_SKIP};
-    for (int a = 0; a < 27; a++) {
-        struct figure figures[] = {FIGURE(&first, 2, 1, kinds[a % 3]),
-                                   FIGURE(&second, 2, 1, kinds[a / 3 % 3]),
-                                   FIGURE(&other, 2, 1, kinds[a / 9])};
-        const struct suite suite = {.figures = figures, .figure_count = 3};
-        char line[2][128];
-        for (int k = 0; k < 2; k++) {
-            int failed = 0, skipped = 0;
-            for (int i = k ? 2 : 0; i < (k ? 3 : 2); i++) {
-                failed += figures[i].status == FINDING_FAIL;
-                skipped += figures[i].status == FINDING_SKIP;
-            }
-            snprintf(line[k], sizeof line[k],
-                     "<testsuite name=\"%s\" tests=\"%d\" failures=\"%d\" skipped=\"%d\"",
-                     k ? "b" : "a", k ? 1 : 2, failed, skipped);
-        }
-        assert_int_equal(suite_output_junit(&suite, path_of("junit.xml"), NULL), STATUS_OK);
-        const char *text = text_of("junit.xml");
-        if (!strstr(text, line[0]) || !strstr(text, line[1])) fail_msg("%s in %s", line[0], text);
-    }
 }
 
 int main(void)
