@@ -36,13 +36,14 @@ static const struct {
 };
 enum { ROWS = sizeof rows / sizeof *rows };
 
-/* Once: share 2 meets its fate and is submitted again, and only it. */
+/* Once: a share meets its fate and is submitted again, and only it. */
 TEST(once)
 {
-    for (int r = 0; r < ROWS; r++) {
-        char note[200];
+    for (int i = 0; i < SHARES * ROWS; i++) {
+        const int r = i % ROWS, share = 1 + i / ROWS;
+        char note[200], cancelled[16], arrays[16];
         again();
-        made.fates[2][0] = rows[r].fate;
+        made.fates[share][0] = rows[r].fate;
         const enum status status = compute_all();
         if (rows[r].given_up) {
             assert_int_equal(status, STATUS_ENVIRONMENT);
@@ -51,16 +52,18 @@ TEST(once)
         }
         assert_int_equal(status, STATUS_OK);
         all_is_left_behind_in_order();
-        assert_string_equal(made.cancelled, rows[r].fate == HELD ? "7_2 " : "");
-        assert_string_equal(made.arrays, rows[r].state ? "1-3 2 " : "1-3 ");
+        snprintf(cancelled, sizeof cancelled, "7_%d ", share);
+        snprintf(arrays, sizeof arrays, "1-3 %d ", share);
+        assert_string_equal(made.cancelled, rows[r].fate == HELD ? cancelled : "");
+        assert_string_equal(made.arrays, rows[r].state ? arrays : "1-3 ");
         if (!rows[r].state) {
             assert_string_equal(call.said, "");
             continue;
         }
         snprintf(note, sizeof note,
-                 "sphproof: note: share 2 ended (%s) and %zu of its computations are missing: "
+                 "sphproof: note: share %d ended (%s) and %zu of its computations are missing: "
                  "submitted again (1 of 2)\n",
-                 rows[r].state, shares_computations(2));
+                 share, rows[r].state, shares_computations(share));
         assert_string_equal(call.said, note);
     }
 }

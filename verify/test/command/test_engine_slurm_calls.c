@@ -183,17 +183,20 @@ TEST(the_signal_is_given_back)
 /* Tasks that were submitted before, by somebody who has died since: their tries count. */
 TEST(attached)
 {
-    for (int fate = 0; fate < 2; fate++) {
+    for (int i = 0; i < 2 * SHARES; i++) {
+        const int share = 1 + i / 2, fate = i % 2;
+        char arrays[32];
         again();
-        made.fates[2][0] = STAYS;
+        made.fates[share][0] = STAYS;
         made.interrupt = 120;
         assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
         for (size_t k = 0; k < made.count; k++)
             if (made.tasks[k].fate == STAYS) made.tasks[k].fate = ENDS_BADLY;
-        made.fates[2][1] = ENDS_BADLY;
-        made.fates[2][2] = fate ? COMPLETES : ENDS_BADLY;
+        made.fates[share][1] = ENDS_BADLY;
+        made.fates[share][2] = fate ? COMPLETES : ENDS_BADLY;
         assert_int_equal(compute_all(), fate ? STATUS_OK : STATUS_ENVIRONMENT);
-        assert_string_equal(made.arrays, "1-3 2 2 ");
+        snprintf(arrays, sizeof arrays, "1-3 %d %d ", share, share);
+        assert_string_equal(made.arrays, arrays);
         says("submitted again (1 of 2)"), says("submitted again (2 of 2)");
     }
 }

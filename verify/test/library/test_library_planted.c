@@ -422,10 +422,11 @@ TEST(clouds)
 
 enum { POINTS_MAX = 9000, FIGURES_MAX = 40, ETA_TENTHS = 24 };
 
-/* A "gradient" that is none. */
-static double planted(const double *const place[], const double *f, size_t i, int a)
+/* A "gradient" that is none, of all that an operator is given. */
+static double planted(const struct sphproof_cloud *cloud, const double *f, size_t i, int a)
 {
-    return (1 + a) * f[i] * (1.5 + place[0][i]) + f[i] * f[i] - 0.25 * a;
+    return (1 + a) * f[i] * (1.5 + cloud->x[0][i]) + f[i] * f[i] - 0.25 * a + cloud->h[i] -
+           9 * cloud->volume[i];
 }
 
 static int calls, refuse_at; /* the call that says that it could not; 0: none */
@@ -435,7 +436,7 @@ static bool plant(void *context, const struct sphproof_cloud *cloud, const doubl
 {
     assert_ptr_equal(context, &calls);
     for (int a = 0; a < cloud->dim; a++)
-        for (size_t i = 0; i < cloud->n; i++) gradient[a][i] = planted(cloud->x, f, i, a);
+        for (size_t i = 0; i < cloud->n; i++) gradient[a][i] = planted(cloud, f, i, a);
     return ++calls != refuse_at;
 }
 
@@ -455,6 +456,7 @@ static void see(void *context, const struct sphproof_figure *figure)
 struct made {
     struct clouds_settings settings;
     struct clouds_cloud cloud;
+    struct sphproof_cloud given;
     size_t n;
     int dim;
     double f[POINTS_MAX], slope[3][POINTS_MAX], largest;
@@ -465,6 +467,8 @@ static void make(struct made *made, struct clouds_settings settings, enum gradie
     assert_int_equal(clouds_make(&settings, &made->cloud, NULL), STATUS_OK);
     made->settings = settings, made->dim = settings.dim, made->largest = 0;
     made->n = made->cloud.cloud.points.n;
+    made->given = (struct sphproof_cloud){.h = made->cloud.h, .volume = made->cloud.volume};
+    for (int a = 0; a < 3; a++) made->given.x[a] = made->cloud.x[a];
     assert_true(made->n <= POINTS_MAX);
     for (size_t i = 0; i < made->n; i++) {
         double place[3] = {0}, slope[3] = {0};
@@ -519,7 +523,6 @@ static void fields_are(int dim, bool linear)
     static double other[POINTS_MAX], both[POINTS_MAX];
     char where[80];
     make(&one, usual(CLOUDS_SOBOL, dim), FUNCTION_SMOOTH);
-    const double *const place[] = {one.cloud.x[0], one.cloud.x[1], one.cloud.x[2]};
     for (size_t i = 0; i < one.n; i++) {
         other[i] = cos(3 * one.f[i]);
         both[i] = 2.385 * one.f[i] - 0.71 * other[i];
@@ -528,8 +531,9 @@ static void fields_are(int dim, bool linear)
     figure_is("repeats", "same input", where, 0, 0);
     for (int a = 0; a < dim; a++)
         for (size_t i = 0; i < one.n; i++)
-            misses[a][i] = planted(place, both, i, a) - 2.385 * planted(place, one.f, i, a) +
-                           0.71 * planted(place, other, i, a);
+            misses[a][i] = planted(&one.given, both, i, a) -
+                           2.385 * planted(&one.given, one.f, i, a) +
+                           0.71 * planted(&one.given, other, i, a);
     if (linear) figure_is("linear", "grad (a f + b g)", where, worst(&one, 1), 1e-9);
     clouds_free(&one.cloud);
 }
@@ -541,12 +545,11 @@ static void exactness_is(int dim, int degrees)
         for (int kind = 0; kind < CLOUDS_KINDS; kind++) {
             const enum gradient_function field = degree ? FUNCTION_LINEAR : FUNCTION_CONSTANT;
             make(&one, usual((enum clouds_kind)kind, dim), field);
-            const double *const place[] = {one.cloud.x[0], one.cloud.x[1], one.cloud.x[2]};
             snprintf(where, sizeof where, "%dD, %s, %s field", dim,
                      clouds_name((enum clouds_kind)kind), gradient_study_field_name(field));
             for (int a = 0; a < dim; a++)
                 for (size_t i = 0; i < one.n; i++)
-                    misses[a][i] = planted(place, one.f, i, a) - one.slope[a][i];
+                    misses[a][i] = planted(&one.given, one.f, i, a) - one.slope[a][i];
             figure_is("exactness", "of polynomials", where, worst(&one, 1), 1e-9);
             clouds_free(&one.cloud);
         }
@@ -556,22 +559,24 @@ static void exactness_is(int dim, int degrees)
 static void move_is(int dim, const char *property, const char *formula, const double R[9],
                     double unit, const double shift[3])
 {
-    static double moved[3][POINTS_MAX];
+    static double moved[3][POINTS_MAX], h[POINTS_MAX], volume[POINTS_MAX];
+    const struct sphproof_cloud there = {
+        .x = {moved[0], moved[1], moved[2]}, .h = h, .volume = volume};
     char where[80];
     make(&one, usual(CLOUDS_CLUSTERED, dim), FUNCTION_SMOOTH);
-    const double *const place[] = {one.cloud.x[0], one.cloud.x[1], one.cloud.x[2]},
-                        *const there[] = {moved[0], moved[1], moved[2]};
-    for (size_t i = 0; i < one.n; i++)
+    for (size_t i = 0; i < one.n; i++) {
+        h[i] = unit * one.cloud.h[i], volume[i] = pow(unit, dim) * one.cloud.volume[i];
         for (int a = 0; a < dim; a++) {
             moved[a][i] = shift[a];
-            for (int b = 0; b < dim; b++) moved[a][i] += unit * R[a * dim + b] * place[b][i];
+            for (int b = 0; b < dim; b++) moved[a][i] += unit * R[a * dim + b] * one.cloud.x[b][i];
         }
+    }
     snprintf(where, sizeof where, "%dD, %s", dim, clouds_name(CLOUDS_CLUSTERED));
     for (int a = 0; a < dim; a++)
         for (size_t i = 0; i < one.n; i++) {
-            misses[a][i] = planted(there, one.f, i, a);
+            misses[a][i] = planted(&there, one.f, i, a);
             for (int b = 0; b < dim; b++)
-                misses[a][i] -= R[a * dim + b] / unit * planted(place, one.f, i, b);
+                misses[a][i] -= R[a * dim + b] / unit * planted(&one.given, one.f, i, b);
         }
     figure_is(property, formula, where, worst(&one, unit), 1e-9);
     clouds_free(&one.cloud);
@@ -609,11 +614,10 @@ static void order_is(int dim, double promised)
                  (struct clouds_settings){CLOUDS_JITTERED, dim, sides[dim - 1][l], 0.2,
                                           ETA_TENTHS / 10., 5 + 3 * k},
                  FUNCTION_SMOOTH);
-            const double *const place[] = {one.cloud.x[0], one.cloud.x[1], one.cloud.x[2]};
             for (size_t i = 0; i < one.n; i++)
                 for (int a = 0; a < dim; a++) {
                     if (!clouds_interior(&one.settings, &one.cloud, i)) continue;
-                    const double off = planted(place, one.f, i, a) - one.slope[a][i];
+                    const double off = planted(&one.given, one.f, i, a) - one.slope[a][i];
                     squares += off * off, count++;
                 }
             clouds_free(&one.cloud);

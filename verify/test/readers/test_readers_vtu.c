@@ -20,6 +20,7 @@ static const struct {
 struct document {
     enum form form;
     bool big, wide, single, base64; /* base64: of appended bytes */
+    bool odd;                       /* attributes as no writer that we know has them */
     double value[ARRAYS][3 * ROWS];
     char text[BYTES_MAX], appended[BYTES_MAX];
     size_t length, bytes;
@@ -29,6 +30,7 @@ static struct document made(void)
 {
     struct document d = {.form = (enum form)drawn(FORMS)};
     d.big = drawn(2), d.wide = drawn(2), d.single = drawn(2), d.base64 = drawn(2);
+    d.odd = drawn(2);
     for (int a = 0; a < ARRAYS; a++)
         for (size_t i = 0; i < arrays[a].components * ROWS; i++) {
             const double value = ldexp(1 + uniform(), (int)drawn(20) - 10);
@@ -75,13 +77,33 @@ static size_t packed(const struct document *d, int a, bool base64, char *to)
     return base64 ? made : n;
 }
 
+static void attribute(struct document *d, const char *name, const char *value)
+{
+    static const char *const others[] = {"RangeMin", "NickName", "subtype", "noformat"};
+    const char quote = d->odd && drawn(2) ? '\'' : '"';
+    if (d->odd && drawn(2))
+        add(d, "\n%s=%c%s%c", others[drawn(4)], quote, drawn(2) ? "Int8" : "", quote);
+    add(d, " %s%s=%c%s%c", name, d->odd && drawn(2) ? " " : "", quote, value, quote);
+}
+
+static void attribute_number(struct document *d, const char *name, size_t value)
+{
+    char number[24];
+    snprintf(number, sizeof number, "%zu", value);
+    attribute(d, name, number);
+}
+
 static void add_array(struct document *d, int a)
 {
     static const char *const formats[FORMS] = {"ascii", "binary", "appended"};
-    add(d, "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%zu\" format=\"%s\"",
-        d->single ? "Float32" : "Float64", arrays[a].name, arrays[a].components, formats[d->form]);
+    add(d, "<DataArray");
+    attribute(d, "type", d->single ? "Float32" : "Float64");
+    attribute(d, "Name", arrays[a].name);
+    attribute_number(d, "NumberOfComponents", arrays[a].components);
+    attribute(d, "format", formats[d->form]);
     if (d->form == APPENDED) {
-        add(d, " offset=\"%zu\"/>\n", d->bytes);
+        attribute_number(d, "offset", d->bytes);
+        add(d, "/>\n");
         d->bytes += packed(d, a, d->base64, d->appended + d->bytes);
         return;
     }
@@ -198,7 +220,7 @@ TEST(one_fault)
 {
     for (size_t k = 0; k < sizeof faults / sizeof *faults; k++) {
         struct document d = made();
-        d.form = faults[k].form, d.single = d.big = d.wide = false, d.base64 = true;
+        d.form = faults[k].form, d.single = d.big = d.wide = d.odd = false, d.base64 = true;
         write_out(&d);
         const size_t before = d.length;
         char old[BYTES_MAX];
