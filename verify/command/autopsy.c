@@ -337,9 +337,11 @@ static enum status run(const struct options *options, int n, char **arguments, s
 {
     const char *plot = options_value(options, "plot");
     if (n < 1) return command_usage(options, error, "a case is needed (`sphproof list cases`)");
+    const bool theirs = options_value(options, "rates");
+    if (!theirs && (options_value(options, "map") || options_value(options, "time")))
+        return error_set(error, STATUS_BAD_INPUT, "autopsy: --map and --time need --rates");
     if (plot && picture_probe(plot, error)) return error->status;
-    return (options_value(options, "rates") ? examine_theirs : examine)(options, n, arguments,
-                                                                        error);
+    return (theirs ? examine_theirs : examine)(options, n, arguments, error);
 }
 
 static const struct command_option own_options[] = {

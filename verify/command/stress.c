@@ -105,7 +105,10 @@ static enum status run(const struct options *options, int n, char **arguments, s
     struct pool pool = {0};
     struct sharing sharing;
     if (sharing_take(&sharing, options, options->threads, NULL, false, error)) return error->status;
-    const bool nightly = options_value(options, "nightly") != NULL;
+    const bool nightly = options_value(options, "nightly");
+    if (nightly && options_value(options, "quick"))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "stress: --quick and --nightly exclude each other");
     enum status status = stress_plan(&stress, nightly, (size_t)n, arguments, &pool, error);
     if (!status) {
         gsl_set_error_handler_off();

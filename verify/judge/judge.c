@@ -183,7 +183,7 @@ static void add_to_sums(const struct prepared *problem, const double x[3], const
     sums->energy += m * (u + 0.5 * squares);
     sums->momentum_scale += m * sqrt(squares);
     sums->sound_scale += m * c;
-    for (int d = 0; d < 3 && domain->dim > 1; d++) {
+    for (int d = 0; d < 3; d++) {
         const double L = r[(d + 1) % 3] * p[(d + 2) % 3] - r[(d + 2) % 3] * p[(d + 1) % 3];
         sums->angular_momentum[d] += L;
         turning += L * L;
