@@ -159,6 +159,7 @@ def main(score, work):
     said, more = run("--tests", "tiny|never", "--again", "survived")
     expect("a test that is new notices what survived before: " + said,
            "a - b -> +" not in {s["change"] for s in more["survivors"]})
+    expect("what the tree has no more is not in the copy", not os.path.exists(reasons.replace(tree, os.path.join(work, "work", "tree"))))
     parts = [run("--shard", "%d/3" % i)[1]["chosen"] for i in (1, 2, 3)]
     expect("shards are all of it", sum(parts) == first["generated"])
     expect("a sample is no larger than asked for", run("--sample", "7", "--seed", "3")[1]["chosen"] == 7)
