@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * For compilers without libFuzzer: replay FOLDER [N] gives a target every file of a corpus, then N
- * inputs made of them by random cuts, copies and changes, the same ones each time. */
+ * For compilers without libFuzzer: replay N FOLDER ... gives a target every file of these folders,
+ * then N inputs made of them by random cuts, copies and changes, the same ones each time. */
 #include <dirent.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -51,9 +51,9 @@ static void try(void)
     alarm(0);
 }
 
-static size_t read_corpus(const char *folder)
+/* Adds the files of a folder to those that are there; returns how many there are then. */
+static size_t read_corpus(const char *folder, size_t count)
 {
-    size_t count = 0;
     DIR *list = opendir(folder);
     for (struct dirent *entry; list && count < INPUTS_MAX && (entry = readdir(list));) {
         char path[4096];
@@ -91,10 +91,11 @@ int main(int argc, char **argv)
 {
     const int numbers[] = {SIGABRT, SIGALRM, SIGSEGV, SIGFPE, SIGBUS};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) signal(numbers[i], keep);
-    const size_t count = argc > 1 ? read_corpus(argv[1]) : 0;
-    const long more = argc > 2 ? atol(argv[2]) : 0;
+    const long more = argc > 1 ? atol(argv[1]) : 0;
+    size_t count = 0;
+    for (int i = 2; i < argc; i++) count = read_corpus(argv[i], count);
     if (!count) {
-        fprintf(stderr, "usage: replay FOLDER [N]; FOLDER holds at least one input\n");
+        fprintf(stderr, "usage: replay N FOLDER ...; the folders hold at least one input\n");
         return 2;
     }
     for (size_t i = 0; i < count; i++) {

@@ -7,11 +7,17 @@
 
 static uint64_t draw_state = 1;
 
+/* 53 of them. */
+static inline uint64_t draw_bits(void)
+{
+    draw_state = draw_state * 6364136223846793005u + 1442695040888963407u;
+    return (draw_state ^ draw_state >> 29) >> 11;
+}
+
 /* From low up to high. */
 static inline double draw(double low, double high)
 {
-    draw_state = draw_state * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * ldexp((double)((draw_state ^ draw_state >> 29) >> 11), -53);
+    return low + (high - low) * ldexp((double)draw_bits(), -53);
 }
 
 /* From low to high, both included. */

@@ -9,22 +9,10 @@
 #include <string.h>
 
 #include "cells/grid_inside.h"
+#include "draw.h"
 #include "near.h"
 
 enum { POINTS_MAX = 3000 };
-
-static uint64_t state_of_draws = 1;
-
-static uint64_t draw_bits(void)
-{
-    state_of_draws = state_of_draws * 6364136223846793005u + 1442695040888963407u;
-    return (state_of_draws ^ state_of_draws >> 29) >> 11;
-}
-
-static double draw(double low, double high)
-{
-    return low + (high - low) * ldexp((double)draw_bits(), -53);
-}
 
 static struct setup {
     struct grid_box box;

@@ -9,23 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "draw.h"
 #include "near.h"
 #include "neighbours.h"
 
 enum { POINTS_MAX = 5000, BLOCK = NEIGHBOURS_BLOCK };
-
-static uint64_t state_of_draws = 1;
-
-static uint64_t draw_bits(void)
-{
-    state_of_draws = state_of_draws * 6364136223846793005u + 1442695040888963407u;
-    return (state_of_draws ^ state_of_draws >> 29) >> 11; /* 53 of them */
-}
-
-static double draw(double low, double high)
-{
-    return low + (high - low) * ldexp((double)draw_bits(), -53);
-}
 
 static double place[3][POINTS_MAX];
 

@@ -3,6 +3,7 @@
  * of CONVENTIONS in extended precision. */
 #include "test.h"
 
+#include "draw.h"
 #include "near.h"
 
 #include <stdlib.h>
@@ -11,14 +12,6 @@
 #include "cells/pairs.h"
 
 enum { COUNT = 2 * GRID_LANES, ROOM = COUNT + GRID_LANES };
-
-static uint64_t state_of_draws = 1;
-
-static double draw(double low, double high)
-{
-    state_of_draws = state_of_draws * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * ldexp((double)((state_of_draws ^ state_of_draws >> 29) >> 11), -53);
-}
 
 /* One particle, its record drawn, and neighbours in lanes; behind the last one as many lanes that
  * nothing is to be written to. */

@@ -3,6 +3,7 @@
  * Dehnen, against direct sums over all particles and their images in extended precision. */
 #include "test.h"
 
+#include "draw.h"
 #include "near.h"
 
 #include <float.h>
@@ -31,14 +32,6 @@ struct gas {
     unsigned char asleep[N];
     struct cells_fields fields;
 };
-
-static uint64_t state_of_draws = 1;
-
-static double draw(double low, double high)
-{
-    state_of_draws = state_of_draws * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * ldexp((double)((state_of_draws ^ state_of_draws >> 29) >> 11), -53);
-}
 
 static void lay(struct gas *gas, enum setup setup)
 {

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "draw.h"
 #include "near.h"
 #include "state.h"
 
@@ -14,14 +15,6 @@ typedef long double real;
 enum { N = 150 };
 
 static const double untouched = 1234;
-
-static uint64_t drawn = 1;
-
-static double draw(double low, double high)
-{
-    drawn = drawn * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * ldexp((double)((drawn ^ drawn >> 29) >> 11), -53);
-}
 
 static struct particles gas(int dim)
 {

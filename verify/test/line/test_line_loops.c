@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "line/loops.h"
+#include "draw.h"
 #include "near.h"
 
 typedef long double real;
@@ -15,14 +16,6 @@ typedef long double real;
 enum { N = 140, GHOSTS = 16, FIRST_OF_ALL = -GHOSTS, END_OF_ALL = N + GHOSTS };
 
 static const double untouched = 1234;
-
-static uint64_t drawn = 1;
-
-static double draw(double low, double high)
-{
-    drawn = drawn * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * ldexp((double)((drawn ^ drawn >> 29) >> 11), -53);
-}
 
 /* Positions in order, a spacing of 1 in the mean; widths of two and a half. */
 static struct particles gas(void)
