@@ -15,7 +15,7 @@ import xml.etree.ElementTree as tree
 import zlib
 
 PROGRAM = os.path.abspath(sys.argv[1])
-DRAWS = int(sys.argv[2]) if len(sys.argv) > 2 else 2
+DRAWS = int(sys.argv[2]) if sys.argv[2:] and sys.argv[2].isdigit() else 2
 KINDS = {"Float64": "d", "Int64": "q", "UInt8": "B", "Int32": "i"}
 NAMES = {"m": "mass", "rho": "density", "u": "internal_energy", "P": "pressure", "h": "smoothing_length"}
 OTHERS = r"""
