@@ -7,6 +7,7 @@
 
 #include "lanes.h"
 #include "matrix.h"
+#include "memory.h"
 #include "plan.h"
 #include "specialise.h"
 
@@ -136,7 +137,7 @@ static bool reserve_records(struct cells *cells, size_t n)
     free(cells->paces);
     const size_t size = (size_t)lanes_longest_record(cells);
     cells->capacity = n + n / 4 + 8;
-    cells->records = aligned_alloc(64, (cells->capacity * size * sizeof(double) + 63) / 64 * 64);
+    cells->records = memory_for_records(cells->capacity * size * sizeof(double));
     cells->kinds = cells->method.local ? malloc(cells->capacity) : NULL;
     cells->paces = cells->method.local ? malloc(cells->capacity * sizeof(double)) : NULL;
     const bool reactions =

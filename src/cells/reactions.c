@@ -9,6 +9,7 @@
 #endif
 
 #include "lanes.h"
+#include "memory.h"
 #include "specialise.h"
 
 #if SPHPROOF_CLONES && defined __x86_64__
@@ -29,8 +30,8 @@ bool reactions_reserve(struct reactions *reactions, int dim, size_t slots)
     const size_t values = (size_t)dim + 2, chunks = slots / CHUNK_LEAST + 2;
     free(reactions->of[0]);
     reactions->values = (int)values;
-    reactions->of[0] =
-        malloc(slots * (2 * values * sizeof(double) + 1) + chunks * sizeof(uint32_t) + 3);
+    reactions->of[0] = memory_for_records(slots * (2 * values * sizeof(double) + 1) +
+                                          chunks * sizeof(uint32_t) + 3);
     if (!reactions->of[0]) return false;
     reactions->of[1] = reactions->of[0] + slots * values;
     reactions->begin = (uint32_t *)(void *)(reactions->of[1] + slots * values);

@@ -4,9 +4,10 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
-enum { LINE = 8 /* doubles in a cache line */, LARGE_PAGE = 1 << 21 /* bytes */ };
+#include "memory.h"
+
+enum { LINE = 8 /* doubles in a cache line */ };
 
 #define SCALAR(name, use, meaning) +1
 #define VECTOR(name, use, meaning) +3
@@ -41,21 +42,6 @@ static ptrdiff_t stride(ptrdiff_t n, ptrdiff_t ghosts)
     return LINE * (lines | 1);
 }
 
-/* A pass walks along a dozen arrays at once. In pages of 4 kB their addresses, and the fetching of
- * what comes next, begin anew every 512 particles: asks for large ones, where the system has them.
- * Short arrays are left alone: those without use would share a page with others, and take room. */
-static void ask_for_large_pages(double *block, size_t bytes, ptrdiff_t length)
-{
-#ifdef MADV_HUGEPAGE
-    const uintptr_t first = ((uintptr_t)block + LARGE_PAGE - 1) / LARGE_PAGE * LARGE_PAGE;
-    const uintptr_t end = ((uintptr_t)block + bytes) / LARGE_PAGE * LARGE_PAGE;
-    if ((size_t)length * sizeof *block >= LARGE_PAGE)
-        (void)madvise((void *)first, end - first, MADV_HUGEPAGE);
-#else
-    (void)block, (void)bytes, (void)length;
-#endif
-}
-
 static enum status allocate(struct particles *particles, struct error *error)
 {
     double **arrays[ARRAYS_MAX];
@@ -68,7 +54,11 @@ static enum status allocate(struct particles *particles, struct error *error)
     if (!particles->block)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles (%zu MiB)",
                          particles->n, bytes >> 20);
-    ask_for_large_pages(particles->block, bytes, length);
+    /* A pass walks along a dozen arrays at once. In pages of 4 kB their addresses, and the fetching
+     * of what comes next, begin anew every 512 particles. Short arrays are left alone: those
+     * without use would share a page with others, and take room. */
+    if ((size_t)length * sizeof(double) >= MEMORY_LARGE_PAGE)
+        memory_ask_for_large_pages(particles->block, bytes);
     const size_t beyond = (uintptr_t)particles->block / sizeof(double) % LINE;
     double *next = particles->block + (LINE - (ptrdiff_t)beyond) % LINE + particles->ghosts;
     for (size_t k = 0; k < count; k++, next += length) *arrays[k] = next;

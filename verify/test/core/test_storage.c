@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "made_bytes.h"
+#include "memory.h"
 #include "near.h"
 #include "particles.h"
 
@@ -250,4 +251,8 @@ TEST(large_pages)
         expect_pages(dim, 1 << 18, "x", true);
         expect_pages(dim, 1 << 19, "signal", true);
     }
+    void *records = memory_for_records(MEMORY_LARGE_PAGE);
+    const int asked = asked_for((uintptr_t)records);
+    free(records);
+    assert_true(asked && (uintptr_t)records % MEMORY_LARGE_PAGE == 0);
 }
