@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What stands between a simulation and its sums in 2D and 3D: memory in the order of cells, and for
- * how long; first guesses of widths; what cannot be searched, said as a refusal or a breakdown;
- * room, in bytes, by the scheme. */
+ * What stands between a simulation and its sums in 2D and 3D: how far a root is searched, states
+ * that come back, what cannot be searched, said as a refusal or a breakdown; room, in bytes, by the
+ * scheme. */
 #include "test.h"
 
 #include <math.h>
@@ -44,129 +44,6 @@ static struct setup setup_of(int dim, size_t side, const struct scheme *scheme)
     return setup;
 }
 
-/* When particles have changed places in memory. */
-struct sorting {
-    struct simulation *simulation;
-    size_t id[N];
-    uint64_t at[4];
-    int times;
-};
-
-static bool watch(void *context, double time, uint64_t steps)
-{
-    struct sorting *sorting = context;
-    struct snapshot s;
-    (void)time;
-    simulation_snapshot(sorting->simulation, &s);
-    if (steps > 0 && memcmp(sorting->id, s.id, s.n * sizeof *s.id) && sorting->times < 4)
-        sorting->at[sorting->times++] = steps;
-    memcpy(sorting->id, s.id, s.n * sizeof *s.id);
-    return steps < 70;
-}
-
-/* In the order of cells from the start on, and again every 32 steps: where cells are wider than all
- * that happens in one, along x first. */
-TEST(test_order_in_memory)
-{
-    struct sorting sorting = {0};
-    struct scheme scheme = made_scheme();
-    struct setup setup = setup_of(2, 16, &scheme);
-    for (size_t i = 0; i < setup.n; i++) v[0][i] = 1.5, v[1][i] = 0.7;
-    sorting.simulation = made_of(&setup);
-    watch(&sorting, 0, 0);
-    size_t moved = 0;
-    for (size_t i = 0; i < setup.n; i++) moved += sorting.id[i] != i;
-    assert_true(moved > setup.n / 2);
-    assert_int_equal(simulation_run(sorting.simulation, 1, watch, &sorting, NULL), STATUS_OK);
-    assert_int_equal(sorting.times, 2);
-    assert_true(sorting.at[0] == 33 && sorting.at[1] == 65);
-    simulation_destroy(sorting.simulation);
-}
-
-/* Whatever is in memory beside each other belongs together, also those who sleep. */
-TEST(test_everybody_moves_whole)
-{
-    for (int skip = 0; skip < 2; skip++) {
-        struct scheme scheme = made_scheme();
-        struct setup setup = setup_of(3, 7, &scheme);
-        setup.skip = skip;
-        for (size_t i = 0; i < setup.n; i++) m[i] = (1 + 1e-3 * (double)i) / (double)setup.n;
-        struct simulation *simulation = made_of(&setup);
-        struct snapshot s;
-        simulation_snapshot(simulation, &s);
-        for (size_t i = 0; i < s.n; i++) {
-            assert_true(s.m[i] == m[s.id[i]]);
-            for (int a = 0; a < 3; a++) near_below(fabs(s.x[a][i] - x[a][s.id[i]]), 1e-15);
-        }
-        simulation_destroy(simulation);
-    }
-}
-
-/* Where particles have not moved, rates in place are the same bits if nothing has changed, and
- * those of an evaluation from the start if energies and momenta have. */
-TEST(test_rates_in_place)
-{
-    static const enum volume_element elements[] = {VOLUME_MASS, VOLUME_ENERGY, VOLUME_NUMBER};
-    for (int k = 0; k < 6; k++) {
-        const int dim = 2 + k % 2;
-        struct scheme scheme = made_scheme();
-        double rates[3][5][N];
-        double largest[5] = {0};
-        scheme.volume_element = elements[k / 2], scheme.h_method = H_NEWTON;
-        struct setup setup = setup_of(dim, dim == 2 ? 16 : 8, &scheme);
-        struct simulation *simulation = made_of(&setup);
-        const struct particles *a = &simulation->particles;
-        const double *found[5] = {a->F[0], a->F[1], a->de, a->rho, a->P};
-        for (int round = 0; round < 4; round++) {
-            struct error error;
-            for (ptrdiff_t i = 0; round == 2 && i < a->n; i++) {
-                a->e[i] *= 1 + 0.3 * sin(11. * (double)i);
-                for (int d = 0; d < dim; d++) a->p[d][i] += 0.1 * a->m[i] * cos(5. * (double)i + d);
-            }
-            if (round > 0)
-                assert_int_equal(
-                    (round < 3 ? evaluate_rates_in_place : evaluate_rates)(simulation, &error),
-                    STATUS_OK);
-            for (int c = 0; c < 5; c++)
-                for (ptrdiff_t i = 0; i < a->n; i++) {
-                    const double now = found[c][i], before = rates[round ? round - 1 : 0][c][i];
-                    if (round == 1 && elements[k / 2] != VOLUME_ENERGY) assert_true(now == before);
-                    if (round == 2) largest[c] = fmax(largest[c], fabs(now));
-                    if (round == 3) near_below(fabs(now - before), 1e-8 * largest[c]);
-                    if (round < 3) rates[round][c][i] = now;
-                }
-            if (round == 2) assert_true(rates[2][0][7] != rates[1][0][7]);
-        }
-        simulation_destroy(simulation);
-    }
-}
-
-/* A first guess of the density may be anything: the widths are the same. */
-TEST(test_first_guess)
-{
-    for (int dim = 2; dim <= 3; dim++) {
-        double h[N];
-        const struct scheme scheme = made_scheme();
-        for (int k = 0; k < 5; k++) {
-            static const double factors[] = {1, 1e-9, 0.3, 8, 1e9};
-            struct setup setup = setup_of(dim, dim == 2 ? 16 : 8, &scheme);
-            for (size_t i = 0; i < setup.n; i++) guess[i] = factors[k] * (i % 3 ? 1 : 0.7);
-            setup.rho = guess;
-            struct simulation *simulation = made_of(&setup);
-            struct snapshot s;
-            simulation_snapshot(simulation, &s);
-            for (size_t i = 0; i < s.n; i++) {
-                near_relative(s.h[i], scheme.eta * pow(s.m[i] / s.rho[i], 1. / dim), 1e-10);
-                if (k == 0)
-                    h[s.id[i]] = s.h[i];
-                else
-                    near_relative(s.h[i], h[s.id[i]], 1e-9);
-            }
-            simulation_destroy(simulation);
-        }
-    }
-}
-
 /* The search for a root goes on 63 times, each 1.5 times as far, and no further. */
 TEST(test_far_roots)
 {
@@ -198,85 +75,6 @@ TEST(test_far_roots)
             simulation_destroy(simulation);
         }
     }
-}
-
-/* sum_j Z_j W(r_ij, h_i) over the nearest images. */
-static double kernel_sum(const struct snapshot *s, int dim, const struct kernel *kernel, size_t i,
-                         const double *Z)
-{
-    double sum = 0;
-    for (size_t j = 0; j < s->n; j++) {
-        double r2 = 0;
-        for (int a = 0; a < dim; a++) {
-            const double d = s->x[a][j] - s->x[a][i];
-            r2 += (d - round(d)) * (d - round(d));
-        }
-        sum += (Z ? Z[j] : 1) * kernel_value(kernel, sqrt(r2), s->h[i], dim);
-    }
-    return sum;
-}
-
-/* Density and volume of every particle are sums over all others, whatever the volume element. */
-TEST(test_densities)
-{
-    for (int dim = 2; dim <= 3; dim++)
-        for (int e = 0; e < VOLUME_ELEMENTS; e++) {
-            struct scheme scheme = made_scheme();
-            scheme.volume_element = (enum volume_element)e;
-            const struct setup setup = setup_of(dim, dim == 2 ? 13 : 6, &scheme); /* 169, 216 */
-            for (size_t i = 0; i < setup.n; i++) u[i] = 1 + 0.2 * sin(5. * (double)i);
-            struct simulation *simulation = made_of(&setup);
-            struct snapshot s;
-            double U[N];
-            simulation_snapshot(simulation, &s);
-            for (size_t i = 0; i < s.n; i++) U[i] = s.m[i] * s.u[i];
-            for (size_t i = 0; i < s.n; i++) {
-                const double mass = kernel_sum(&s, dim, &scheme.kernel, i, s.m),
-                             number = kernel_sum(&s, dim, &scheme.kernel, i, NULL),
-                             energy = kernel_sum(&s, dim, &scheme.kernel, i, U);
-                const double found = e == VOLUME_NUMBER ? s.m[i] * number : mass,
-                             V = e == VOLUME_ENERGY ? U[i] / energy : s.m[i] / found;
-                near_relative(s.rho[i], s.m[i] / V, 1e-10);
-                near_relative(s.volume[i], V, 1e-10);
-                near_relative(s.h[i], scheme.eta * pow(s.m[i] / found, 1. / dim), 1e-10);
-            }
-            simulation_destroy(simulation);
-        }
-}
-
-/* After a step alpha is what it jumps up to at once, or decays to: alpha_l + above/(1 + dt rate).
- */
-TEST(test_switch)
-{
-    struct scheme scheme = made_scheme();
-    scheme.viscosity = VISCOSITY_CULLEN_DEHNEN;
-    struct setup setup = setup_of(2, 13, &scheme);
-    for (size_t i = 0; i < setup.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
-    struct simulation *simulation = made_of(&setup);
-    const struct particles *p = &simulation->particles;
-    double local[N];
-    size_t below = 0, above = 0;
-    for (size_t i = 0; i < setup.n; i++) p->alpha[i] = 7;
-    cells_sums.apply_switch(simulation, 1e300);
-    memcpy(local, p->alpha, setup.n * sizeof *local);
-    for (int k = 0; k < 2; k++)
-        for (size_t i = 0; i < setup.n; i++) { /* from both sides, after two steps */
-            double after[3];
-            for (int step = 0; step < 3; step++) {
-                p->alpha[i] = k ? local[i] + 0.5 : local[i] - 0.01;
-                for (size_t j = 0; j < setup.n; j++)
-                    if (j != i) p->alpha[j] = local[j];
-                cells_sums.apply_switch(simulation, 0.1 * step);
-                after[step] = p->alpha[i] - local[i];
-            }
-            near_below(fabs(after[0] - 0.5 * k), 1e-15);
-            if (k == 0) near_below(fabs(after[1]), 0);
-            const double rate = k ? (0.5 / after[1] - 1) / 0.1 : 0;
-            if (k) near_relative(after[2], 0.5 / (1 + 0.2 * rate), 1e-12);
-            below += !k, above += k && rate > 0;
-        }
-    assert_true(below == setup.n && above == setup.n);
-    simulation_destroy(simulation);
 }
 
 static bool ten_steps(void *context, double time, uint64_t steps)
@@ -335,34 +133,6 @@ TEST(test_carried)
         }
         simulation_destroy(first);
         simulation_destroy(second);
-    }
-}
-
-/* Rates of alpha of every particle, in whole batches and not. */
-TEST(test_alpha)
-{
-    struct scheme scheme = made_scheme();
-    scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
-    for (size_t side = 8; side <= 12; side += 2) { /* 64, 100, 144 */
-        struct setup setup = setup_of(2, side, &scheme);
-        for (size_t i = 0; i < setup.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
-        struct simulation *simulation = made_of(&setup);
-        const struct particles *a = &simulation->particles;
-        struct rates rates;
-        simulation_rates(simulation, &rates);
-        size_t growing = 0;
-        double rate = 0;
-        for (size_t i = 0; i < setup.n; i++) {
-            const double growth = fmax(0, -a->div_v[i]) * fmax(0, scheme.alpha_max - a->alpha[i]);
-            near_below(fabs(rates.alpha[i] - growth +
-                            (a->alpha[i] - scheme.alpha_min) * 0.2 * a->c[i] / a->h[i]),
-                       1e-13 * (1 + growth));
-            growing += growth > 0;
-            rate = fmax(rate, a->signal[i] / a->h[i]);
-        }
-        assert_true(growing > setup.n / 4 && growing < setup.n);
-        near_relative(rates.time_step, scheme.cfl / rate, 1e-12);
-        simulation_destroy(simulation);
     }
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Inverses and condition numbers of small matrices, and the moments over neighbours that they are
- * made of, against quadruple precision and against matrices whose singular values are known. */
+ * Inverses and condition numbers of small matrices against quadruple precision and against matrices
+ * whose singular values are known; the weights of their moments. */
 #include "test.h"
 
 #include "near.h"
@@ -375,7 +375,7 @@ enum { NEIGHBOURS = 3 * GRID_LANES };
 
 /* The lanes of drawn neighbours; where flat, on a line (2D) or in a plane (3D), but for so much. */
 struct drawn {
-    double block[LANES_OWN * NEIGHBOURS], weight[NEIGHBOURS], f[3 * NEIGHBOURS], own[3];
+    double block[LANES_OWN * NEIGHBOURS], weight[NEIGHBOURS];
     struct lanes lanes;
 };
 
@@ -388,86 +388,6 @@ static void draw_neighbours(int dim, double flat, struct drawn *drawn)
         lane(&drawn->lanes, LANE_DX)[(dim - 1) * NEIGHBOURS + k] *= flat;
         lane(&drawn->lanes, LANE_R)[k] = fabs(draw());
         drawn->weight[k] = fabs(draw());
-    }
-    for (int k = 0; k < 3 * NEIGHBOURS; k++) drawn->f[k] = draw();
-    for (int a = 0; a < 3; a++) drawn->own[a] = draw();
-}
-
-/* sum weight x_a g, g = x_b or f_b - own_b, of the first count. */
-static double sum_of(const struct drawn *drawn, int count, int a, int b, bool of_f)
-{
-    const double *x = drawn->block + LANE_DX * NEIGHBOURS;
-    real sum = 0;
-    for (int k = 0; k < count; k++) {
-        const real g =
-            of_f ? (real)drawn->f[b * NEIGHBOURS + k] - drawn->own[b] : (real)x[b * NEIGHBOURS + k];
-        sum += (real)drawn->weight[k] * x[a * NEIGHBOURS + k] * g;
-    }
-    return (double)sum;
-}
-
-/* Against sums in quadruple precision. The condition number is that of Frobenius' norm where this
- * suffices, else that of the 2-norm, and at most the worst that is allowed where there is an
- * inverse. */
-TEST(test_moments)
-{
-    int by_norm = 0;
-    for (int trial = 0; trial < 600; trial++) {
-        const int dim = 2 + trial % 2, count = GRID_LANES * (1 + trial % 3);
-        struct drawn drawn;
-        draw_neighbours(dim, trial < 300 ? 1 : 1e-3, &drawn);
-        double moments[9], inverse[9], condition, gradient[16], norm = 0, norm_inverse = 0;
-        for (int a = 0; a < dim; a++)
-            for (int b = 0; b < dim; b++) moments[dim * a + b] = sum_of(&drawn, count, a, b, false);
-        struct cells_method method = {.box.dim = dim, .worst_condition = HUGE_VAL};
-        assert_true(
-            moments_invert(&method, count, &drawn.lanes, drawn.weight, inverse, &condition));
-        near_below(inverse_error(dim, moments, inverse), 1e4);
-        for (int k = 0; k < dim * dim; k++)
-            norm += moments[k] * moments[k], norm_inverse += inverse[k] * inverse[k];
-        near_relative(condition, sqrt(norm * norm_inverse), 1e-8);
-        const double two = matrix_condition(dim, moments);
-        by_norm += condition > 1.01 * two;
-        for (int which = 0; which < 4; which++) {
-            double found, other[9];
-            method.worst_condition = which == 0   ? condition
-                                     : which == 1 ? condition * (1 - 1e-15)
-                                     : which == 2 ? two * (1 + 1e-6)
-                                                  : two * (1 - 1e-6);
-            assert_true(moments_invert(&method, count, &drawn.lanes, drawn.weight, other, &found) ==
-                        (which < 3));
-            near_relative(found, which == 0 ? condition : two, 1e-9);
-            if (which < 3)
-                assert_memory_equal(other, inverse, sizeof(double) * (size_t)(dim * dim));
-            if (which == 2) { /* as much as is allowed is allowed */
-                method.worst_condition = found;
-                assert_true(
-                    moments_invert(&method, count, &drawn.lanes, drawn.weight, other, &found));
-            }
-        }
-        for (int k = 0; k < 16; k++) gradient[k] = 1234;
-        moments_gradient(dim, count, &drawn.lanes, drawn.weight, inverse, drawn.f, drawn.own,
-                         gradient);
-        for (int k = dim * dim; k < 16; k++) assert_true(gradient[k] == 1234);
-        for (int a = 0; a < dim; a++)
-            for (int b = 0; b < dim; b++) {
-                double expected = 0, size = 0;
-                for (int c = 0; c < dim; c++) {
-                    const double term = inverse[dim * b + c] * sum_of(&drawn, count, c, a, true);
-                    expected += term, size += fabs(term) + fabs(inverse[dim * b + c]);
-                }
-                near_below(fabs(gradient[dim * a + b] - expected), 1e-14 * size);
-            }
-    }
-    assert_true(by_norm > 300);
-    for (int dim = 2; dim <= 3; dim++) { /* no inverse at all */
-        struct drawn drawn;
-        double inverse[9], condition = 1;
-        draw_neighbours(dim, 0, &drawn);
-        const struct cells_method method = {.box.dim = dim, .worst_condition = HUGE_VAL};
-        assert_false(
-            moments_invert(&method, GRID_LANES, &drawn.lanes, drawn.weight, inverse, &condition));
-        assert_true(condition == HUGE_VAL);
     }
 }
 

@@ -113,27 +113,6 @@ static struct setup setup_of(size_t integrator, int dim, const char *viscosity, 
     return disordered(dim, 3, keys);
 }
 
-/* In a plane there are no images: what stands behind the last particle is nobody's. */
-TEST(test_nothing_beyond)
-{
-    static const char *const viscosities[] = {"time_dependent", "cullen_dehnen"};
-    for (size_t k = 0; k < integrator_family.n; k++)
-        for (int v = 0; v < 2; v++) {
-            const struct setup setup = setup_of(k, 2, viscosities[v], "internal");
-            struct simulation *simulation = created(&setup);
-            const struct particles *a = &simulation->particles;
-            double *arrays[ARRAYS_MOST];
-            struct error error;
-            const size_t count = list(a, USE_ALL, arrays);
-            for (size_t i = 0; i < count; i++) arrays[i][N] = 77;
-            assert_int_equal(simulation_run(simulation, 1e-2, NULL, NULL, &error), STATUS_OK);
-            for (size_t i = 0; i < count; i++)
-                if (arrays[i][N] != 77)
-                    fail_msg("%s: array %zu", integrator_family.members[k]->name, i);
-            simulation_destroy(simulation);
-        }
-}
-
 /* A particle that loses its last energy in a step is named with what is left of it. */
 TEST(test_without_energy)
 {
