@@ -210,11 +210,13 @@ TEST(refuses)
     assert_non_null(strstr(error.message, "particle 2 reaches as far as 0.51"));
     radius[2] = NAN;
     assert_int_equal(grid_search(grid, 3, 3, at, radius, NULL, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "search radius of particle 2 is nan"));
     radius[2] = 0.1;
     y[1] = INFINITY;
     assert_int_equal(grid_search(grid, 3, 3, at, radius, NULL, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "position of particle 1"));
     assert_int_equal(grid_search(grid, 0, 0, at, radius, NULL, &error), STATUS_BAD_INPUT);
+    assert_string_equal(error.message, "0 particles: allowed are 1 to 2^31 - 2");
     grid_destroy(grid);
 }
 
@@ -246,4 +248,14 @@ TEST(cube_roots)
     }
     assert_true(isnan(cube_root(NAN)));
     gsl_rng_free(rng);
+}
+
+/* Bytes of a point and of its list, by what is allocated for them. */
+TEST(bytes_a_point)
+{
+    const double point = 4 + 4 + 24 + 4 + 12 + 16;
+    near_relative(grid_bytes(2, 1000, 50), 1000 * (point + 4 * (50 + 4.)), 1e-15);
+    near_relative(grid_bytes(2, 3, 0), 3 * (point + 16), 1e-15);
+    near_relative(grid_bytes(3, 1000, 50), 1000 * (point + (50 * 20.6 / 4.19 + 43) / 8), 1e-15);
+    near_relative(grid_bytes(3, 3, 0), 3 * (point + 43. / 8), 1e-15);
 }

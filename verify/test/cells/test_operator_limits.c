@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Gradient operators at the limits of numbers: clouds in any units, one quantity extreme and the
- * others not, what leaves the range of double, what cannot be computed, distances that differ from
- * h in the last digits, what is refused word for word, and promises that are kept. */
+ * others not, what leaves the range of double, and what is refused word for word. */
 #include "test.h"
 
 #include <float.h>
@@ -10,7 +9,6 @@
 #include <string.h>
 
 #include "draw.h"
-#include "naive.h"
 #include "near.h"
 #include "operator.h"
 
@@ -154,36 +152,6 @@ TEST(test_units)
             }
 }
 
-/* Units in which some gradients are no longer numbers, or only subnormal ones. */
-TEST(test_lost)
-{
-    size_t lost = 0, kept = 0;
-    for (int dim = 1; dim <= 3; dim++)
-        for (size_t o = 0; o < operator_family.n; o++) {
-            fill(&one, dim, 70, false);
-            one.x[0][5] = 9;
-            apply_well(&one, form_at(o));
-            double large = 0;
-            for (size_t i = 0; i < 70; i++)
-                if (isfinite(one.gradient[0][i])) large = fmax(large, fabs(one.gradient[0][i]));
-            int e;
-            frexp(large, &e);
-            for (int k = 0; k < 24; k++) {
-                const int way = k % 2 ? 1 : -1, length = -300 * way;
-                const int target = way > 0 ? 1022 - e + k / 6 : -1019 - e - k / 6;
-                int field[FIELDS];
-                for (int m = 0; m < FIELDS; m++) {
-                    field[m] = target - (form_at(o)->corrected ? -length : -dim * length);
-                    if (k / 2 % 3 == m) field[m] -= 60 * way; /* is far from the limit */
-                }
-                const size_t found = same_in(length, length, field, form_at(o));
-                lost += found;
-                kept += 70 - found;
-            }
-        }
-    assert_true(lost > 300 && kept > 300);
-}
-
 /* The smallest normal number is one. */
 TEST(test_least_normal)
 {
@@ -203,125 +171,6 @@ TEST(test_least_normal)
         assert_int_equal(same_in(100, 0, (int[]){-923, 0}, form_at(3)), 3);
     }
     assert_true(found > 0);
-}
-
-static double departure(const struct operator_form *form, size_t i)
-{
-    const int dim = one.cloud.points.dim;
-    double worst = 0;
-    for (int k = 0; k < FIELDS; k++) {
-        double exact[3], scale = 0;
-        naive_gradient(form, &kernel, NAIVE_NONE, &one.cloud, one.f[k], i, exact);
-        for (int a = 0; a < dim; a++) scale = fmax(scale, fabs(exact[a]));
-        for (int a = 0; a < dim; a++) {
-            const double error = fabs(one.gradient[k * dim + a][i] - exact[a]) / scale;
-            if (!(error <= worst)) worst = error;
-        }
-    }
-    return worst;
-}
-
-/* A neighbour that is very near pulls as hard as its field is large. */
-TEST(test_close)
-{
-    for (int dim = 1; dim <= 3; dim++)
-        for (size_t o = 0; o < operator_family.n; o++) {
-            fill(&one, dim, 60, false);
-            for (int a = 0; a < dim; a++) one.x[a][1] = one.x[a][0] + 3e-7 * one.h[0];
-            one.f[0][1] = 1e6, one.f[1][1] = -3e5;
-            apply_well(&one, form_at(o));
-            for (size_t i = 0; i < 60; i++)
-                if (one.point[i].condition < 1e3) near_below(departure(form_at(o), i), 1e-9);
-        }
-}
-
-/* Who is nearer than h by one part in 1e13 is a neighbour, and who is as much further is none; with
- * as many neighbours as fill whole lanes, or not. */
-TEST(test_edge)
-{
-    for (size_t n = 3; n < 40; n++) {
-        fill(&one, 2, n, false);
-        for (size_t i = 0; i < n; i++) one.x[0][i] *= 0.5, one.x[1][i] *= 0.5, one.h[i] = 1;
-        one.x[0][0] = one.x[1][0] = 0;
-        one.x[1][1] = one.x[1][2] = 0;
-        one.x[0][1] = 1 - 1e-13, one.x[0][2] = 1 + 1e-13;
-        apply_well(&one, form_at(0));
-        assert_int_equal(one.point[0].neighbours, n - 1);
-        uint64_t pairs = 0;
-        for (size_t i = 0; i < n; i++) {
-            uint32_t near = 0;
-            for (size_t j = 0; j < n; j++)
-                near += hypot(one.x[0][i] - one.x[0][j], one.x[1][i] - one.x[1][j]) < 1;
-            assert_int_equal(one.point[i].neighbours, near);
-            pairs += near;
-        }
-        assert_true(one.pairs == pairs);
-    }
-}
-
-/* Where a neighbour's field is no number no gradient is one, and that is said; elsewhere it is. */
-TEST(test_no_number)
-{
-    for (int dim = 1; dim <= 3; dim++)
-        for (size_t o = 0; o < operator_family.n; o++)
-            for (int k = 0; k < FIELDS; k++) {
-                size_t touched = 0;
-                fill(&one, dim, 70, false);
-                apply_well(&one, form_at(o));
-                memcpy(&other, &one, sizeof one);
-                one.f[k][30] = (double)NAN;
-                apply_well(&one, form_at(o));
-                for (size_t i = 0; i < 70; i++) {
-                    double r = 0;
-                    for (int a = 0; a < dim; a++) r = hypot(r, one.x[a][i] - one.x[a][30]);
-                    const bool sees = r < one.h[i] || i == 30;
-                    if (other.point[i].state != OPERATOR_OK) continue;
-                    touched += sees;
-                    assert_int_equal(one.point[i].state, sees ? OPERATOR_OVERFLOW : OPERATOR_OK);
-                }
-                assert_true(touched > 3 && touched < 60);
-            }
-}
-
-/* A condition number of exactly the limit is well; the next larger one is not. */
-TEST(test_limit)
-{
-    size_t at = 0, above = 0;
-    connect(&one, 2, 5, false);
-    for (size_t i = 0; i < 5; i++) {
-        one.V[i] = one.h[i] = 1;
-        one.x[0][i] = one.x[1][i] = one.f[0][i] = one.f[1][i] = 0;
-    }
-    for (int trial = 0; trial < 20; trial++) {
-        const double s = draw(0.3, 0.5); /* w(t) is w(0) but for t^2 */
-        double t = s * sqrt(kernel.w(&kernel, s, 2) / kernel.w(&kernel, 0, 2)) * 1e-3;
-        one.x[0][1] = s, one.x[0][2] = -s;
-        for (int k = 0; k < 12; k++, t = nextafter(t, k < 8 ? 1 : 0)) {
-            one.x[1][3] = t, one.x[1][4] = -t;
-            apply_well(&one, form_at(3));
-            const double condition = one.point[0].condition;
-            if (k < 4) t *= sqrt(condition / 1e6); /* and a step up; then steps down */
-            at += condition == OPERATOR_CONDITION_MAX;
-            above += condition > OPERATOR_CONDITION_MAX;
-            assert_int_equal(one.point[0].state, condition <= OPERATOR_CONDITION_MAX
-                                                     ? OPERATOR_OK
-                                                     : OPERATOR_ILL_CONDITIONED);
-        }
-        near_relative(one.point[0].condition, 1e6, 1e-12);
-    }
-    assert_true(at > 0 && above > 0);
-}
-
-/* A field of any size is no width: where the last block is full its end is not one point further.
- */
-TEST(test_last_block)
-{
-    for (size_t n = 8; n <= 64; n += 8)
-        for (int dim = 1; dim <= 3; dim++) {
-            fill(&one, dim, n, true);
-            for (size_t i = 0; i < n; i++) one.f[0][i] = 1e10, one.h[i] = 0.4;
-            apply_well(&one, form_at(3));
-        }
 }
 
 static void refused(const char *message)
@@ -359,86 +208,6 @@ TEST(test_refused)
     assert_int_equal(apply(&one, form_at(1), &error), STATUS_BAD_INPUT);
     one.x[1][19] = 0.5, one.h[19] = 8.5;
     assert_int_equal(apply(&one, form_at(1), &error), STATUS_BAD_INPUT);
-}
-
-/* The first moment, which has no inverse matrix: sum V f x W, and with f_j - f_i. */
-TEST(test_moment)
-{
-    for (int dim = 1; dim <= 3; dim++)
-        for (int difference = 0; difference < 2; difference++) {
-            const struct operator_form moment = {.pair_vector = VECTOR_POSITION,
-                                                 .difference = difference};
-            fill(&one, dim, 60, false);
-            apply_well(&one, &moment);
-            for (size_t i = 0; i < 60; i++)
-                for (int k = 0; k < FIELDS * dim; k++) {
-                    const double *f = one.f[k / dim], *x = one.x[k % dim];
-                    double sum = 0, size = 0;
-                    for (size_t j = 0; j < 60; j++) {
-                        double r = 0;
-                        for (int a = 0; a < dim; a++) r = hypot(r, one.x[a][j] - one.x[a][i]);
-                        const double weight = one.V[j] * kernel_value(&kernel, r, one.h[i], dim),
-                                     term = weight * (f[j] - difference * f[i]) * (x[j] - x[i]);
-                        sum += term, size += fabs(term);
-                    }
-                    near_below(fabs(one.gradient[k][i] - sum), 1e-13 * size);
-                }
-        }
-}
-
-/* (0.3 + sum c_a (x_a - 0.4))^degree and its slope, c = 1, 2, -1. */
-static double polynomial(int degree, size_t i, double slope[3])
-{
-    static const double c[] = {1, 2, -1};
-    double base = 0.3;
-    for (int a = 0; a < one.cloud.points.dim; a++) base += c[a] * (one.x[a][i] - 0.4);
-    for (int a = 0; a < 3; a++) slope[a] = degree * c[a] * pow(base, degree < 2 ? 0 : degree - 1);
-    return pow(base, degree);
-}
-
-/* The largest error of these points' gradients of a polynomial. */
-static double error_of(const struct operator_form *form, int degree, size_t first, size_t end)
-{
-    const int dim = one.cloud.points.dim;
-    double worst = 0, slope[3];
-    for (size_t i = 0; i < one.cloud.points.n; i++)
-        one.f[0][i] = polynomial(degree, i, slope), one.f[1][i] = 0;
-    apply_well(&one, form);
-    for (size_t i = first; i < end; i++) {
-        polynomial(degree, i, slope);
-        for (int a = 0; one.point[i].condition < 1e3 && a < dim; a++)
-            worst = fmax(worst, fabs(one.gradient[a][i] - slope[a]));
-    }
-    return worst;
-}
-
-/* An operator promises what it keeps, no more and no less: polynomials that are exact everywhere,
- * and on a lattice (where, by symmetry, squares are as exact as constants). */
-TEST(test_promises)
-{
-    for (int dim = 1; dim <= 3; dim++)
-        for (size_t o = 0; o < operator_family.n; o++) {
-            const struct operator_form *form = form_at(o);
-            fill(&one, dim, 70, false);
-            for (int degree = 0; degree <= 2; degree++) {
-                const double error = error_of(form, degree, 0, 70);
-                assert_int_equal(error < 1e-10, degree < form->exact);
-                assert_true(error < 1e-10 || error > 1e-3);
-            }
-            const size_t side = dim == 3 ? 5 : 7, n = (size_t)lround(pow((double)side, dim));
-            connect(&one, dim, n, false);
-            for (size_t i = 0, at = 0; i < n; at = ++i) {
-                for (int a = 0; a < dim; a++, at /= side)
-                    one.x[a][i] = ((double)(at % side) + 0.5) / (double)side;
-                one.V[i] = pow((double)side, -dim), one.h[i] = 2.4 / (double)side;
-            }
-            for (int degree = 0; degree <= 1; degree++) {
-                const double error = error_of(form, degree, n / 2, n / 2 + 1);
-                assert_int_equal(error < 1e-10, degree < form->exact_on_lattice);
-                assert_true(error < 1e-10 || error > 1e-3);
-            }
-            assert_true(form->exact_on_lattice <= 2);
-        }
 }
 
 int main(void)

@@ -131,7 +131,7 @@ static const char *const left_out[] = {
     "sphproof 0",         "\"subject\": ", "\"floor\": ",
     "\"seconds\": ",      "\"bytes\": ",   " results, ",
     " skipped; ",         "\nold  ",       "\nnew  ",
-    "\"git_before\": ",   " time=\""};
+    "\"git_before\": ",   " time=\"",      "\n\033[1mcost"};
 
 /* Where the blanks before the last word begin. */
 static char *last_column(char *line)
@@ -170,7 +170,7 @@ static void add_filtered(struct buffer *to, const char *text)
         if (cpu_column && isdigit((unsigned char)line[end - 1]) && line[1] == ' ')
             strcpy(last_column(line), " ~");
         else
-            cpu_column = end > 5 && strcmp(line + end - 5, "CPU s") == 0;
+            cpu_column = strstr(line, "  CPU s") != NULL;
         buffer_add(to, line + 1);
         if (text[length]) buffer_add(to, "\n");
     }

@@ -56,34 +56,6 @@ static void unmade(struct simulation *simulation)
 
 /* --- order ------------------------------------------------------------------------------------ */
 
-TEST(sorted_across_the_ends)
-{
-    for (int setup = 0; setup < SETUPS; setup++) {
-        struct simulation s;
-        const int n = draw_count(2, 90);
-        made(&s, n);
-        struct particles *a = &s.particles;
-        for (int i = 0; i < n; i++) {
-            a->x[0][i] = draw(-7, 9);
-            a->x_old[0][i] = a->x[0][i] - 0.01 - 0.001 * i;
-        }
-        const double first = a->x[0][0];
-        double before[90];
-        memcpy(before, a->x[0], (size_t)n * sizeof *before);
-        assert_true(order_sort(a));
-        for (int i = 0; i < n; i++) {
-            const int id = (int)a->id[i];
-            assert_true(a->m[i] == 100 + id);
-            near_absolute(remainder(a->x[0][i] - before[id], 2), 0., 1e-14);
-            near_relative(a->x[0][i] - a->x_old[0][i], 0.01 + 0.001 * id, 1e-12);
-            near_inside(a->x[0][i], first, first + 2);
-            assert_true(i == 0 || a->x[0][i] >= a->x[0][i - 1]);
-        }
-        assert_true(a->x[0][0] == first);
-        unmade(&s);
-    }
-}
-
 TEST(no_order_of_what_is_no_position)
 {
     static const double bad[] = {NAN, INFINITY, -INFINITY};
@@ -106,54 +78,6 @@ TEST(no_order_of_what_is_no_position)
             assert_string_equal(error.message, said);
             unmade(&s);
         }
-}
-
-TEST(crossings_are_counted)
-{
-    for (int setup = 0; setup < SETUPS; setup++) {
-        struct simulation s;
-        const int n = draw_count(3, 200);
-        made(&s, n);
-        double *x = s.particles.x[0];
-        for (int i = 0; i < n; i++)
-            if (draw(0, 1) < 0.2) x[i] = draw(0, 2);
-        if (setup % 3 == 0) x[n / 2] = NAN;
-        const int first = draw_count(0, n - 2), len = draw_count(1, n - 1 - first);
-        int count = 0;
-        for (int i = first; i < first + len; i++) count += !(x[i] <= x[i + 1]);
-        assert_true(order_crossings(&s.particles, first, len) == count);
-        unmade(&s);
-    }
-}
-
-/* One pair out of order, or the last one beyond the first one's image, is seen wherever it is; what
- * sleeps at rest is not looked at. */
-TEST(arranged_where_it_is_needed)
-{
-    struct error error;
-    for (int at = 0; at < 150; at++) {
-        struct simulation s;
-        made(&s, 150);
-        double *x = s.particles.x[0];
-        struct line *line = line_of(&s);
-        if (at < 149) {
-            const double kept = x[at];
-            x[at] = x[at + 1], x[at + 1] = kept;
-        } else {
-            x[149] = x[0] + 2.001;
-        }
-        line->ghosts_filled = 7;
-        assert_int_equal(order_arrange(&s, &error), STATUS_OK);
-        assert_int_equal(line->ghosts_filled, 0);
-        int moved = 0;
-        for (int i = 0; i < 150; i++) moved += (int)s.particles.id[i] != i;
-        assert_int_equal(moved, at % 149 ? 2 : 149); /* the period starts at the first one */
-        line->ghosts_filled = 7;
-        x[149] = x[0] + 2; /* at the image's place: in order */
-        assert_int_equal(order_arrange(&s, &error), STATUS_OK);
-        assert_int_equal(line->ghosts_filled, 7);
-        unmade(&s);
-    }
 }
 
 /* A kernel's own term alone exceeds what `count` particles at one place allow: they are laid around
@@ -244,88 +168,6 @@ TEST(sleepers_in_order)
 }
 
 /* --- images and reach ------------------------------------------------------------------------- */
-
-TEST(images_of_images)
-{
-    for (int n = 2; n < 40; n++) {
-        struct simulation s;
-        made(&s, n);
-        const struct particles *a = &s.particles;
-        for (int count = 0; count <= 3 * n; count++) {
-            for (int k = 1; k <= 3 * n + 2; k++) a->x[0][-k] = a->x[0][n - 1 + k] = 77;
-            ghosts_fill(a, a->x[0], count, 2);
-            for (int k = 1; k <= count; k++) {
-                near_relative(a->x[0][-k] + 10,
-                              a->x[0][(n - k % n) % n] + 10 - 2 * ((k - 1) / n + 1), 1e-14);
-                near_relative(a->x[0][n - 1 + k], a->x[0][(k - 1) % n] + 2 * ((k - 1) / n + 1),
-                              1e-14);
-            }
-            assert_true(a->x[0][-count - 1] == 77 && a->x[0][n + count] == 77);
-        }
-        unmade(&s);
-    }
-}
-
-/* What density reads: positions, masses where there are more than before, energies where they are
- * summed; memory grows with a reserve. */
-TEST(images_for_density)
-{
-    struct error error;
-    for (int energy_sum = 0; energy_sum < 2; energy_sum++)
-        for (int count = 1; count < 4 * GHOSTS; count += count == 248 ? 1 : 13)
-            for (int filled = count - 1; filled <= count + 1; filled++) {
-                struct simulation s;
-                made(&s, 30);
-                struct particles *a = &s.particles;
-                s.plan.energy_sum = energy_sum;
-                line_of(&s)->ghosts_filled = filled;
-                for (int i = 0; i < 30; i++) a->U[i] = 5 + i;
-                a->m[-1] = a->m[30] = 77, a->U[-1] = a->U[30] = 77;
-                assert_int_equal(ghosts_of_density(&s, count, &error), STATUS_OK);
-                const bool grown = count + 8 > GHOSTS;
-                assert_int_equal(a->ghosts, !grown ? GHOSTS : (count + count / 2 + 8 + 7) / 8 * 8);
-                assert_int_equal(line_of(&s)->ghosts_filled, count);
-                const bool masses = count > filled;
-                const double blank = grown ? 0 : 77;
-                assert_true(a->m[-1] == (masses ? a->m[29] : blank));
-                assert_true(a->m[30] == (masses ? a->m[0] : blank));
-                assert_true(a->U[-1] == (energy_sum ? 34 : blank));
-                assert_true(a->U[30] == (energy_sum ? 5 : blank));
-                near_relative(a->x[0][-1], a->x[0][29] - 2, 1e-14);
-                near_relative(a->x[0][30 + count - 1],
-                              a->x[0][(count - 1) % 30] + 2 * ((count - 1) / 30 + 1), 1e-14);
-                unmade(&s);
-            }
-}
-
-/* What pairs read, as far as they reach and one more; the rest only where the plan asks for it. */
-TEST(images_for_pairs)
-{
-    for (int plan = 0; plan < 8; plan++) {
-        struct simulation s;
-        made(&s, 30);
-        const struct particles *a = &s.particles;
-        s.plan.own_gradient = plan & 1;
-        s.plan.viscosity = plan & 2;
-        s.plan.grad_h = plan & 4;
-        line_of(&s)->reach = 6;
-        double *const arrays[] = {a->v[0], a->h,   a->h_inverse, a->V, a->P,     a->c,
-                                  a->g,    a->rho, a->alpha,     a->b, a->grad_h};
-        const bool read[] = {true,     true,     true,     true,     true,    true,
-                             plan & 1, plan & 2, plan & 2, plan & 4, plan & 4};
-        for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
-            for (int i = -GHOSTS; i < 30 + GHOSTS; i++)
-                arrays[k][i] = i < 0 || i >= 30 ? 77 : 100 * (double)k + i;
-        ghosts_of_pairs(&s);
-        for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
-            for (int d = 1; d <= 8; d++) {
-                const bool filled = read[k] && d <= 7;
-                assert_true(arrays[k][-d] == (filled ? arrays[k][30 - d] : 77));
-                assert_true(arrays[k][29 + d] == (filled ? arrays[k][d - 1] : 77));
-            }
-        unmade(&s);
-    }
-}
 
 /* A room is divided into ranges that are full but for the last one. */
 TEST(a_room_is_divided)
@@ -482,30 +324,6 @@ TEST(neighbours_end_somewhere)
         assert_true(counted == 70);
     }
     unmade(&s);
-}
-
-static void see(void *context, size_t i, const struct description *of)
-{
-    const struct particles *a = context;
-    int count = 0;
-    for (int j = -GHOSTS + 8; j < a->n + GHOSTS - 8; j++)
-        count += fabs(a->x[0][j] - a->x[0][i]) * a->h_inverse[i] < 1;
-    assert_true(of->neighbours == count);
-    assert_true(isnan(of->condition) && isnan(of->angle));
-    counted++;
-}
-
-TEST(neighbours_are_described)
-{
-    for (int setup = 0; setup < SETUPS; setup++) {
-        struct simulation s;
-        made(&s, draw_count(20, 100));
-        ghosts_fill(&s.particles, s.particles.x[0], GHOSTS, 2);
-        counted = 0;
-        line_sums.describe(&s, see, &s.particles);
-        assert_true(counted == (double)s.particles.n);
-        unmade(&s);
-    }
 }
 
 /* --- sleep ------------------------------------------------------------------------------------ */

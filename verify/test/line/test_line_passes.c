@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Passes over the ranges of a line: every range once, by as many threads as there are, and what
- * they find; widths that have a root or none; how room is made; what the force loop reads beyond a
- * range and writes to its scratch. */
+ * they find; widths that have a root or none; how room is made. */
 #include "test.h"
 
 #include <math.h>
@@ -270,99 +269,6 @@ TEST(room_for_eight_times_the_reach)
     }
 }
 
-/* Scratch is kept while it suffices, and twice as long as was asked for where it does not. */
-TEST(scratch_is_made_rarely)
-{
-    struct simulation *s = made_simulation(100);
-    struct error error;
-    struct line *line = line_of(s);
-    const size_t size = line->scratch_size;
-    ptrdiff_t most = 1;
-    while (loop_force_scratch(most + 1) <= size) most++;
-    const double *kept = line->scratch;
-    assert_int_equal(forces_reserve_scratch(s, most, &error), STATUS_OK);
-    assert_true(line->scratch == kept && line->scratch_size == size);
-    assert_int_equal(forces_reserve_scratch(s, most + 1, &error), STATUS_OK);
-    assert_int_equal(line->scratch_size, 2 * loop_force_scratch(most + 1));
-    simulation_destroy(s);
-}
-
-/* --- the force loop --------------------------------------------------------------------------- */
-
-static struct simulation *with(size_t n, int count, char *const *keys)
-{
-    static double x[256], v[256], m[256], u[256];
-    struct settings settings;
-    struct simulation *simulation = NULL;
-    struct error error;
-    struct setup setup = {.dim = 1,
-                          .hi = {1},
-                          .gamma = 1.4,
-                          .t_end = 1,
-                          .n = n,
-                          .x = {x},
-                          .v = {v},
-                          .m = m,
-                          .u = u,
-                          .threads = 1};
-    for (size_t i = 0; i < n; i++) {
-        x[i] = ((double)i + 0.5 + 0.2 * sin((double)(i * i))) / (double)n;
-        v[i] = sin((double)(3 * i)), m[i] = 1 / (double)n, u[i] = 1 + 0.5 * sin((double)(7 * i));
-    }
-    settings_init(&settings);
-    if (settings_apply(&settings, count, keys, &error) ||
-        settings_scheme(&settings, 1, &setup.scheme, &error) ||
-        simulation_create(&setup, &simulation, &error))
-        fail_msg("%s", error.message);
-    return simulation;
-}
-
-static char *const schemes[][3] = {
-    {"kernel=cubic_spline", "eta=6", "formulation=lagrangian"},
-    {"kernel=cubic_spline", "eta=6", "viscosity=time_dependent"},
-    {"kernel=quadratic_spline", "eta=1.5", "viscosity=none"},
-    {"kernel=cubic_spline", "eta=4", "gradient=ia"},
-};
-enum { SCHEMES = sizeof schemes / sizeof *schemes };
-
-/* The loop finds the largest signal speed / h of its pairs, and 2c/h of their left sides, wherever
- * else gas is hotter; and writes
- * to no more scratch than it says. */
-TEST(rates_and_scratch_of_a_range)
-{
-    for (int k = 0; k < SCHEMES; k++)
-        for (ptrdiff_t first = 0; first < 30; first += 6)
-            for (int len = 1; len <= 64; len += 9) {
-                struct simulation *s = with(200, 3, schemes[k]);
-                struct particles *a = &s->particles;
-                const struct line *line = line_of(s);
-                const ptrdiff_t D = line->reach;
-                const size_t size = loop_force_scratch(D);
-                double *scratch = malloc((size + 16) * sizeof *scratch);
-                assert_non_null(scratch);
-                for (size_t i = 0; i < size + 16; i++) scratch[i] = 1e9;
-                /* beyond what the range can feel */
-                for (ptrdiff_t i = first + len; i < first + len + D + 8; i++)
-                    a->x[0][i] += 100, a->c[i] = 1e6;
-                double rate = 0;
-                for (ptrdiff_t d = 1; d <= D; d++)
-                    for (ptrdiff_t i = first - d; i < first + len; i++) {
-                        const double r = a->x[0][i + d] - a->x[0][i],
-                                     least = fmin(a->h_inverse[i], a->h_inverse[i + d]),
-                                     most = fmax(a->h_inverse[i], a->h_inverse[i + d]),
-                                     closing = a->v[0][i] - a->v[0][i + d],
-                                     speed = (a->c[i] + a->c[i + d]) + 3 * fmax(closing, 0);
-                        rate = fmax(rate, 2 * a->c[i] * a->h_inverse[i]);
-                        if (r * least < 1) rate = fmax(rate, most * speed);
-                    }
-                const double got = line->loops.force(&line->loops, a, first, len, D, scratch);
-                near_relative(got, rate, 1e-14);
-                for (size_t i = size; i < size + 16; i++) assert_true(scratch[i] == 1e9);
-                free(scratch);
-                simulation_destroy(s);
-            }
-}
-
 /* --- the passes over pairs -------------------------------------------------------------------- */
 
 static struct {
@@ -464,42 +370,6 @@ TEST(matrices_of_every_range)
             assert_true(a->dv[-k] == (slope && k <= 8 ? a->dv[200 - k] : -77));
             assert_true(a->dv[199 + k] == (slope && k <= 8 ? a->dv[k - 1] : -77));
         }
-        simulation_destroy(s);
-    }
-}
-
-/* Signal speeds know velocities that have changed, those of images, too. */
-TEST(signals_of_every_range)
-{
-    for (int at = 0; at < 200; at += 7) {
-        struct simulation *s = made_simulation(200);
-        const struct particles *a = &s->particles;
-        const ptrdiff_t reach = line_of(s)->reach;
-        struct error error;
-        double rate = 0;
-        assert_int_equal(widths_find(s, true, 0, &error), STATUS_OK);
-        assert_int_equal(forces_sum(s, &rate, &error), STATUS_OK);
-        rate = 0;
-        for (ptrdiff_t i = -reach - 9; i < 209 + reach; i++) a->v[0][i] = -77;
-        for (ptrdiff_t i = 0; i < 200; i++) a->v[0][i] = sin((double)(i * i));
-        a->c[at] = 20; /* the largest, wherever it is */
-        a->c[at < reach + 1 ? at + 200 : at] = a->c[at >= 199 - reach ? at - 200 : at] = 20;
-        const double got = forces_signal(s);
-        for (ptrdiff_t i = 0; i < 200; i++) {
-            double want = 2 * a->c[i];
-            for (ptrdiff_t d = -reach; d <= reach; d++) {
-                const ptrdiff_t j = (i + d + 200) % 200;
-                const double closing = (d < 0 ? -1 : 1) * (a->v[0][i] - a->v[0][j]);
-                const double apart = fabs(a->x[0][i + d] - a->x[0][i]);
-                if (d && apart * fmin(a->h_inverse[i], a->h_inverse[j]) < 1)
-                    want = fmax(want, a->c[i] + a->c[j] + 3 * fmax(closing, 0));
-            }
-            near_relative(a->signal[i], want, 1e-15);
-            rate = fmax(rate, want * a->h_inverse[i]);
-        }
-        near_relative(got, rate, 1e-15);
-        assert_true(a->v[0][-reach - 1] == a->v[0][199 - reach] && a->v[0][-reach - 2] == -77);
-        assert_true(a->v[0][200 + reach] == a->v[0][reach] && a->v[0][201 + reach] == -77);
         simulation_destroy(s);
     }
 }
