@@ -29,6 +29,7 @@ struct cells_method cells_method_of(const struct scheme *scheme, const struct pl
         .balsara = plan->balsara,
         .velocity_gradient = plan->slope,
         .div_v = plan->alpha,
+        .shift = plan->shift,
         .conductivity = scheme->alpha_u,
         .worst_condition = DESCRIPTION_CONDITION,
         .local = plan->local,
@@ -73,10 +74,11 @@ static void lay_out_force(struct lanes_layout *force, const struct cells_method 
     add_field(force, RECORD_VELOCITY, dim);
     add_field(force, RECORD_H_INVERSE, 1);
     add_numbers(force, RECORD_VOLUME, RECORD_SOUND);
-    if (dissipates) add_field(force, RECORD_DENSITY, 1);
+    if (dissipates || method->shift) add_field(force, RECORD_DENSITY, 1);
     if (viscosity_varies(method->viscosity)) add_field(force, RECORD_ALPHA, 1);
     if (method->balsara) add_field(force, RECORD_BALSARA, 1);
-    if (method->conductivity > 0) add_field(force, RECORD_HEAT, 1);
+    if (method->conductivity > 0 || method->shift) add_field(force, RECORD_HEAT, 1);
+    if (method->shift) add_field(force, RECORD_SHIFT, dim);
     if (lagrangian) add_field(force, RECORD_LAGRANGIAN, 3);
     if (gradient->weight != WEIGHT_NONE) add_field(force, RECORD_MATRIX, symmetric);
     if (gradient->share) add_field(force, RECORD_STEEP, 1);
@@ -125,7 +127,7 @@ double cells_bytes(const struct cells_method *method, double n, double neighbour
     struct cells cells = {.method = *method};
     lay_out(&cells);
     return n * (lanes_longest_record(&cells) * (double)sizeof(double) +
-                (method_halves(method) ? reactions_bytes(method->box.dim) : 0)) +
+                (method_halves(method) ? reactions_bytes(cells_reaction_values(method)) : 0)) +
            grid_bytes(method->box.dim, n, neighbours);
 }
 
@@ -141,8 +143,8 @@ static bool reserve_records(struct cells *cells, size_t n)
     cells->kinds = cells->method.local ? malloc(cells->capacity) : NULL;
     cells->paces = cells->method.local ? malloc(cells->capacity * sizeof(double)) : NULL;
     const bool reactions =
-        !cells->halves ||
-        reactions_reserve(&cells->reactions, cells->method.box.dim, cells->capacity);
+        !cells->halves || reactions_reserve(&cells->reactions,
+                                            cells_reaction_values(&cells->method), cells->capacity);
     if (!cells->records || (cells->method.local && (!cells->kinds || !cells->paces)) || !reactions)
         cells->capacity = 0;
     return cells->capacity > 0;

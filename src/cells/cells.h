@@ -40,6 +40,7 @@ struct cells_method {
     bool balsara;           /* viscosity times the mean factor of the pair */
     bool velocity_gradient; /* something needs it */
     bool div_v;             /* and the divergence by the pair gradient */
+    bool shift;             /* particle shifting, with fluxes */
     double conductivity;    /* alpha_u; 0: none */
     double
         worst_condition; /* of a moment matrix; beyond it the pair's gradient is the standard one */
@@ -91,6 +92,8 @@ struct cells_fields {
     unsigned char *woken, wake_to;      /* 0, or the level that a particle wakes to */
     double *impulse[3], *heat, span;    /* receivers gain span times their rates */
     double *F[3], *de, *div_v, *signal; /* signal: largest speed of the particle's pairs */
+    /* shifting: velocity against the flow, and rates of what it exchanges, in none of the above */
+    double *shift[3], *dm, *dp_shift[3], *de_shift;
 };
 
 /* Particles whose velocity gradient or viscosity was left out by method.still. */
@@ -142,11 +145,12 @@ void cells_widths(struct cells *cells, const struct cells_fields *fields,
                   const struct width_rule *rule, const double *radius, double *h, double *h_inverse,
                   unsigned char *outcome);
 
-/* matrix, condition, slope, as the method needs them; slopes of a particle whose matrix
+/* matrix, condition, slope, shift, as the method needs them; slopes of a particle whose matrix
  * is not to be used are 0. Returns how many particles have no matrix for their gradient. */
 size_t cells_matrix(struct cells *cells, const struct cells_fields *fields);
 
-/* F, de, div_v, signal. Returns the number of pairs within max(h_i, h_j). */
+/* F, de, div_v, signal, and what shifting exchanges. Returns the number of pairs within max(h_i,
+ * h_j). */
 uint64_t cells_forces(struct cells *cells, const struct cells_fields *fields);
 
 /* Computes alpha_local, the value that alpha jumps up to and decays to, and decay, its rate, from

@@ -101,6 +101,8 @@ ALWAYS_INLINE void fill_record(int dim, const struct cells *cells,
         group[2] = method->energy_element ? fields->U[i] : method->number ? 1 : fields->m[i];
     }
     if (at[RECORD_STEEP]) record[at[RECORD_STEEP]] = fields->steep[i];
+    for (int a = 0; at[RECORD_SHIFT] && a < dim; a++)
+        record[at[RECORD_SHIFT] + a] = lanes_sign(mirrored, a) * fields->shift[a][i];
     fill_matrices(dim, mirrored, cells, fields, i, record);
 }
 
@@ -138,6 +140,7 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
 
 struct totals {
     double F[3], de, div_v, signal, pace;
+    double gained[5]; /* by shifting: momentum, energy, mass */
 };
 
 /* Signal speeds of pairs within max(h_i, h_j), the largest of each lane, and how many there are. */
@@ -286,23 +289,28 @@ static double find_pace(const struct cells *cells, const int32_t *slots, int cou
 }
 
 /* Gives the neighbours their part of what has been worked out. */
-ALWAYS_INLINE void react_body(int dim, const struct pairs *pairs, double *restrict of)
+ALWAYS_INLINE void react_body(int dim, bool shifts, const struct pairs *pairs, double *restrict of)
 {
     const ptrdiff_t stride = pairs->lanes->stride;
     const double *restrict reaction = lane(pairs->lanes, LANE_REACTION);
     for (int k = 0; k < pairs->reacting; k++) {
-        double *to = of + (ptrdiff_t)pairs->slots[k] * (dim + 2);
+        double *to = of + (ptrdiff_t)pairs->slots[k] * ((dim + 2) * (shifts ? 2 : 1));
         for (int a = 0; a < dim + 1; a++) to[a] += reaction[a * stride + k];
         to[dim + 1] = largest(to[dim + 1], reaction[(dim + 1) * stride + k]);
+        for (int a = dim + 2; shifts && a < 2 * (dim + 2); a++) to[a] += reaction[a * stride + k];
     }
 }
 
-static void react(int dim, const struct pairs *pairs, double *of)
+static void react(int dim, bool shifts, const struct pairs *pairs, double *of)
 {
-    if (dim == 2)
-        react_body(2, pairs, of);
+    if (dim == 2 && shifts)
+        react_body(2, true, pairs, of);
+    else if (dim == 2)
+        react_body(2, false, pairs, of);
+    else if (shifts)
+        react_body(3, true, pairs, of);
     else
-        react_body(3, pairs, of);
+        react_body(3, false, pairs, of);
 }
 
 /* What the neighbours in the lanes do to a particle. Returns whether there was viscosity. */
@@ -315,6 +323,7 @@ static bool add_part(struct cells *cells, const struct pairs *pairs, int64_t *in
     const bool viscous = cells_viscosity(cells, pairs);
     (method->formulation == FORMULATION_VANILLA_ICE ? add_vanilla_ice : add_lagrangian)(
         method->box.dim, method->energy, pairs, &pressure, totals, inside);
+    if (method->shift) cells_exchange(cells, pairs, totals->gained);
     if (method->conductivity > 0) totals->de += cells_conduction(cells, pairs);
     if (method->div_v) totals->div_v += cells_divergence(cells, pairs);
     return viscous;
@@ -331,11 +340,12 @@ static void receive(const struct cells *cells, const struct cells_fields *fields
     fields->near_pace[i] = largest(fields->near_pace[i], totals->pace);
 }
 
-static void add_received(int dim, const double *received, struct totals *totals)
+static void add_received(int dim, bool shifts, const double *received, struct totals *totals)
 {
     for (int a = 0; a < dim; a++) totals->F[a] += received[a];
     totals->de += received[dim];
     totals->signal = largest(totals->signal, received[dim + 1]);
+    for (int a = 0; shifts && a < dim + 2; a++) totals->gained[a] += received[dim + 2 + a];
 }
 
 /* What slots have received from the chunk before theirs. */
@@ -352,6 +362,10 @@ static void add_spilled(const struct cells *cells, const struct cells_fields *fi
             for (int a = 0; a < dim; a++) fields->F[a][i] += spilled[a];
             fields->de[i] += spilled[dim];
             fields->signal[i] = largest(fields->signal[i], spilled[dim + 1]);
+            if (!cells->method.shift) continue;
+            for (int a = 0; a < dim; a++) fields->dp_shift[a][i] += spilled[dim + 2 + a];
+            fields->de_shift[i] += spilled[2 * dim + 2];
+            fields->dm[i] += spilled[2 * dim + 3];
         }
 }
 
@@ -371,12 +385,12 @@ static void force_pass(struct cells *cells, const struct cells_fields *fields, s
         pairs.reacting = list.reacting - from < pairs.count ? list.reacting - from : pairs.count;
         pairs.slots = list.slots + from;
         viscous |= add_part(cells, &pairs, &lanes->pairs, &totals);
-        react(cells->method.box.dim, &pairs, lanes->chunk.of);
+        react(cells->method.box.dim, cells->method.shift, &pairs, lanes->chunk.of);
     }
     const size_t i = cells->order[slot];
     const bool halves = lanes->chunk.of != NULL;
     if (halves)
-        add_received(cells->method.box.dim,
+        add_received(cells->method.box.dim, cells->method.shift,
                      reactions_received(&cells->reactions, &lanes->chunk, slot), &totals);
     if (fields->local && halves) /* of all neighbours */
         totals.pace =
@@ -392,6 +406,12 @@ static void force_pass(struct cells *cells, const struct cells_fields *fields, s
     if (!viscous) lanes->left_out.viscosity++;
     for (int a = 0; a < cells->method.box.dim; a++) fields->F[a][i] = totals.F[a];
     fields->de[i] = totals.de;
+    for (int a = 0; cells->method.shift && a < cells->method.box.dim; a++)
+        fields->dp_shift[a][i] = totals.gained[a];
+    if (cells->method.shift) {
+        fields->de_shift[i] = totals.gained[cells->method.box.dim];
+        fields->dm[i] = totals.gained[cells->method.box.dim + 1];
+    }
     if (cells->method.div_v) fields->div_v[i] = totals.div_v;
     fields->signal[i] = totals.signal;
 }

@@ -7,6 +7,7 @@
 
 #include "moments.h"
 #include "pairs.h"
+#include "shifting.h"
 #include "specialise.h"
 
 static void fill_records(struct cells *cells, const struct cells_fields *fields)
@@ -106,10 +107,24 @@ static double find_steep(const struct cells *cells, size_t slot, int count,
 {
     const struct lanes_layout *layout = &cells->matrix;
     const double own = cells->records[(ptrdiff_t)slot * layout->size + layout->offset[RECORD_H]];
+    double slope[3];
     if (!sound) return 1;
-    const double slope = moments_steepness(cells->method.box.dim, count, lanes, weight, inverse,
-                                           lane_of(lanes, layout, RECORD_H), own);
-    return gradient_of[cells->method.gradient].share(slope);
+    return gradient_of[cells->method.gradient].share(
+        moments_slope(cells->method.box.dim, count, lanes, weight, inverse,
+                      lane_of(lanes, layout, RECORD_H), own, slope));
+}
+
+/* No shift where there is no matrix. */
+static void find_shift(const struct cells *cells, const struct cells_fields *fields, size_t i,
+                       int count, const struct lanes *lanes, const double *weight,
+                       const double inverse[CELLS_SQUARE], bool sound)
+{
+    const int dim = cells->method.box.dim;
+    double of_one[3] = {0}, shift[3];
+    if (sound) moments_slope(dim, count, lanes, weight, inverse, lane(lanes, LANE_ONE), 0, of_one);
+    shifting_velocity(dim, of_one, 1 / cells->method.numbers.near, 1 / fields->h_inverse[i],
+                      fields->c[i], shift);
+    for (int a = 0; a < dim; a++) fields->shift[a][i] = shift[a];
 }
 
 static void matrix_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
@@ -144,6 +159,7 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
         sound = moments_invert(method, count, lanes, weight, inverse, &condition);
     }
     fields->condition[i] = condition;
+    if (method->shift) find_shift(cells, fields, i, count, lanes, weight, inverse, sound);
     int k = 0;
     for (int a = 0; a < dim; a++)
         for (int b = a; b < dim; b++, k++) {

@@ -32,6 +32,7 @@ enum lanes_field {
     RECORD_SLOPE,
     RECORD_PROJECTOR,    /* symmetric */
     RECORD_ACCELERATION, /* ax ay (az) */
+    RECORD_SHIFT,        /* velocity against the flow */
     RECORD_FIELDS
 };
 
@@ -54,7 +55,7 @@ struct lanes_layout {
 enum lanes_array {
     LANE_ONE,    /* 1 everywhere */
     LANE_NUMBER, /* 0, 1, 2 ... */
-    LANE_DX,  /* r_j - r_i */
+    LANE_DX,     /* r_j - r_i */
     LANE_DY,
     LANE_DZ,
     LANE_R,
@@ -79,7 +80,9 @@ enum lanes_array {
     LANE_GZ_J,
     LANES_OWN,
     LANE_REACTION = LANE_SLOPE_I /* what neighbours get: force, energy, signal speed; once slopes, q
-                                    and what is spare are not needed any more */
+                                    and what is spare are not needed any more. Behind them what
+                                    shifting gives: momentum, energy, mass; vanilla_ice has only
+                                    one gradient */
 };
 
 struct lanes {
@@ -133,6 +136,12 @@ struct cells {
     struct lanes_newton newton;
     struct reactions reactions;
 };
+
+/* Values of a reaction. */
+static inline int cells_reaction_values(const struct cells_method *method)
+{
+    return (method->box.dim + 2) * (method->shift ? 2 : 1);
+}
 
 /* An array of the thread's own, or a value of the gathered records. */
 static inline double *lane(const struct lanes *lanes, int which)

@@ -134,14 +134,16 @@ void moments_gradient(int dim, int count, const struct lanes *lanes, const doubl
         rows_times_matrix(3, sums, inverse, gradient);
 }
 
-double moments_steepness(int dim, int count, const struct lanes *lanes, const double *weight,
-                         const double inverse[CELLS_SQUARE], const double *f, double own)
+double moments_slope(int dim, int count, const struct lanes *lanes, const double *weight,
+                     const double inverse[CELLS_SQUARE], const double *f, double own,
+                     double slope[3])
 {
     double sums[3], square = 0;
     differences(dim, 1, count, lanes->stride, weight, lane(lanes, LANE_DX), f, &own, sums);
     for (int a = 0; a < dim; a++) {
         double g = 0;
         for (int b = 0; b < dim; b++) g += inverse[a * dim + b] * sums[b];
+        slope[a] = g;
         square += g * g;
     }
     return sqrt(square);

@@ -22,8 +22,10 @@ void moments_gradient(int dim, int count, const struct lanes *lanes, const doubl
                       const double inverse[CELLS_SQUARE], const double *f, const double *own,
                       double gradient[CELLS_SQUARE]);
 
-/* The length of the same gradient of a number. */
-double moments_steepness(int dim, int count, const struct lanes *lanes, const double *weight,
-                         const double inverse[CELLS_SQUARE], const double *f, double own);
+/* The same gradient of a number; of f = 1 and own = 0 what the gradient makes of a constant.
+ * Returns its length. */
+double moments_slope(int dim, int count, const struct lanes *lanes, const double *weight,
+                     const double inverse[CELLS_SQUARE], const double *f, double own,
+                     double slope[3]);
 
 #endif

@@ -40,6 +40,10 @@ bool cells_viscosity(const struct cells *cells, const struct pairs *pairs);
  */
 void cells_project(int dim, const double L[CELLS_SQUARE], double projector[CELLS_SYMMETRIC]);
 
+/* Adds to gained what the particle gains of what shifting sweeps over: momentum along every axis,
+ * energy, mass. */
+void cells_exchange(const struct cells *cells, const struct pairs *pairs, double *gained);
+
 /* Heat that is conducted to the particle. */
 double cells_conduction(const struct cells *cells, const struct pairs *pairs);
 

@@ -20,16 +20,16 @@
  * so that a chunk's records and reactions stay in the second-level cache. */
 enum { CHUNKS = 8, CHUNK_LEAST = 1024, CHUNK_MOST = 8192 };
 
-double reactions_bytes(int dim)
+double reactions_bytes(int values)
 {
-    return 2 * (dim + 2) * (double)sizeof(double) + 1;
+    return 2 * values * (double)sizeof(double) + 1;
 }
 
-bool reactions_reserve(struct reactions *reactions, int dim, size_t slots)
+bool reactions_reserve(struct reactions *reactions, int each, size_t slots)
 {
-    const size_t values = (size_t)dim + 2, chunks = slots / CHUNK_LEAST + 2;
+    const size_t values = (size_t)each, chunks = slots / CHUNK_LEAST + 2;
     free(reactions->of[0]);
-    reactions->values = (int)values;
+    reactions->values = each;
     reactions->of[0] = memory_for_records(slots * (2 * values * sizeof(double) + 1) +
                                           chunks * sizeof(uint32_t) + 3);
     if (!reactions->of[0]) return false;

@@ -17,7 +17,7 @@ struct lanes;
 struct lanes_list;
 
 struct reactions {
-    int values; /* of each slot: force, energy, and the largest signal speed */
+    int values; /* of each slot: force, energy, the largest signal speed; what shifting gives */
     size_t chunks;
     double *of[2];        /* of even and of odd chunks; all arrays are in the first one's block */
     uint32_t *begin;      /* of each chunk, and the end */
@@ -32,10 +32,10 @@ struct reactions_chunk {
 };
 
 /* Bytes for each slot. */
-double reactions_bytes(int dim);
+double reactions_bytes(int values);
 
 /* Memory for so many slots, in place of what there was. false: none. */
-bool reactions_reserve(struct reactions *reactions, int dim, size_t slots);
+bool reactions_reserve(struct reactions *reactions, int values, size_t slots);
 void reactions_free(struct reactions *reactions);
 
 /* lanes_all with half loops: the pass asks reactions_partners for its pairs, and adds what

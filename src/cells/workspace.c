@@ -82,6 +82,8 @@ static void connect_fields(struct simulation *simulation)
         fields->v[k] = a->v[k];
         fields->F[k] = a->F[k];
         fields->impulse[k] = a->impulse[k];
+        fields->shift[k] = a->shift[k];
+        fields->dp_shift[k] = a->dp_shift[k];
     }
     fields->heat = a->heat;
     fields->level = a->level;
@@ -105,6 +107,8 @@ static void connect_fields(struct simulation *simulation)
     fields->sum_Z = workspace->sum_Z;
     fields->sum_Z_dh = workspace->sum_Z_dh;
     fields->de = a->de;
+    fields->dm = a->dm;
+    fields->de_shift = a->de_shift;
     fields->div_v = a->div_v;
     fields->signal = a->signal;
 }

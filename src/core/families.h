@@ -69,6 +69,13 @@
            "one for each particle, by powers of two; pairs exchange impulses and energy", "",      \
            __VA_ARGS__)
 
+/* What moves particles besides the flow, in 2D and 3D: see cells_shift.c. */
+#define SHIFTING_LIST(CHOICE, ...)                                                                 \
+    CHOICE(SHIFTING_NONE, "none", "particles move with the flow", "", __VA_ARGS__)                 \
+    CHOICE(SHIFTING_FLUXES, "fluxes",                                                              \
+           "particles shift to where they are spread evenly, and exchange what they sweep over",   \
+           "Nestor et al. 2009; Oger et al. 2016 with fluxes", __VA_ARGS__)
+
 /* FAMILY(name, list, number of members, plural, title): enum name, scheme_name_family. Families
  * whose members have a file and a descriptor each: gradient.h, viscosity.h; those of plain choices;
  * all. */
@@ -88,7 +95,8 @@
     FAMILY(pair_width, PAIR_WIDTH_LIST, PAIR_WIDTHS, "pair_widths",                                \
            "width at which a pair's gradient is taken")                                            \
     FAMILY(h_method, H_METHOD_LIST, H_METHODS, "h_methods", "how the smoothing length is found")   \
-    FAMILY(time_steps, STEPS_LIST, TIME_STEPS, "time_steps", "whose time step it is")
+    FAMILY(time_steps, STEPS_LIST, TIME_STEPS, "time_steps", "whose time step it is")              \
+    FAMILY(shifting, SHIFTING_LIST, SHIFTINGS, "shiftings", "what moves particles besides the flow")
 
 #define FAMILY_LIST(FAMILY) FAMILY_FILE_LIST(FAMILY) FAMILY_CHOICE_LIST(FAMILY)
 

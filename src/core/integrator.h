@@ -30,6 +30,7 @@ struct integrator {
     bool keeps_start;  /* of p, e and alpha in a step: uses p_old, e_old, alpha_old */
     bool ends_evaluated; /* the derived fields at the end of a step belong to its state */
     bool local;          /* has a form for steps=local, see steps.h */
+    bool shifts;         /* and for particle shifting, where masses change */
     /* Each in its own file; 0 where an integrator keeps nothing from step to step. Arrays that
      * follow the particles when their order changes are fields of struct particles (x_old ...). */
     /* Bytes of simulation->integrator_state, without pointers in it, zero before the first step. */

@@ -21,6 +21,7 @@ unsigned memory_uses(const struct simulation *simulation)
     if (line && plan->slope) uses |= USE_SLOPE;
     if (!line || plan->signal_pass || plan->sleep) uses |= USE_SIGNAL;
     if (plan->local) uses |= USE_LOCAL_STEPS;
+    if (plan->shift) uses |= USE_SHIFT;
     return uses;
 }
 

@@ -25,7 +25,8 @@ enum particle_use {
     USE_SLOPE = 1 << 7,
     USE_SIGNAL = 1 << 8,
     USE_LOCAL_STEPS = 1 << 9,
-    USE_ALL = (1 << 10) - 1,
+    USE_SHIFT = 1 << 10,
+    USE_ALL = (1 << 11) - 1,
 };
 
 /* SCALAR(name, use, meaning) or VECTOR(name, use, meaning). The first group is the state, the rest
@@ -71,7 +72,11 @@ enum particle_use {
     VECTOR(F_mean, USE_LOCAL_STEPS, "mean dp/dt, for predictions")                                 \
     SCALAR(de_mean, USE_LOCAL_STEPS, "mean de/dt")                                                 \
     VECTOR(impulse, USE_LOCAL_STEPS, "from pairs of finer levels, since the step began")           \
-    SCALAR(heat, USE_LOCAL_STEPS, "and the energy")
+    SCALAR(heat, USE_LOCAL_STEPS, "and the energy")                                                \
+    VECTOR(shift, USE_SHIFT, "velocity against the flow")                                          \
+    SCALAR(dm, USE_SHIFT, "mass that the shift exchanges, dm/dt")                                  \
+    VECTOR(dp_shift, USE_SHIFT, "momentum that goes with it, not in F")                            \
+    SCALAR(de_shift, USE_SHIFT, "and energy, not in de")
 
 struct particles {
     int dim; /* components of vectors; the others are NULL */

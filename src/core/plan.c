@@ -31,7 +31,8 @@ struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool spec
         .alpha = viscosity->evolve,
         .jump = viscosity->find_goal,
         .local = scheme->steps == STEPS_LOCAL,
-        .sleep = skip,
+        .shift = scheme->shifting != SHIFTING_NONE,
+        .sleep = skip && scheme->shifting == SHIFTING_NONE, /* gas at rest shifts, too */
         .quiet = skip,
         .signal_pass = scheme->integrator->signal_pass,
     };
@@ -164,11 +165,16 @@ size_t plan_explain(const struct setup *setup, struct plan_line *lines, size_t m
         line(&writer, "conductivity", scheme->alpha_u > 0, "alpha_u > 0, inside the pair loop",
              "alpha_u=0");
         line(&writer, "gravity", plan.gravity, "added to the forces", "gravity=0");
+        line(&writer, "particle shifting", plan.shift,
+             "shifting=fluxes: mass, momentum and energy are exchanged inside the pair loop",
+             "shifting=none: particles move with the flow");
     }
     line(&writer, "sleep", plan.sleep,
          "skip=auto: no sums where no signal has been; acts as a start changed by 1e-11, in 2D and "
          "3D by up to 1e-8",
-         plan.gravity ? "gravity: nobody is at rest" : "skip=none: every particle at every step");
+         plan.shift     ? "shifting=fluxes: nobody is at rest"
+         : plan.gravity ? "gravity: nobody is at rest"
+                        : "skip=none: every particle at every step");
     line(&writer, "final state", !scheme->integrator->ends_evaluated,
          "density and equation of state once more at t_end", "the last evaluation was at t_end");
     if (warnings && warnings_size) find_warnings(scheme, setup->dim, warnings, warnings_size);

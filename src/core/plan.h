@@ -24,6 +24,7 @@ struct plan {
     bool alpha;              /* evolution of alpha, with div v */
     bool jump;               /* alpha by a switch, once a step */
     bool local;              /* local steps */
+    bool shift;              /* particle shifting, with fluxes of mass, momentum and energy */
     bool gravity;            /* a constant acceleration */
     bool signal_pass;        /* a pass of its own for the time step */
     bool sleep;              /* leave out particles that no signal has reached */

@@ -87,6 +87,7 @@ size_t scheme_members(const struct family *family, int dim)
     if (family == &scheme_viscosity_form_family) return VISCOSITY_FORM_SIGNAL;
     if (family == &scheme_balsara_family) return BALSARA_ON;
     if (family == &scheme_time_steps_family) return STEPS_LOCAL;
+    if (family == &scheme_shifting_family) return SHIFTING_FLUXES;
     return family->n;
 }
 
@@ -102,7 +103,8 @@ static enum status check_members(const struct scheme *scheme, int dim, struct er
                    {"viscosity", &scheme_viscosity_family, scheme->viscosity},
                    {"viscosity_form", &scheme_viscosity_form_family, scheme->viscosity_form},
                    {"balsara", &scheme_balsara_family, scheme->balsara},
-                   {"steps", &scheme_time_steps_family, scheme->steps}};
+                   {"steps", &scheme_time_steps_family, scheme->steps},
+                   {"shifting", &scheme_shifting_family, scheme->shifting}};
     for (size_t k = 0; k < sizeof choices / sizeof *choices; k++)
         if (choices[k].member >= scheme_members(choices[k].family, dim))
             return error_set(error, STATUS_BAD_INPUT,
@@ -144,6 +146,37 @@ static enum status check_steps(const struct scheme *scheme, struct error *error)
                      name, why);
 }
 
+/* What particle shifting goes together with: masses change, and with them all that takes them for
+ * constant. */
+static enum status check_shifting(const struct scheme *scheme, struct error *error)
+{
+    const char *key = NULL, *name = NULL, *why = NULL;
+    if (scheme->shifting == SHIFTING_NONE) return STATUS_OK;
+    if (!scheme->integrator->shifts) {
+        key = "integrator", name = scheme->integrator->member.name;
+        why = "masses advance with predicted_midpoint alone";
+    } else if (scheme->steps != STEPS_GLOBAL) {
+        key = "steps", name = scheme_time_steps_family.members[scheme->steps]->name;
+        why = "masses change in global steps alone";
+    } else if (scheme->energy != ENERGY_TOTAL) {
+        key = "energy", name = scheme_energy_family.members[scheme->energy]->name;
+        why = "particles exchange total energy";
+    } else if (scheme->formulation != FORMULATION_VANILLA_ICE) {
+        key = "formulation", name = scheme_formulation_family.members[scheme->formulation]->name;
+        why = "grad-h factors belong to constant masses";
+    } else if (scheme->volume_element != VOLUME_NUMBER) {
+        key = "volume_element";
+        name = scheme_volume_element_family.members[scheme->volume_element]->name;
+        why = "volumes must not depend on what particles exchange, as those of number do";
+    } else if (gradient_of[scheme->gradient].weight == WEIGHT_NONE) {
+        key = "gradient", name = scheme_gradient_family.members[scheme->gradient]->name;
+        why = "particles shift along the gradient that a moment matrix makes of a constant";
+    }
+    if (!key) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT, "shifting=fluxes and %s=%s exclude each other: %s",
+                     key, name, why);
+}
+
 /* Reports a value that is not in (least, most]. */
 static enum status out_of_range(struct error *error, const char *key, double value,
                                 const char *allowed)
@@ -180,5 +213,6 @@ enum status scheme_check(const struct scheme *scheme, int dim, struct error *err
                          "pair_width=%s and formulation=lagrangian exclude each other: the "
                          "lagrangian form needs both particles' own gradients",
                          scheme_pair_width_family.members[scheme->pair_width]->name);
-    return check_steps(scheme, error);
+    const enum status steps = check_steps(scheme, error);
+    return steps ? steps : check_shifting(scheme, error);
 }

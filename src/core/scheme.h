@@ -26,6 +26,7 @@ struct scheme {
     enum pair_width pair_width;
     enum h_method h_method;
     enum time_steps steps;
+    enum shifting shifting;
     const struct integrator *integrator;
     double alpha, beta;          /* viscosity; time_dependent: beta/alpha is the ratio kept */
     double alpha_min, alpha_max; /* time_dependent and cullen_dehnen only */

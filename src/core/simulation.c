@@ -61,6 +61,26 @@ static enum status check_particle(const struct setup *setup, size_t i, struct er
     return STATUS_OK;
 }
 
+/* Particles at a surface would shift into the vacuum, those that are kept give away what they keep,
+ * and the potential energy of what is exchanged is in no flux. */
+static enum status check_shifting(const struct setup *setup, struct error *error)
+{
+    for (int k = 0; k < setup->dim && setup->scheme.shifting != SHIFTING_NONE; k++) {
+        const enum boundary boundary = setup->boundary[k];
+        if (boundary != BOUNDARY_PERIODIC && boundary != BOUNDARY_REFLECTING)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "shifting=fluxes and boundary=%s exclude each other: particles shift "
+                             "between periodic and reflecting ends alone",
+                             scheme_boundary_family.members[boundary]->name);
+        if (setup->gravity[k] != 0)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "shifting=fluxes and gravity=%g exclude each other: the exchange "
+                             "knows no potential energy",
+                             setup->gravity[k]);
+    }
+    return STATUS_OK;
+}
+
 static enum status check_setup(const struct setup *setup, struct error *error)
 {
     if (!sums_find(setup->dim))
@@ -84,7 +104,8 @@ static enum status check_setup(const struct setup *setup, struct error *error)
         const enum status status = check_particle(setup, i, error);
         if (status) return status;
     }
-    return scheme_check(&setup->scheme, setup->dim, error);
+    const enum status shifting = check_shifting(setup, error);
+    return shifting ? shifting : scheme_check(&setup->scheme, setup->dim, error);
 }
 
 /* The state of the setup, with a first guess of h. */
@@ -406,6 +427,13 @@ void simulation_rates(const struct simulation *simulation, struct rates *rates)
                             .alpha = simulation->plan.alpha ? a->dalpha : NULL,
                             .time_step = dt,
                             .furthest = simulation->plan.local ? ldexp(dt, depth) : dt};
+    if (!simulation->plan.shift) return;
+    rates->shift.mass = a->dm;
+    rates->shift.energy = a->de_shift;
+    for (int k = 0; k < a->dim; k++) {
+        rates->shift.velocity[k] = a->shift[k];
+        rates->shift.momentum[k] = a->dp_shift[k];
+    }
 }
 
 /* sum r x p, sum |r x p| and sum |r| m c. */

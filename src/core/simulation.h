@@ -65,6 +65,10 @@ struct snapshot {
  * simulation_create they belong to the initial state. */
 struct rates {
     const double *force[3], *energy, *alpha;
+    /* of particle shifting, in none of the above; NULL: particles move with the flow */
+    struct {
+        const double *velocity[3], *mass, *momentum[3], *energy;
+    } shift;
     double time_step;
     double furthest; /* the next step is no longer: with steps=local a block of time steps */
 };

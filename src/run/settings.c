@@ -312,6 +312,7 @@ static enum status read_scheme(const struct settings *settings, int dim, struct 
         .pair_width = (enum pair_width)CHOICE_OF(pair_width),
         .h_method = (enum h_method)CHOICE_OF(h_method),
         .steps = (enum time_steps)CHOICE_OF(steps),
+        .shifting = (enum shifting)CHOICE_OF(shifting),
         .integrator = (const struct integrator *)integrator,
         .alpha = REAL_OF(alpha),
         .beta = REAL_OF(beta),

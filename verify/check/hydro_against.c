@@ -36,6 +36,8 @@ static void judge_rates(struct check_run *run, const struct simulation *simulati
     simulation_snapshot(simulation, &got);
     simulation_rates(simulation, &rates);
     struct comparison h = {0}, rho = {0}, P = {0}, V = {0}, F = {0}, de = {0}, dalpha = {0};
+    struct comparison shift = {0}, mass = {0}, momentum = {0}, energy = {0};
+    const bool shifts = oracle->scheme.shifting != SHIFTING_NONE;
     for (size_t i = 0; i < got.n; i++) {
         const struct oracle_particle *want = &oracle->particles[got.id[i]];
         compare(&h, got.h[i], want->h);
@@ -45,7 +47,15 @@ static void judge_rates(struct check_run *run, const struct simulation *simulati
         for (int a = 0; a < oracle->dim; a++) compare(&F, rates.force[a][i], want->F[a]);
         compare(&de, rates.energy[i], want->de);
         if (rates.alpha) compare(&dalpha, rates.alpha[i], want->dalpha);
+        if (!shifts || !rates.shift.mass) continue;
+        compare(&mass, rates.shift.mass[i], want->dm);
+        compare(&energy, rates.shift.energy[i], want->de_shift);
+        for (int a = 0; a < oracle->dim; a++) {
+            compare(&shift, rates.shift.velocity[a][i], want->shift[a]);
+            compare(&momentum, rates.shift.momentum[a][i], want->dp_shift[a]);
+        }
     }
+    if (shifts != (rates.shift.mass != NULL)) mass.error = (double)NAN;
     if (got.n != oracle->n) h.error = (double)NAN;
     /* in src the damping of close pairs is a series, good to 8e-7 of itself at its end */
     const bool series = oracle->scheme.viscosity == VISCOSITY_RECONSTRUCTED ||
@@ -57,6 +67,10 @@ static void judge_rates(struct check_run *run, const struct simulation *simulati
     report(run, &V, 1e-13, 2e-15, "volume", where);
     report(run, &F, bound, floor, "force", where);
     report(run, &de, bound, floor, "rate of energy", where);
+    const struct comparison *const exchange[] = {&shift, &mass, &momentum, &energy};
+    static const char *const names[] = {"shift", "mass exchanged", "momentum exchanged",
+                                        "energy exchanged"};
+    for (int k = 0; shifts && k < 4; k++) report(run, exchange[k], 1e-12, 2e-14, names[k], where);
     if (oracle->scheme.viscosity == VISCOSITY_TIME_DEPENDENT)
         report(run, &dalpha, 1e-12, 2e-14, "rate of alpha", where);
     const double step = (double)oracle_time_step(oracle);

@@ -277,6 +277,7 @@ static void find_rates(struct oracle *oracle, size_t i)
     const struct scheme *scheme = &oracle->scheme;
     struct oracle_particle *a = &oracle->particles[i];
     a->F[0] = a->F[1] = a->F[2] = a->dU = a->div_v = 0;
+    a->dp_shift[0] = a->dp_shift[1] = a->dp_shift[2] = a->de_shift = a->dm = 0;
     a->neighbours = 0;
     for (size_t j = 0; j < oracle->n; j++)
         for (int k = -oracle_images(oracle); k <= oracle_images(oracle); k++) {

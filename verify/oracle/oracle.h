@@ -35,6 +35,11 @@ struct oracle_particle {
     /* rates dp/dt, dU/dt, d(e)/dt, dalpha/dt; divergence of v; signal speed */
     oracle_vector F;
     long double dU, de, dalpha, div_v, signal;
+    /* particle shifting: velocity against the flow, rates of what it exchanges, in none of the
+     * above
+     */
+    oracle_vector shift, dp_shift;
+    long double dm, de_shift;
     size_t neighbours; /* others with r < h */
 };
 

@@ -157,6 +157,26 @@ static void find_steep(const struct oracle *oracle, size_t i)
     a->steep = t <= 0 ? 0 : t >= 1 ? 1 : 3 * t * t - 2 * t * t * t;
 }
 
+/* -eta h c/9 sum_j V_j C_i x weight, no longer than c/4; none where the matrix is ill. */
+static void find_shift(const struct oracle *oracle, size_t i)
+{
+    struct oracle_particle *a = &oracle->particles[i];
+    oracle_vector sum = {0}, of_one = {0};
+    for (size_t j = 0; j < oracle->n; j++) {
+        const struct oracle_particle *b = &oracle->particles[j];
+        const long double r = oracle_distance(oracle, i, j, 0);
+        oracle_vector x;
+        if (r == 0 || r >= a->width) continue;
+        oracle_separation(oracle, a, b, 0, x);
+        for (int c = 0; c < 3; c++) sum[c] += b->V * oracle_weight(oracle, r, a->width) * x[c];
+    }
+    if (!a->ill) oracle_product(&a->C, sum, of_one);
+    const long double rate = oracle->scheme.eta * a->width * a->c / 9,
+                      speed = rate * sqrtl(oracle_dot(of_one, of_one)),
+                      factor = -rate * (speed > a->c / 4 ? a->c / 4 / speed : 1);
+    for (int c = 0; c < 3; c++) a->shift[c] = factor * of_one[c];
+}
+
 static void find_matrix(const struct oracle *oracle, size_t i)
 {
     struct oracle_particle *a = &oracle->particles[i];
@@ -166,6 +186,7 @@ static void find_matrix(const struct oracle *oracle, size_t i)
     a->ill = !(a->condition <= worst_condition);
     if (!a->ill) a->C = invert(oracle->dim, T);
     if (!a->ill && oracle->scheme.gradient == GRADIENT_BLENDED) find_steep(oracle, i);
+    if (oracle->scheme.shifting == SHIFTING_FLUXES) find_shift(oracle, i);
 }
 
 void oracle_find_matrices(struct oracle *oracle)

@@ -195,6 +195,21 @@ static long double conducted(const struct oracle *oracle, const struct oracle_pa
            (a->U / a->m - b->U / b->m) / rho * along;
 }
 
+/* What a gains of the volume that shifting sweeps over, with the density and the specific energy of
+ * whom it comes from; momentum with the mean velocity, kinetic energy so that none becomes heat. */
+static void add_exchange(struct oracle_particle *a, const struct oracle_particle *b,
+                         const struct gradients *G)
+{
+    long double swept = 0;
+    for (int k = 0; k < 3; k++)
+        swept += 2 * a->V * b->V * G->mean[k] * (a->shift[k] + b->shift[k]) / 2;
+    const struct oracle_particle *donor = swept > 0 ? b : a;
+    const long double mass = swept * donor->rho;
+    a->dm += mass;
+    for (int k = 0; k < 3; k++) a->dp_shift[k] += mass * (a->v[k] + b->v[k]) / 2;
+    a->de_shift += mass * (donor->U / donor->m + oracle_dot(a->v, b->v) / 2);
+}
+
 void oracle_add_pair(const struct oracle *oracle, struct oracle_particle *a,
                      const struct oracle_particle *b, const oracle_vector x)
 {
@@ -204,6 +219,7 @@ void oracle_add_pair(const struct oracle *oracle, struct oracle_particle *a,
     find_gradients(oracle, a, b, x, &G);
     add_pressure(oracle, a, b, v_ij, &G);
     a->div_v -= b->V * oracle_dot(v_ij, G.mean);
+    if (scheme->shifting == SHIFTING_FLUXES) add_exchange(a, b, &G);
     if (scheme->alpha_u > 0) a->dU += conducted(oracle, a, b, x, &G);
     if (scheme->viscosity == VISCOSITY_NONE) return;
     const long double r = sqrtl(oracle_dot(x, x)), w = closing_speed(oracle, a, b, x, v_ij, &G);

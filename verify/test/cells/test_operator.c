@@ -3,13 +3,18 @@
  * clouds that invite trouble. */
 #include "test.h"
 
+#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_rng.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "clouds.h"
+#include "matrix.h"
 #include "naive.h"
 #include "near.h"
+#include "summation.h"
 #include "worst.h"
 
 enum { FIELDS = 2 };
@@ -285,4 +290,158 @@ TEST(test_odd_clouds)
     assert_int_equal(operator_apply(&settings, &cloud, 0, NULL, NULL, NULL, NULL, &error),
                      STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "point 17"));
+}
+
+/* h and rho solve their two equations (brute force), and a uniform cloud has density 1. */
+TEST(test_summation)
+{
+    for (int dim = 1; dim <= 3; dim++)
+        for (int kind = 0; kind < CLOUDS_KINDS; kind++) {
+            const struct kernel kernel = kernel_named("wendland_c4");
+            const struct clouds_settings how = {
+                (enum clouds_kind)kind, dim, dim == 1 ? 90 : dim == 2 ? 14 : 7, 0.3, 3, 3};
+            struct clouds_cloud cloud;
+            assert_int_equal(clouds_make(&how, &cloud, NULL), STATUS_OK);
+            const size_t n = cloud.cloud.points.n;
+            double *h = numbers(n), *rho = numbers(n);
+            struct error error = {0};
+            struct summation sum = {cloud.cloud.points, &kernel, cloud.volume, how.eta, 1e-12, 2};
+            if (summation_solve(&sum, h, rho, &error)) fail_msg("%s", error.message);
+            for (size_t i = 0; i < n; i++) {
+                double expected = 0;
+                for (size_t j = 0; j < n; j++) {
+                    double r = 0;
+                    for (int a = 0; a < dim; a++) r = hypot(r, cloud.x[a][j] - cloud.x[a][i]);
+                    expected += cloud.volume[j] * kernel_value(&kernel, r, h[i], dim);
+                }
+                near_relative(rho[i], expected, 1e-11);
+                near_relative(h[i], how.eta * pow(cloud.volume[i] / expected, 1. / dim), 1e-11);
+                if (kind == CLOUDS_LATTICE && clouds_interior(&how, &cloud, i))
+                    near_relative(rho[i], 1, 0.03);
+            }
+            sum.eta = 0.9;
+            assert_int_equal(summation_solve(&sum, h, rho, &error), STATUS_BAD_INPUT);
+            sum.eta = 1e4;
+            assert_int_equal(summation_solve(&sum, h, rho, &error), STATUS_BROKE_DOWN);
+            sum.eta = how.eta;
+            for (size_t i = 20; i < 49; i++)
+                for (int a = 0; a < dim; a++) cloud.x[a][i] = 0.5;
+            assert_int_equal(summation_solve(&sum, h, rho, &error), STATUS_BROKE_DOWN);
+            assert_non_null(strstr(error.message, "coincides"));
+            sum.points.n = 1;
+            assert_int_equal(summation_solve(&sum, h, rho, &error), STATUS_BROKE_DOWN);
+            free(h), free(rho);
+            clouds_free(&cloud);
+        }
+}
+
+/* A cloud in units of 2^e, its fields in units of 2^g: the same gradients, densities and states but
+ * for their exponents, to the last bit. */
+TEST(test_units)
+{
+    static const int exponents[] = {-330, -200, 129, 300, 500, -990};
+    for (int dim = 1; dim <= 3; dim++)
+        for (size_t u = 0; u < sizeof exponents / sizeof *exponents; u++) {
+            const int e = exponents[u], g = u % 2 ? 400 : -400;
+            if (abs(e * dim) > 1000) continue; /* its volumes are no doubles */
+            const struct kernel kernel = kernel_named("wendland_c4");
+            const struct clouds_settings how = {
+                CLOUDS_JITTERED, dim, dim == 1 ? 60 : dim == 2 ? 12 : 6, 0.3, 2.7, 5};
+            struct clouds_cloud cloud, far;
+            assert_int_equal(clouds_make(&how, &cloud, NULL), STATUS_OK);
+            assert_int_equal(clouds_make(&how, &far, NULL), STATUS_OK);
+            const size_t n = cloud.cloud.points.n;
+            double *h[2] = {numbers(n), numbers(n)}, *rho[2] = {numbers(n), numbers(n)};
+            for (size_t i = 0; i < n; i++) {
+                for (int a = 0; a < dim; a++) far.x[a][i] = ldexp(far.x[a][i], e);
+                far.volume[i] = ldexp(far.volume[i], dim * e);
+                far.h[i] = ldexp(far.h[i], e);
+            }
+            for (size_t o = 0; o < operator_family.n; o++) {
+                const struct operator_settings settings = {operator_at(o), &kernel, false, 1};
+                struct computed c, d = {0};
+                compute(&settings, &cloud.cloud, &c);
+                for (size_t k = 0; k < FIELDS * 3; k++) d.gradient[k] = numbers(n);
+                for (size_t k = 0; k < FIELDS; k++) {
+                    d.f[k] = numbers(n);
+                    for (size_t i = 0; i < n; i++) d.f[k][i] = ldexp(c.f[k][i], g);
+                }
+                assert_non_null(d.point = calloc(n, sizeof *d.point));
+                assert_int_equal(operator_apply(&settings, &far.cloud, FIELDS,
+                                                (const double *const *)d.f, d.gradient, d.point,
+                                                &d.pairs, NULL),
+                                 STATUS_OK);
+                assert_true(c.pairs == d.pairs);
+                for (size_t i = 0; i < n; i++) {
+                    bool tiny = false, huge = false;
+                    for (size_t k = 0; k < FIELDS * (size_t)dim; k++) {
+                        const double expected = ldexp(c.gradient[k][i], g - e);
+                        assert_true(d.gradient[k][i] == expected);
+                        tiny = tiny || (fabs(expected) < DBL_MIN && c.gradient[k][i] != 0);
+                        huge = huge || isinf(expected);
+                    }
+                    if (tiny || huge)
+                        assert_true(d.point[i].state != OPERATOR_OK);
+                    else
+                        assert_true(d.point[i].state == c.point[i].state);
+                }
+                release(&c);
+                release(&d);
+            }
+            struct summation sum = {cloud.cloud.points, &kernel, cloud.volume, how.eta, 1e-12, 1};
+            struct summation far_sum = {far.cloud.points, &kernel, far.volume, how.eta, 1e-12, 1};
+            assert_int_equal(summation_solve(&sum, h[0], rho[0], NULL), STATUS_OK);
+            assert_int_equal(summation_solve(&far_sum, h[1], rho[1], NULL), STATUS_OK);
+            for (size_t i = 0; i < n; i++) {
+                near_relative(ldexp(h[1][i], -e), h[0][i], 1e-11);
+                near_relative(rho[1][i], rho[0][i], 1e-11);
+            }
+            for (int i = 0; i < 2; i++) free(h[i]), free(rho[i]);
+            clouds_free(&cloud);
+            clouds_free(&far);
+        }
+}
+
+/* Inverse and condition number against GSL's singular values, also badly scaled. */
+TEST(test_matrix)
+{
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    for (int trial = 0; trial < 600; trial++) {
+        const int dim = 1 + trial % 3;
+        const size_t d = (size_t)dim;
+        double a[9], inverse[9], scale[3], product, values[3], v[9], work[3], copy[9];
+        for (int i = 0; i < 3; i++) scale[i] = pow(10, 12 * gsl_rng_uniform(rng) - 6);
+        for (int i = 0; i < dim * dim; i++) {
+            a[i] = copy[i] = 2 * gsl_rng_uniform(rng) - 1;
+            if (trial >= 300) a[i] = copy[i] = a[i] * scale[i / dim] * scale[i % dim];
+        }
+        gsl_matrix_view A = gsl_matrix_view_array(copy, d, d), V = gsl_matrix_view_array(v, d, d);
+        gsl_vector_view S = gsl_vector_view_array(values, d);
+        gsl_vector_view W = gsl_vector_view_array(work, d);
+        gsl_linalg_SV_decomp(&A.matrix, &V.matrix, &S.vector, &W.vector);
+        const double condition = values[0] / values[dim - 1];
+        if (condition < 1e10) near_relative(matrix_condition(dim, a), condition, 1e-5);
+        if (condition < 1e4) near_relative(matrix_condition(dim, a), condition, 1e-11);
+        assert_true(matrix_invert(dim, a, inverse));
+        for (int i = 0; i < dim; i++)
+            for (int j = 0; j < dim; j++) {
+                double size = 0;
+                product = -(i == j);
+                for (int k = 0; k < dim; k++) {
+                    product += a[i * dim + k] * inverse[k * dim + j];
+                    size += fabs(a[i * dim + k] * inverse[k * dim + j]);
+                }
+                near_below(fabs(product), 1e-13 * fmax(size, 1) * fmin(condition, 100));
+            }
+    }
+    gsl_rng_free(rng);
+    double inverse[9];
+    assert_false(matrix_invert(2, (double[]){1, 2, 2, 4}, inverse));
+    assert_false(matrix_invert(3, (double[]){1, 2, 3, 4, 5, 6, 7, 8, 9}, inverse));
+    assert_false(matrix_invert(1, (double[]){0}, inverse));
+    assert_false(matrix_invert(1, (double[]){(double)NAN}, inverse));
+    assert_true(matrix_invert(2, (double[]){1, 0, 0, 1e-200}, inverse));
+    near_relative(inverse[3], 1e200, 1e-15);
+    assert_true(isinf(matrix_condition(2, (double[]){0, 0, 0, 0})));
+    assert_true(isnan(matrix_condition(2, (double[]){(double)NAN, 0, 0, 1})));
 }

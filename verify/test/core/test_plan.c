@@ -52,6 +52,7 @@ static void speaks_of_its_pass(const struct run *run, const struct plan_line *li
         {"local steps", "by powers of two", "steps=global"},
         {"conductivity", "inside the pair loop", "alpha_u=0"},
         {"gravity", "added to the forces", "gravity=0"},
+        {"particle shifting", "inside the pair loop", "shifting=none"},
         {"sleep", "no sums where no signal has been",
          !skip                     ? "every particle at every step"
          : s->steps == STEPS_LOCAL ? "steps=local"
@@ -128,6 +129,7 @@ static int expected(const struct run *run, const char *pass)
         {"local steps", line ? -1 : s->steps == STEPS_LOCAL},
         {"conductivity", line ? -1 : s->alpha_u > 0},
         {"gravity", line ? -1 : gravity},
+        {"particle shifting", line ? -1 : s->shifting != SHIFTING_NONE},
         {"sleep", skip && !gravity && s->steps == STEPS_GLOBAL},
         {"final state", !s->integrator->ends_evaluated},
     };
@@ -137,7 +139,7 @@ static int expected(const struct run *run, const char *pass)
     return 0;
 }
 
-enum { PASSES = 19 };
+enum { PASSES = 20 };
 
 static void plan_is_right(const struct run *run)
 {
@@ -155,7 +157,7 @@ static void plan_is_right(const struct run *run)
         speaks_of_its_pass(run, line);
         wanted++;
     }
-    assert_int_equal(wanted, run->asked.file.dimension == 1 ? PASSES - 5 : PASSES - 2);
+    assert_int_equal(wanted, run->asked.file.dimension == 1 ? PASSES - 6 : PASSES - 2);
 }
 
 /* Each choice of each key, one at a time. */
@@ -255,7 +257,7 @@ TEST(room)
     const struct setup setup = setup_of(5, GRADIENT_IA);
     struct plan_line all[PASSES], some[PASSES];
     const size_t count = plan_explain(&setup, all, PASSES, NULL, 0);
-    assert_int_equal(count, PASSES - 5);
+    assert_int_equal(count, PASSES - 6);
     for (size_t most = 0; most <= count; most++) {
         memset(some, 'x', sizeof some);
         assert_int_equal(plan_explain(&setup, some, most, NULL, 9), count);

@@ -74,7 +74,7 @@ TEST(every_array_has_its_room)
                 struct particles a = made(dim, n, ghosts);
                 double *arrays[ARRAYS_MOST];
                 const size_t count = list(&a, arrays);
-                assert_int_equal(count, 8 * dim + 31);
+                assert_int_equal(count, 10 * dim + 33);
                 assert_true(a.n == n && a.dim == dim);
                 assert_true(a.ghosts == (ghosts + LINE - 1) / LINE * LINE);
                 filled(&a, -n); /* all zero */

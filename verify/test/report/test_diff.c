@@ -107,10 +107,11 @@ TEST(members_of_a_problem)
 TEST(settings_of_a_problem)
 {
     static const char *const scheme[] = {
-        "kernel",     "sinc_n",   "eta",    "gradient",       "formulation", "volume_element",
-        "integrator", "cfl",      "energy", "viscosity",      "balsara",     "balsara_floor",
-        "noise",      "alpha_u",  "alpha",  "viscosity_form", "alpha_min",   "alpha_max",
-        "pair_width", "h_method", "beta",   "h_tolerance",    "skip",        "nonsense"};
+        "kernel",         "sinc_n",        "eta",       "gradient",   "formulation",
+        "volume_element", "integrator",    "cfl",       "energy",     "viscosity",
+        "balsara",        "balsara_floor", "noise",     "alpha_u",    "alpha",
+        "viscosity_form", "alpha_min",     "alpha_max", "pair_width", "h_method",
+        "beta",           "h_tolerance",   "skip",      "shifting",   "nonsense"};
     static const char *const problem[] = {"lo",     "hi",   "boundary", "gravity",   "kind",
                                           "jitter", "seed", "gamma",    "n",         "t_end",
                                           "window", "left", "right",    "background"};

@@ -354,6 +354,7 @@ TEST(choices_that_are_refused)
         {&scheme_viscosity_form_family, "viscosity_form", "signal",
          offsetof(struct scheme, viscosity_form)},
         {&scheme_balsara_family, "balsara", "on", offsetof(struct scheme, balsara)},
+        {&scheme_shifting_family, "shifting", "fluxes", offsetof(struct scheme, shifting)},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct family *family = rows[k].family;

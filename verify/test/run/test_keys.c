@@ -64,6 +64,7 @@ TEST(keys_are_as_they_were)
         {"alpha_max", SETTING_REAL, 1, false, 0, 100, "1.5"},
         {"pair_width", SETTING_CHOICE, 1, false, 0, 0, "auto"},
         {"steps", SETTING_CHOICE, 1, false, 0, 0, "global"},
+        {"shifting", SETTING_CHOICE, 1, false, 0, 0, "none"},
         {"h_method", SETTING_CHOICE, 1, false, 0, 0, "auto"},
         {"h_tolerance", SETTING_REAL, 1, false, 1e-15, 1e-2, "1e-10"},
         {"gamma", SETTING_REAL, 1, true, 1, 100, "1.4"},

@@ -414,8 +414,9 @@ TEST(lists)
     assert_true(problem_reads(rest, SETTING_background) && problem_reads(rest, SETTING_eta));
     assert_true(!problem_reads(rest, SETTING_left) && !problem_reads(rest, SETTING_equal_masses));
     static const enum setting plane[] = {
-        SETTING_boost, SETTING_viscosity_form, SETTING_balsara,       SETTING_balsara_floor,
-        SETTING_noise, SETTING_alpha_u,        SETTING_window_radius, SETTING_gravity};
+        SETTING_boost,         SETTING_viscosity_form, SETTING_balsara,
+        SETTING_balsara_floor, SETTING_noise,          SETTING_alpha_u,
+        SETTING_window_radius, SETTING_gravity,        SETTING_shifting};
     prepared_of(&s, 1, "");
     for (size_t k = 0; k < sizeof plane / sizeof *plane; k++)
         assert_true(problem_foreign(&s, plane[k]));

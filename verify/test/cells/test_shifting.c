@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * shifting=fluxes in 2D and 3D: what particles exchange is opposite pair by pair, so that mass,
+ * momentum and total energy stay to round-off; what it must leave alone; that it spreads particles;
+ * that a run goes on to the last bit; what it is refused with. The rates themselves are compared
+ * with the oracle's by the check clouds/rates. */
+#include "test.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "made_bytes.h"
+#include "made_scheme.h"
+#include "near.h"
+#include "settings.h"
+#include "solver.h"
+
+enum { N = 1024 };
+
+static double x[3][N], v[3][N], m[N], u[N];
+static uint64_t seed;
+
+static double draw(double low, double high)
+{
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
+}
+
+/* The default scheme with shifting, and one more key. */
+static enum status scheme_with(int dim, const char *key, struct scheme *scheme, struct error *error)
+{
+    static char words[4][40] = {"shifting=fluxes", "kernel=wendland_c2", "eta=2.6"};
+    char *const list[] = {words[0], words[1], words[2], words[3]};
+    struct settings settings;
+    settings_init(&settings);
+    snprintf(words[3], sizeof words[3], "%s", key ? key : "alpha_u=0.4");
+    const enum status status = settings_apply(&settings, 4, list, error);
+    return status ? status : settings_scheme(&settings, dim, scheme, error);
+}
+
+/* A lattice of side^dim particles, each off its place by so much of a spacing; mass, velocity and
+ * specific energy differ from particle to particle by as much as the last argument says. */
+static struct setup setup_of(int dim, size_t side, double jitter, double spread)
+{
+    struct setup setup = {.dim = dim, .hi = {1, 1, 1}, .gamma = 1.4, .m = m, .u = u, .threads = 1};
+    struct error error = {0};
+    if (scheme_with(dim, NULL, &setup.scheme, &error)) fail_msg("%s", error.message);
+    setup.n = dim == 2 ? side * side : side * side * side;
+    assert_true(setup.n <= N);
+    for (size_t i = 0, at = 0; i < setup.n; at = ++i) {
+        for (int a = 0; a < dim; a++, at /= side) {
+            x[a][i] = ((double)(at % side) + 0.5 + draw(-jitter, jitter)) / (double)side;
+            v[a][i] = 0.3 * a + spread * draw(-1, 1);
+        }
+        m[i] = (1 + spread * draw(-1, 1)) / (double)setup.n;
+        u[i] = 1.9 * (1 + spread * draw(-1, 1));
+    }
+    for (int a = 0; a < dim; a++) setup.x[a] = x[a], setup.v[a] = v[a];
+    return setup;
+}
+
+static void run_to(struct simulation *simulation, double t_end, simulation_progress *progress)
+{
+    struct error error = {0};
+    if (simulation_run(simulation, t_end, progress, simulation, &error))
+        fail_msg("%s", error.message);
+}
+
+TEST(keeps_mass_momentum_and_energy)
+{
+    for (uint64_t k = 0; k < 8; k++) {
+        const int dim = k % 2 ? 3 : 2;
+        seed = 41 + k;
+        struct setup setup = setup_of(dim, dim == 2 ? 26 : 9, 0.3, 0.2);
+        const bool walled = k >= 6;
+        if (walled) setup.boundary[1] = BOUNDARY_REFLECTING;
+        struct simulation *simulation = made_of(&setup);
+        struct conservation before, after;
+        struct snapshot s;
+        simulation_conservation(simulation, &before);
+        run_to(simulation, dim == 2 ? 0.15 : 0.1, NULL);
+        simulation_conservation(simulation, &after);
+        simulation_snapshot(simulation, &s);
+        near_relative(after.mass, before.mass, 1e-14);
+        near_relative(after.energy, before.energy, 1e-13);
+        for (int a = 0; a < dim; a++)
+            if (!walled || a != 1)
+                near_below(fabs(after.momentum[a] - before.momentum[a]),
+                           1e-13 * after.momentum_scale);
+        size_t changed = 0;
+        for (size_t i = 0; i < s.n; i++) {
+            changed += fabs(s.m[i] / m[s.id[i]] - 1) > 1e-4;
+            near_relative(s.rho[i] * s.volume[i], s.m[i], 1e-13);
+        }
+        assert_true(changed > s.n / 2);
+        simulation_destroy(simulation);
+    }
+}
+
+/* Exchange for itself: of what comes and goes nothing is lost, neither of kinetic nor of internal
+ * energy, and gas of uniform velocity and specific energy stays so. */
+TEST(exchange_keeps_both_energies)
+{
+    for (int k = 0; k < 6; k++) {
+        const int dim = k % 2 ? 3 : 2;
+        const bool uniform = k >= 4;
+        seed = 7 + (uint64_t)k;
+        struct setup setup = setup_of(dim, dim == 2 ? 24 : 9, 0.3, 0.2);
+        for (size_t i = 0; uniform && i < setup.n; i++) {
+            u[i] = 1.9;
+            for (int a = 0; a < dim; a++) v[a][i] = 0.3 * a - 0.7;
+        }
+        struct simulation *simulation = made_of(&setup);
+        const struct particles *a = &simulation->particles;
+        double mass = 0, energy = 0, kinetic = 0, scale = 0, energy_scale = 0;
+        for (ptrdiff_t i = 0; i < a->n; i++) {
+            double of_velocity = 0, change = 0;
+            for (int b = 0; b < dim; b++) {
+                of_velocity += 0.5 * a->v[b][i] * a->v[b][i];
+                change += a->v[b][i] * a->dp_shift[b][i];
+                if (uniform)
+                    near_below(fabs(a->dp_shift[b][i] - a->v[b][i] * a->dm[i]),
+                               1e-13 * (double)dim / (double)a->n);
+            }
+            if (uniform)
+                near_below(fabs(a->de_shift[i] - (1.9 + of_velocity) * a->dm[i]),
+                           1e-13 * (double)dim / (double)a->n);
+            mass += a->dm[i];
+            energy += a->de_shift[i];
+            kinetic += change - of_velocity * a->dm[i];
+            scale += fabs(a->dm[i]);
+            energy_scale += fabs(a->de_shift[i]);
+        }
+        assert_true(scale > 1e-3);
+        near_below(fabs(mass), 1e-13 * scale);
+        near_below(fabs(energy), 1e-13 * energy_scale);
+        near_below(fabs(kinetic), 1e-13 * energy_scale);
+        simulation_destroy(simulation);
+    }
+}
+
+/* Rates for observers that move: dm is the same, dp and dE gain b dm and b . dp + b^2 dm/2. */
+TEST(the_same_for_who_moves)
+{
+    static double of[5][N];
+    static const double b[3] = {0.9, -1.7, 0.4};
+    seed = 3;
+    const struct setup setup = setup_of(3, 9, 0.3, 0.2);
+    struct simulation *still = made_of(&setup);
+    const struct particles *s = &still->particles;
+    for (ptrdiff_t i = 0; i < s->n; i++) {
+        const size_t id = s->id[i];
+        for (int a = 0; a < 3; a++) of[a][id] = s->dp_shift[a][i];
+        of[3][id] = s->de_shift[i], of[4][id] = s->dm[i];
+    }
+    for (size_t i = 0; i < setup.n; i++)
+        for (int a = 0; a < 3; a++) v[a][i] += b[a];
+    struct simulation *moving = made_of(&setup);
+    const struct particles *t = &moving->particles;
+    for (ptrdiff_t i = 0; i < t->n; i++) {
+        const size_t id = t->id[i];
+        double energy = of[3][id];
+        near_below(fabs(t->dm[i] - of[4][id]), 1e-14);
+        for (int a = 0; a < 3; a++) {
+            energy += b[a] * of[a][id] + 0.5 * b[a] * b[a] * of[4][id];
+            near_below(fabs(t->dp_shift[a][i] - of[a][id] - b[a] * of[4][id]), 1e-14);
+        }
+        near_below(fabs(t->de_shift[i] - energy), 1e-13);
+    }
+    simulation_destroy(still);
+    simulation_destroy(moving);
+}
+
+/* rms of the shift over the speed of sound. */
+static double disorder(const struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    double sum = 0;
+    for (ptrdiff_t i = 0; i < a->n; i++)
+        for (int b = 0; b < a->dim; b++) sum += pow(a->shift[b][i] / a->c[i], 2);
+    return sqrt(sum / (double)a->n);
+}
+
+/* Gas at rest: nothing to do on a lattice; off it particles spread, no faster than they may. */
+TEST(spreads_particles)
+{
+    for (int dim = 2; dim <= 3; dim++) {
+        seed = 5;
+        struct setup setup = setup_of(dim, dim == 2 ? 24 : 9, 0, 0);
+        struct simulation *simulation = made_of(&setup);
+        near_below(disorder(simulation), 1e-13);
+        simulation_destroy(simulation);
+        setup = setup_of(dim, dim == 2 ? 24 : 9, 0.3, 0);
+        simulation = made_of(&setup);
+        const double before = disorder(simulation);
+        assert_true(before > 0.01 && before < 0.25);
+        run_to(simulation, 0.3, NULL);
+        near_below(disorder(simulation), 0.25 * before);
+        simulation_destroy(simulation);
+    }
+}
+
+static struct made_bytes bag;
+
+static bool keep_the_third(void *context, double time, uint64_t steps)
+{
+    struct serialiser out = {.bytes = made_put, .context = &bag};
+    (void)time;
+    if (steps == 3) simulation_serialise(context, &out);
+    assert_false(out.failed);
+    return true;
+}
+
+TEST(goes_on_to_the_last_bit)
+{
+    seed = 17;
+    const struct setup setup = setup_of(2, 24, 0.3, 0.2);
+    struct simulation *kept = made_of(&setup), *restored = made_of(&setup);
+    struct serialiser back = {.bytes = made_take, .context = &bag, .back = true};
+    run_to(kept, 0.12, keep_the_third);
+    simulation_serialise(restored, &back);
+    assert_true(!back.failed && restored->time > 0 && restored->time < 0.12);
+    run_to(restored, 0.12, NULL);
+    struct snapshot s, t;
+    simulation_snapshot(kept, &s);
+    simulation_snapshot(restored, &t);
+    for (size_t i = 0; i < s.n; i++)
+        assert_true(s.id[i] == t.id[i] && s.m[i] == t.m[i] && s.u[i] == t.u[i] &&
+                    s.x[0][i] == t.x[0][i] && s.v[1][i] == t.v[1][i]);
+    simulation_destroy(kept);
+    simulation_destroy(restored);
+}
+
+TEST(is_refused_with)
+{
+    static const char *const keys[] = {"integrator=rk2",        "steps=local",
+                                       "energy=internal",       "formulation=lagrangian",
+                                       "volume_element=energy", "gradient=standard"};
+    struct scheme scheme;
+    struct error error = {0};
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
+        char start[80];
+        snprintf(start, sizeof start, "shifting=fluxes and %s exclude each other: ", keys[k]);
+        assert_int_equal(scheme_with(2, keys[k], &scheme, &error), STATUS_BAD_INPUT);
+        if (strncmp(error.message, start, strlen(start)) != 0) fail_msg("%s", error.message);
+    }
+    for (int k = 0; k < 3; k++) {
+        struct simulation *simulation = NULL;
+        struct setup setup = setup_of(2, 8, 0, 0);
+        if (k == 0) setup.boundary[1] = BOUNDARY_OPEN;
+        if (k == 1) setup.boundary[0] = BOUNDARY_FIXED;
+        if (k == 2) setup.gravity[1] = -0.5;
+        assert_int_equal(simulation_create(&setup, &simulation, &error), STATUS_BAD_INPUT);
+        if (!strstr(error.message, "shifting=fluxes and ")) fail_msg("%s", error.message);
+        setup.scheme.shifting = SHIFTING_NONE;
+        if (k == 2) { /* and what is off keeps no arrays */
+            simulation = made_of(&setup);
+            struct rates rates;
+            simulation_rates(simulation, &rates);
+            assert_true(!rates.shift.mass && !(simulation->particles.uses & USE_SHIFT));
+            simulation_destroy(simulation);
+        }
+    }
+}
