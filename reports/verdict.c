@@ -90,7 +90,7 @@ json_t *verdict_make(const json_t *results)
     if (!failures) return NULL;
     const int *checks = tally.checks, *gates = tally.gates, *runs = tally.runs;
     int ran = 0, faults = -tally.faults[FINDING_SKIP];
-    for (int s = 0; s < STATUSES; s++) ran += runs[s], faults += tally.faults[s];
+    for (int s = FINDING_PASS; s < STATUSES; s++) ran += runs[s], faults += tally.faults[s];
     headline(&words, &tally, failures);
     char *line = buffer_take(&words);
     gates_words(&words, &tally);

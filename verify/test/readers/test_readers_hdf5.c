@@ -30,7 +30,14 @@ TEST(left_out)
             else
                 reads(l, items, l->fields[k].path);
         }
-        /* without masses of their own, and without any */
+        /* without masses of their own, where the table has gas alone; and without any */
+        items_of(l, items);
+        for (size_t k = 0; k < l->count && !a; k++)
+            if (l->fields[k].column == SNAPSHOT_M)
+                items[k].path[0] = '\0';
+            else if (l->fields[k].meaning == MASS)
+                items[k].shape[0] = 1;
+        reads(l, items, "a table of one mass");
         items_of(l, items);
         bool named = false;
         for (size_t k = 0; k < l->count; k++)
