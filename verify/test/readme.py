@@ -28,6 +28,10 @@ def keys(program, readme):
                                       check=True).stdout)["families"]["keys"]
     said = " ".join(subprocess.run([program, "list", "keys"], capture_output=True, text=True,
                                    check=True).stdout.split())
+    whole = subprocess.run([program, "list"], capture_output=True, text=True, check=True).stdout
+    whole = whole.split("\nkeys: ")[1].split("\ncode_keys: ")[0].splitlines()[1:]
+    if not [k["name"] for k in keys_] == [line.split()[0] for line in whole] == re.findall(r"^\| `?(\w+)", table, flags=re.M)[1:]:
+        sys.exit("sphproof list keys: not the same keys in the table, the document and the list of everything")
     for key in keys_:
         if " ".join(key["label"].split()) not in said or "| %s | %s |" % (key["allowed"], key["label"]) not in table:
             sys.exit("sphproof list keys: what %s means is cut" % key["name"])
