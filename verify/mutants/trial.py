@@ -75,7 +75,8 @@ def units_of(build, source, tree, wanted):
                                          "@SCRATCH@/failures"], folder, common + checks_key))
             continue
         own = [p for w in command for p in files_below(w.replace(tree, source)) if p.startswith(tested)]
-        own += glob.glob(os.path.join(tested, os.path.basename(command[0]) + ".c")) + glob.glob(os.path.join(tested, "*.h"))
+        own += glob.glob(os.path.join(tested, "**", os.path.basename(command[0]) + ".c"), recursive=True)
+        own += glob.glob(os.path.join(tested, "*.h"))
         if test["name"] == "suite":
             own += files_below(checked)
         units.append(Unit(test["name"], [program if os.path.exists(program) else command[0]] + command[1:], folder,
