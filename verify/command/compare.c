@@ -473,6 +473,9 @@ static enum status run(const struct options *options, int n, char **arguments, s
         c->sides[s].name = s ? "b" : "a", c->sides[s].text = arguments[s];
         status = take_side(&c->sides[s], options->threads, error);
     }
+    if (!status && text && c->sides[0].is_snapshot && c->sides[1].is_snapshot)
+        status = error_set(error, STATUS_BAD_INPUT,
+                           "compare: --draws is for runs: of two snapshots there is one draw each");
     if (!status) status = serialise_out(c, options, error);
     if (!status) {
         conclude(c);

@@ -94,6 +94,9 @@ static enum status load(struct user_kernel *user, const struct request *request,
                         struct error *error)
 {
     const char *word = request->word;
+    if (options_value(request->options, "sinc_n") && strcmp(word, "sinc") != 0)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "kernel: --sinc_n is for sinc alone, not for %.200s", word);
     if (user_kernel_is_path(word))
         return user_kernel_load(user, word, request->dim, &request->terms, error);
     if (family_index(&kernel_family, word) < 0)
@@ -323,12 +326,12 @@ static const struct command_option own_options[] = {
 const struct command command_kernel = {
     .name = "kernel",
     .synopsis = "NAME|F.so --dim D",
-    .help =
-        "the certificate of a kernel: everything that makes it a right one, measured\n"
-        "F.so is a kernel of your own: the header src/include/sphproof/plugin.h says how to write it.\n"
-        "It runs in a process of its own: one that crashes, never returns or ends the process "
-        "is a kernel\nthat fails. The certificate says how narrow a fault it could have missed."
-        "\nExit status 1 if a property does not hold, 2 if F.so cannot be used at all.",
+    .help = "the certificate of a kernel: everything that makes it a right one, measured\n"
+            "F.so is a kernel of your own: the header src/include/sphproof/plugin.h says how to "
+            "write it.\n"
+            "It runs in a process of its own: one that crashes, never returns or ends the process "
+            "is a kernel\nthat fails. The certificate says how narrow a fault it could have missed."
+            "\nExit status 1 if a property does not hold, 2 if F.so cannot be used at all.",
     .run = run,
     .options = own_options,
     .examples = "sphproof kernel cubic_spline --dim 3\n"
