@@ -7,7 +7,7 @@
 
 #include "lanes.h"
 #include "matrix.h"
-#include "memory.h"
+#include "pages.h"
 #include "plan.h"
 #include "specialise.h"
 
@@ -139,7 +139,7 @@ static bool reserve_records(struct cells *cells, size_t n)
     free(cells->paces);
     const size_t size = (size_t)lanes_longest_record(cells);
     cells->capacity = n + n / 4 + 8;
-    cells->records = memory_for_records(cells->capacity * size * sizeof(double));
+    cells->records = pages_allocate(cells->capacity * size * sizeof(double));
     cells->kinds = cells->method.local ? malloc(cells->capacity) : NULL;
     cells->paces = cells->method.local ? malloc(cells->capacity * sizeof(double)) : NULL;
     const bool reactions =

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "memory.h"
 
-#include <stdint.h>
-#include <stdlib.h>
-#include <sys/mman.h>
-
 #include "solver.h"
 
 unsigned memory_uses(const struct simulation *simulation)
@@ -33,23 +29,4 @@ double memory_bytes(const struct setup *setup)
     const size_t arrays = particles_arrays(setup->dim, memory_uses(&simulation)) + OTHERS;
     return sizeof(double) * n * (double)(arrays + (size_t)setup->dim) +
            simulation.plan.sums->bytes(&simulation, n);
-}
-
-void memory_ask_for_large_pages(void *block, size_t bytes)
-{
-#ifdef MADV_HUGEPAGE
-    const uintptr_t page = MEMORY_LARGE_PAGE, first = ((uintptr_t)block + page - 1) / page * page,
-                    end = ((uintptr_t)block + bytes) / page * page;
-    if (first < end) (void)madvise((void *)first, end - first, MADV_HUGEPAGE);
-#else
-    (void)block, (void)bytes;
-#endif
-}
-
-void *memory_for_records(size_t bytes)
-{
-    const size_t line = 64, at = bytes < MEMORY_LARGE_PAGE ? line : MEMORY_LARGE_PAGE;
-    void *block = aligned_alloc(at, (bytes + at - 1) / at * at);
-    if (block) memory_ask_for_large_pages(block, bytes);
-    return block;
 }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "memory.h"
+#include "pages.h"
 
 enum { LINE = 8 /* doubles in a cache line */ };
 
@@ -57,8 +57,7 @@ static enum status allocate(struct particles *particles, struct error *error)
     /* A pass walks along a dozen arrays at once. In pages of 4 kB their addresses, and the fetching
      * of what comes next, begin anew every 512 particles. Short arrays are left alone: those
      * without use would share a page with others, and take room. */
-    if ((size_t)length * sizeof(double) >= MEMORY_LARGE_PAGE)
-        memory_ask_for_large_pages(particles->block, bytes);
+    if ((size_t)length * sizeof(double) >= PAGES_LARGE) pages_ask_large(particles->block, bytes);
     const size_t beyond = (uintptr_t)particles->block / sizeof(double) % LINE;
     double *next = particles->block + (LINE - (ptrdiff_t)beyond) % LINE + particles->ghosts;
     for (size_t k = 0; k < count; k++, next += length) *arrays[k] = next;

@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "made_bytes.h"
-#include "memory.h"
 #include "near.h"
+#include "pages.h"
 #include "particles.h"
 
 enum { ARRAYS_MOST = 64, LINE = 8 };
@@ -251,8 +251,8 @@ TEST(large_pages)
         expect_pages(dim, 1 << 18, "x", true);
         expect_pages(dim, 1 << 19, "signal", true);
     }
-    void *records = memory_for_records(MEMORY_LARGE_PAGE);
+    void *records = pages_allocate(PAGES_LARGE);
     const int asked = asked_for((uintptr_t)records);
     free(records);
-    assert_true(asked && (uintptr_t)records % MEMORY_LARGE_PAGE == 0);
+    assert_true(asked && (uintptr_t)records % PAGES_LARGE == 0);
 }
