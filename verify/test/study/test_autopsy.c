@@ -106,6 +106,7 @@ TEST(a_viscosity_that_does_not_vanish_is_named_among_disorder)
         const struct autopsy_level *level = &autopsy.levels[l];
         assert_true(level->regularity.spread > 0.03);
         assert_true(level->share[AUTOPSY_DISORDER] < 0.5 * level->share[AUTOPSY_VISCOSITY]);
+        assert_true(level->size[AUTOPSY_DISORDER].rms < 0.6 * level->size[AUTOPSY_VISCOSITY].rms);
     }
 }
 
