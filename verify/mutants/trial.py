@@ -87,15 +87,16 @@ def units_of(build, source, tree, wanted):
 def checks_of(folder):
     """Group: GROUP/CHECK, all that are quick, as their descriptors have them; a group in which macros
     make some of the descriptors is not there."""
-    quick, found = collections.defaultdict(list), collections.Counter()
+    quick, found, listed = collections.defaultdict(list), collections.Counter(), collections.Counter()
     for path in sorted(glob.glob(os.path.join(folder, "*.c"))):
         with open(path) as f:
             for group, name, rest in re.findall(r'^CHECK_DEFINE\(\s*(\w+),\s*(\w+),(.*?)\);$', f.read(), flags=re.S | re.M):
                 found[group] += 1
                 if ".slow = true" not in rest:
                     quick[group].append("%s/%s" % (group, name))
-    with open(os.path.join(folder, "checks.def")) as f:
-        listed = collections.Counter(re.findall(r"^CHECK\(\w+, ([a-z]+)_", f.read(), flags=re.M))  # file, then group_name
+    for path in glob.glob(os.path.join(folder, "checks.def")):
+        with open(path) as f:
+            listed = collections.Counter(re.findall(r"^CHECK\(\w+, ([a-z]+)_", f.read(), flags=re.M))  # file, then group_name
     return {group: checks for group, checks in quick.items() if found[group] == listed[group]}
 
 

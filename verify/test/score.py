@@ -114,6 +114,11 @@ def main(score, work):
         with open(os.path.join(work, "score.json")) as f:
             return done.stdout, json.load(f)
 
+    sys.path.insert(0, os.path.dirname(score))
+    import trial
+    checks = trial.checks_of(os.path.join(os.path.dirname(score), "..", "check"))
+    expect("checks are tried one at a time: %s" % checks, len(checks.get("hydro", ())) > 10 and len(checks.get("exact", ())) > 4)
+
     said, first = run()
     entry = [f for f in first["files"] if f["file"] == "src/tiny.c"][0]
     survivors = {s["change"]: s for s in first["survivors"]}
