@@ -31,18 +31,19 @@ enum status slab_ask(struct run_settings *asked, const char *layers, const char 
     return STATUS_OK;
 }
 
-/* Two reaches of the largest particle, a cube of its area times what layers are apart; where
- * density jumps, some reach a little further, and are refused by the search. */
+/* Layers are thicker than two reaches of the largest particle, a cube of its area times what layers
+ * are apart: of equal ones round-off would decide. Where density jumps, some particles reach a
+ * little further, and are refused by the search. */
 static enum status check_reach(const struct initial *plane, int layers, double apart,
                                const struct scheme *scheme, struct error *error)
 {
     double largest = 0;
     for (size_t i = 0; i < plane->n; i++)
         largest = fmax(largest, cbrt(plane->m[i] / plane->rho[i] * apart));
-    const double least = ceil(2 * scheme->eta * largest / apart);
+    const double least = floor(2 * scheme->eta * largest / apart * (1 + 1e-9)) + 1;
     if (layers >= least) return STATUS_OK;
     return error_set(error, STATUS_BAD_INPUT,
-                     "%d layers are %g thick, and smoothing lengths up to %g, beyond half of that: "
+                     "%d layers are %g thick, no more than twice the largest smoothing length, %g: "
                      "at least %.0f layers or a smaller eta are needed",
                      layers, layers * apart, scheme->eta * largest, least);
 }

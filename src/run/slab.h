@@ -16,8 +16,8 @@ enum status slab_ask(struct run_settings *asked, const char *layers, const char 
 
 /* Lays the particles of the run's plane once more in each of asked.layers layers, as far apart as
  * particles are in the mean; the run then has the box and the scheme of space, and the problem in
- * it serves for these alone. STATUS_BAD_INPUT: fewer layers than particles reach. STATUS_ENVIRONMENT:
- * no memory. */
+ * it serves for these alone. STATUS_BAD_INPUT: fewer layers than particles reach.
+ * STATUS_ENVIRONMENT: no memory. */
 enum status slab_lay(struct run *run, struct initial *initial, struct error *error);
 
 #endif

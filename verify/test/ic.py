@@ -22,7 +22,9 @@ BAD = (("ic", "case"), ("ic sod --out a.csv", "--format"), ("ic sod --format csv
        ("ic gresho --format sph_exa --out a.csv", "for 3D"), ("ic sod kernel=none --format csv --out a.csv", "none"),
        ("ic sod --format csv --out a --json a", "same file"),
        ("ic sod --as-3d 8 --format csv --out a.csv", "cases in 2D"), ("ic gresho --as-3d 0 --format csv --out a.csv", "1 to"),
-       ("ic gresho --as-3d 7 --format csv --out a.csv", "at least 8 layers"), ("ic square --as-3d 8 --format csv --out a.csv", "at least 9 layers"))
+       ("ic gresho --as-3d 7 --format csv --out a.csv", "at least 8 layers"), ("ic square --as-3d 8 --format csv --out a.csv", "at least 9 layers"),
+       ("ic gresho n=16^2 eta=4 --as-3d 8 --format csv --out a.csv", "at least 9 layers"),
+       ("ic gresho n=19^2 eta=4 --as-3d 8 --format csv --out a.csv", "at least 9 layers"))
 
 
 def call(*words, status=0):
