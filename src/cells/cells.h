@@ -92,7 +92,8 @@ struct cells_fields {
     unsigned char *woken, wake_to;      /* 0, or the level that a particle wakes to */
     double *impulse[3], *heat, span;    /* receivers gain span times their rates */
     double *F[3], *de, *div_v, *signal; /* signal: largest speed of the particle's pairs */
-    /* shifting: velocity against the flow, and rates of what it exchanges, in none of the above */
+    /* shifting: velocity relative to the flow, and rates of what it exchanges, in none of the above
+     */
     double *shift[3], *dm, *dp_shift[3], *de_shift;
 };
 

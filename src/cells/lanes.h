@@ -32,7 +32,7 @@ enum lanes_field {
     RECORD_SLOPE,
     RECORD_PROJECTOR,    /* symmetric */
     RECORD_ACCELERATION, /* ax ay (az) */
-    RECORD_SHIFT,        /* velocity against the flow */
+    RECORD_SHIFT,        /* velocity relative to the flow */
     RECORD_FIELDS
 };
 

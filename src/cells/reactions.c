@@ -30,8 +30,8 @@ bool reactions_reserve(struct reactions *reactions, int each, size_t slots)
     const size_t values = (size_t)each, chunks = slots / CHUNK_LEAST + 2;
     free(reactions->of[0]);
     reactions->values = each;
-    reactions->of[0] = pages_allocate(slots * (2 * values * sizeof(double) + 1) +
-                                          chunks * sizeof(uint32_t) + 3);
+    reactions->of[0] =
+        pages_allocate(slots * (2 * values * sizeof(double) + 1) + chunks * sizeof(uint32_t) + 3);
     if (!reactions->of[0]) return false;
     reactions->of[1] = reactions->of[0] + slots * values;
     reactions->begin = (uint32_t *)(void *)(reactions->of[1] + slots * values);

@@ -69,7 +69,7 @@
            "one for each particle, by powers of two; pairs exchange impulses and energy", "",      \
            __VA_ARGS__)
 
-/* What moves particles besides the flow, in 2D and 3D: see cells_shift.c. */
+/* What moves particles besides the flow, in 2D and 3D: see shifting.h. */
 #define SHIFTING_LIST(CHOICE, ...)                                                                 \
     CHOICE(SHIFTING_NONE, "none", "particles move with the flow", "", __VA_ARGS__)                 \
     CHOICE(SHIFTING_FLUXES, "fluxes",                                                              \

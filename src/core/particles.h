@@ -73,7 +73,7 @@ enum particle_use {
     SCALAR(de_mean, USE_LOCAL_STEPS, "mean de/dt")                                                 \
     VECTOR(impulse, USE_LOCAL_STEPS, "from pairs of finer levels, since the step began")           \
     SCALAR(heat, USE_LOCAL_STEPS, "and the energy")                                                \
-    VECTOR(shift, USE_SHIFT, "velocity against the flow")                                          \
+    VECTOR(shift, USE_SHIFT, "velocity relative to the flow")                                      \
     SCALAR(dm, USE_SHIFT, "mass that the shift exchanges, dm/dt")                                  \
     VECTOR(dp_shift, USE_SHIFT, "momentum that goes with it, not in F")                            \
     SCALAR(de_shift, USE_SHIFT, "and energy, not in de")

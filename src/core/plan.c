@@ -42,7 +42,7 @@ struct plan plan_of_setup(const struct setup *setup)
 {
     struct plan plan = plan_make(&setup->scheme, setup->dim, setup->skip, !setup->generic);
     for (int k = 0; k < setup->dim; k++) plan.gravity |= setup->gravity[k] != 0;
-    plan.sleep &= !plan.gravity; /* nobody is at rest */
+    plan.sleep &= !plan.gravity; /* no particle is at rest */
     return plan;
 }
 
@@ -172,8 +172,8 @@ size_t plan_explain(const struct setup *setup, struct plan_line *lines, size_t m
     line(&writer, "sleep", plan.sleep,
          "skip=auto: no sums where no signal has been; acts as a start changed by 1e-11, in 2D and "
          "3D by up to 1e-8",
-         plan.shift     ? "shifting=fluxes: nobody is at rest"
-         : plan.gravity ? "gravity: nobody is at rest"
+         plan.shift     ? "shifting=fluxes: no particle is at rest"
+         : plan.gravity ? "gravity: no particle is at rest"
                         : "skip=none: every particle at every step");
     line(&writer, "final state", !scheme->integrator->ends_evaluated,
          "density and equation of state once more at t_end", "the last evaluation was at t_end");

@@ -120,61 +120,62 @@ static enum status check_members(const struct scheme *scheme, int dim, struct er
     return STATUS_OK;
 }
 
-/* What local steps go together with. */
-static enum status check_steps(const struct scheme *scheme, struct error *error)
+/* A choice of another key that one does not go together with. */
+struct exclusion {
+    bool excluded;
+    const char *key, *name, *why;
+};
+
+/* The first of them that is excluded. */
+static enum status refuse_first(const char *choice, const struct exclusion *list, size_t n,
+                                struct error *error)
 {
-    const char *key = NULL, *name = NULL, *why = NULL;
-    if (scheme->steps != STEPS_LOCAL) return STATUS_OK;
-    if (!scheme->integrator->local) {
-        key = "integrator", name = scheme->integrator->member.name;
-        why = "local steps are those of predicted_midpoint";
-    } else if (scheme->h_method != H_PREDICTED) {
-        key = "h_method", name = scheme_h_method_family.members[scheme->h_method]->name;
-        why = "widths are predicted between a particle's sums";
-    } else if (scheme->formulation != FORMULATION_VANILLA_ICE) {
-        key = "formulation", name = scheme_formulation_family.members[scheme->formulation]->name;
-        why = "grad-h factors cannot be predicted";
-    } else if (scheme->volume_element == VOLUME_ENERGY) {
-        key = "volume_element", name = "energy";
-        why = "the volume does not follow from the width";
-    } else if (viscosity_varies(scheme->viscosity)) {
-        key = "viscosity", name = scheme_viscosity_family.members[scheme->viscosity]->name;
-        why = "alpha evolves in global steps alone";
-    }
-    if (!key) return STATUS_OK;
-    return error_set(error, STATUS_BAD_INPUT, "steps=local and %s=%s exclude each other: %s", key,
-                     name, why);
+    for (size_t k = 0; k < n; k++)
+        if (list[k].excluded)
+            return error_set(error, STATUS_BAD_INPUT, "%s and %s=%s exclude each other: %s", choice,
+                             list[k].key, list[k].name, list[k].why);
+    return STATUS_OK;
 }
 
-/* What particle shifting goes together with: masses change, and with them all that takes them for
- * constant. */
+#define MEMBER(family) #family, scheme_##family##_family.members[scheme->family]->name
+
+static enum status check_steps(const struct scheme *scheme, struct error *error)
+{
+    const struct exclusion list[] = {
+        {!scheme->integrator->local, "integrator", scheme->integrator->member.name,
+         "local steps are those of predicted_midpoint"},
+        {scheme->h_method != H_PREDICTED, MEMBER(h_method),
+         "widths are predicted between a particle's sums"},
+        {scheme->formulation != FORMULATION_VANILLA_ICE, MEMBER(formulation),
+         "grad-h factors cannot be predicted"},
+        {scheme->volume_element == VOLUME_ENERGY, MEMBER(volume_element),
+         "the volume does not follow from the width"},
+        {viscosity_varies(scheme->viscosity), MEMBER(viscosity),
+         "alpha evolves in global steps alone"},
+    };
+    if (scheme->steps != STEPS_LOCAL) return STATUS_OK;
+    return refuse_first("steps=local", list, sizeof list / sizeof *list, error);
+}
+
+/* Shifting changes masses, and excludes all that takes them for constant. */
 static enum status check_shifting(const struct scheme *scheme, struct error *error)
 {
-    const char *key = NULL, *name = NULL, *why = NULL;
+    const struct exclusion list[] = {
+        {!scheme->integrator->shifts, "integrator", scheme->integrator->member.name,
+         "masses advance with predicted_midpoint alone"},
+        {scheme->steps != STEPS_GLOBAL, "steps",
+         scheme_time_steps_family.members[scheme->steps]->name,
+         "masses change in global steps alone"},
+        {scheme->energy != ENERGY_TOTAL, MEMBER(energy), "particles exchange total energy"},
+        {scheme->formulation != FORMULATION_VANILLA_ICE, MEMBER(formulation),
+         "grad-h factors belong to constant masses"},
+        {scheme->volume_element != VOLUME_NUMBER, MEMBER(volume_element),
+         "volumes must not depend on what particles exchange, as those of number do"},
+        {gradient_of[scheme->gradient].weight == WEIGHT_NONE, MEMBER(gradient),
+         "particles shift along the gradient that a moment matrix makes of a constant"},
+    };
     if (scheme->shifting == SHIFTING_NONE) return STATUS_OK;
-    if (!scheme->integrator->shifts) {
-        key = "integrator", name = scheme->integrator->member.name;
-        why = "masses advance with predicted_midpoint alone";
-    } else if (scheme->steps != STEPS_GLOBAL) {
-        key = "steps", name = scheme_time_steps_family.members[scheme->steps]->name;
-        why = "masses change in global steps alone";
-    } else if (scheme->energy != ENERGY_TOTAL) {
-        key = "energy", name = scheme_energy_family.members[scheme->energy]->name;
-        why = "particles exchange total energy";
-    } else if (scheme->formulation != FORMULATION_VANILLA_ICE) {
-        key = "formulation", name = scheme_formulation_family.members[scheme->formulation]->name;
-        why = "grad-h factors belong to constant masses";
-    } else if (scheme->volume_element != VOLUME_NUMBER) {
-        key = "volume_element";
-        name = scheme_volume_element_family.members[scheme->volume_element]->name;
-        why = "volumes must not depend on what particles exchange, as those of number do";
-    } else if (gradient_of[scheme->gradient].weight == WEIGHT_NONE) {
-        key = "gradient", name = scheme_gradient_family.members[scheme->gradient]->name;
-        why = "particles shift along the gradient that a moment matrix makes of a constant";
-    }
-    if (!key) return STATUS_OK;
-    return error_set(error, STATUS_BAD_INPUT, "shifting=fluxes and %s=%s exclude each other: %s",
-                     key, name, why);
+    return refuse_first("shifting=fluxes", list, sizeof list / sizeof *list, error);
 }
 
 /* Reports a value that is not in (least, most]. */

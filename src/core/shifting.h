@@ -12,10 +12,10 @@
 
 #include "specialise.h"
 
-/* The velocity against the flow, -eta h c E/9, at most c/4; E is what the particle's gradient makes
- * of 1. At the longest steps of predicted_midpoint, which are a number of spacings, a quarter more
- * is unstable in vortices of 96^2 particles; the factor eta makes that limit the same for all
- * widths. */
+/* The velocity relative to the flow, -eta h c E/9, at most c/4; E is what the particle's gradient
+ * makes of 1. A shift that is a quarter longer is unstable in fine vortices at the longest steps of
+ * predicted_midpoint, which are a number of spacings; the factor eta makes that limit the same for
+ * all widths. */
 ALWAYS_INLINE void shifting_velocity(int dim, const double *of_one, double eta, double h, double c,
                                      double *shift)
 {

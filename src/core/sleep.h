@@ -79,8 +79,8 @@ double sleep_disturbance(const struct simulation *simulation, ptrdiff_t first, p
 void sleep_begin(struct simulation *simulation, ptrdiff_t first, ptrdiff_t len);
 
 /* After the rates of a state have been found: shares out among those awake what sleepers do not
- * get, up to the tolerance of each, so that momentum and total energy stay to round-off. Where
- * walls or fixed layers take momentum or energy, too, these are left alone. */
+ * get, up to the tolerance of each sleeper, so that momentum and total energy stay to round-off.
+ * Where walls or fixed layers take momentum or energy, too, these are left alone. */
 void sleep_balance(struct simulation *simulation);
 
 #endif

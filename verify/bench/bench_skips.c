@@ -321,7 +321,7 @@ static enum status add_case(struct bench *bench, size_t c, struct error *error)
 
 /* --- all of them ------------------------------------------------------------------------------ */
 
-/* What steps that are longer by a part of the tolerance of sleep do to the answer: strong shocks
+/* What steps that are longer by this part of themselves do to the answer: strong shocks
  * and noise behind them amplify round-off, and no promise can be kept to less. 0 where it cannot be
  * measured. */
 static double sensitivity(const struct job *job, double nudge)

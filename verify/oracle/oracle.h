@@ -35,7 +35,7 @@ struct oracle_particle {
     /* rates dp/dt, dU/dt, d(e)/dt, dalpha/dt; divergence of v; signal speed */
     oracle_vector F;
     long double dU, de, dalpha, div_v, signal;
-    /* particle shifting: velocity against the flow, rates of what it exchanges, in none of the
+    /* particle shifting: velocity relative to the flow, and rates of the exchange, in none of the
      * above
      */
     oracle_vector shift, dp_shift;

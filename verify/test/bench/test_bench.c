@@ -376,8 +376,17 @@ TEST(test_promises_are_kept_or_seen_broken)
     for (size_t i = 0; i < skips.count; i++) {
         const struct bench_skip *skip = &skips.skips[i];
         assert_true(skip->kept);
+        assert_true(skip->enough);
         assert_true(isnan(skip->difference) == (skip->promise == PROMISE_UNUSED));
     }
+    skips.skips[0].enough = false;
+    json_t *document = json_object();
+    bench_skips_add_json(&skips, false, document);
+    const json_t *list = json_object_get(document, "skips");
+    for (size_t i = 0; i < skips.count; i++)
+        assert_string_equal(json_string_value(json_object_get(json_array_get(list, i), "status")),
+                            i ? "pass" : "fail");
+    json_decref(document);
     bench_skips_free(&skips);
 }
 

@@ -56,7 +56,7 @@ static void speaks_of_its_pass(const struct run *run, const struct plan_line *li
         {"sleep", "no sums where no signal has been",
          !skip                     ? "every particle at every step"
          : s->steps == STEPS_LOCAL ? "steps=local"
-                                   : "gravity: nobody is at rest"},
+                                   : "gravity: no particle is at rest"},
         {"final state", "once more at t_end", "the last evaluation was at t_end"},
     };
     for (size_t k = 0; k < sizeof reasons / sizeof *reasons; k++)
