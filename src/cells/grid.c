@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "grid_inside.h"
+#include "pages.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,14 +24,14 @@ static bool reserve_points(struct grid *grid, size_t n)
     free_all(grid);
     const size_t capacity = n + n / 4 + 64;
     grid->capacity = capacity;
-    grid->cell_of = malloc(capacity * sizeof *grid->cell_of);
-    grid->order = malloc(capacity * sizeof *grid->order);
-    grid->position = aligned_alloc(64, (capacity * sizeof *grid->position + 63) / 64 * 64);
+    grid->cell_of = pages_allocate(capacity * sizeof *grid->cell_of);
+    grid->order = pages_allocate(capacity * sizeof *grid->order);
+    grid->position = pages_allocate(capacity * sizeof *grid->position);
     /* copied in whole vectors, also those of the last cell */
     bool floats = (grid->radius2 = calloc(capacity + COPIED, sizeof(float)));
     for (int a = 0; a < 3; a++)
         floats &= (grid->place[a] = calloc(capacity + COPIED, sizeof(float))) != NULL;
-    grid->lists = malloc(capacity * sizeof *grid->lists);
+    grid->lists = pages_allocate(capacity * sizeof *grid->lists);
     grid->part_begin = malloc(capacity * sizeof *grid->part_begin);
     grid->part_cell = malloc(capacity * sizeof *grid->part_cell);
     if (floats && grid->cell_of && grid->order && grid->position && grid->lists &&

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "grid_inside.h"
+#include "pages.h"
 #include "specialise.h"
 
 #ifdef _OPENMP
@@ -18,14 +19,16 @@ static int32_t *pool_take(struct grid_pool *pool, size_t most)
         while (pool->used_chunks < pool->count && pool->sizes[pool->used_chunks] < most)
             pool->used_chunks++;
         if (pool->used_chunks == pool->count) {
-            const size_t size = most > CHUNK ? most : CHUNK;
+            /* the first one is small: most runs need no more */
+            const size_t usual = pool->count > 0 ? CHUNK_NEXT : CHUNK,
+                         size = most > usual ? most : usual;
             int32_t **chunks = realloc(pool->chunks, (pool->count + 1) * sizeof *chunks);
             if (!chunks) return NULL;
             pool->chunks = chunks;
             size_t *sizes = realloc(pool->sizes, (pool->count + 1) * sizeof *sizes);
             if (!sizes) return NULL;
             pool->sizes = sizes;
-            pool->chunks[pool->count] = malloc(size * sizeof **chunks);
+            pool->chunks[pool->count] = pages_allocate(size * sizeof **chunks);
             if (!pool->chunks[pool->count]) return NULL;
             pool->sizes[pool->count++] = size;
         }
