@@ -250,6 +250,19 @@ static enum status begin_start(struct run *run, struct run_result *result, struc
     return status;
 }
 
+/* Of a liquid, whose pressure no gas has: the case's own. */
+static void give_liquid_pressure(struct run_result *result)
+{
+    const struct snapshot *s = &result->snapshot;
+    double *P = (double *)s->P, x[3] = {0}; /* points into result->storage */
+    struct problem_state state;
+    for (size_t i = 0; i < s->n; i++) {
+        for (int d = 0; d < result->problem.domain.dim; d++) x[d] = s->x[d][i];
+        problem_sample(&result->problem, x, 0, &state);
+        P[i] = state.P;
+    }
+}
+
 enum status run_start(const struct run *asked, struct run_result *result, struct error *error)
 {
     struct run run = *asked;
@@ -268,6 +281,7 @@ enum status run_start(const struct run *asked, struct run_result *result, struct
         struct snapshot seen;
         simulation_snapshot(simulation, &seen);
         status = run_keep(result, &seen, error);
+        if (!status && run.problem.problem->liquid) give_liquid_pressure(result);
     }
     simulation_destroy(simulation);
     if (status) run_free(result);
