@@ -92,7 +92,7 @@ static void prune(const char *folder, double seconds, struct cache_census *censu
             snprintf(path, sizeof path, "%s/%s", folder, entry->d_name) >= (int)sizeof path ||
             stat(path, &is))
             continue;
-        if (difftime(now, is.st_mtime) > seconds && unlink(path) == 0) {
+        if (difftime(now, is.st_mtime) >= seconds && unlink(path) == 0) {
             census->removed++;
         } else {
             census->entries++;

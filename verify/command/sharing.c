@@ -87,6 +87,11 @@ enum status sharing_take(struct sharing *sharing, const struct options *options,
         return error_set(error, STATUS_BAD_INPUT,
                          "%s: --shard and --force exclude each other: begin with an empty cache",
                          options->command->name);
+    if (!folder && options_value(options, "only-build"))
+        return error_set(
+            error, STATUS_BAD_INPUT,
+            "%s: --only-build needs --cache DIR: it is results there that have a build",
+            options->command->name);
     if (take_engine(sharing, options, folder, force, error)) return error->status;
     if (folder && sharing->list && access(folder, R_OK)) folder = NULL; /* and none is made */
     if (folder && cache_open(&sharing->cache, folder, force, error)) return error->status;

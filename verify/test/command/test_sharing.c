@@ -364,7 +364,7 @@ TEST(wrong_options)
          "converge: --engine-options and --engine-tasks need --engine slurm"},
         {{"engine-options", "engine"}, {"-p x", "local"}, false, "need --engine slurm"},
         {{"only-build", "cache"}, {"0123", "c"}, false, ", not 0123: another program, C library"},
-        {{"only-build"}, {"0123"}, false, NULL},
+        {{"only-build"}, {"0123"}, false, "converge: --only-build needs --cache DIR"},
     };
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         struct sharing sharing;
@@ -372,7 +372,7 @@ TEST(wrong_options)
         for (int i = 0; i < 3 && rows[r].names[i]; i++)
             set(rows[r].names[i],
                 strcmp(rows[r].values[i], "c") ? rows[r].values[i] : call.place.cache_folder);
-        const bool build = strcmp(rows[r].names[0], "only-build") == 0;
+        const bool build = rows[r].names[1] && strcmp(rows[r].names[0], "only-build") == 0;
         call.error = (struct error){0};
         const enum status status =
             sharing_take(&sharing, &call.options, 5, NULL, rows[r].force, &call.error);
