@@ -10,7 +10,8 @@
 #include "start_cause.h"
 
 /* Above this a difference is none of rounding. */
-#define WRONG 1e-4
+#define WRONG    1e-4
+#define MASS_OFF 0.02 /* of the whole: no lattice's rounding */
 
 static const char *const names[START_FIELDS] = {"velocity", "internal energy", "mass", "pressure"};
 
@@ -103,20 +104,43 @@ static bool gases_fit(const struct start_gas *gas)
     return fit;
 }
 
-/* Masses are equal, or volumes are, or masses of each gas; false: none of it. */
-static bool measure_masses(struct start_gas *gas, double *room)
+struct right_value {
+    double value;
+    size_t count;
+    bool of_whole;
+};
+
+/* The value that most have. Where the file's whole mass is not the case's, it is rather the one
+ * that would make up the case's, if there are particles that have it: most may be wrong. */
+static struct right_value find_right(double *values, size_t n, double right, bool mass_is_off)
+{
+    const bool of_whole = mass_is_off && near(values, n, right);
+    const double value = of_whole ? right : median(values, n);
+    return (struct right_value){value, near(values, n, value), of_whole};
+}
+
+/* Masses are equal, or volumes are, or masses of each gas; false: none of it. ratio: the file's
+ * whole mass to the case's; NaN where the box is not closed. */
+static bool measure_masses(struct start_gas *gas, double ratio, double *room)
 {
     const struct snapshot *s = gas->snapshot;
+    const struct domain *box = &gas->problem->domain;
+    const bool off = fabs(ratio - 1) > MASS_OFF;
+    double mean = 0, volume = 1;
+    for (int d = 0; d < box->dim; d++) volume *= domain_length(box, d);
+    for (size_t i = 0; i < s->n; i++) mean += s->m[i] / (double)s->n;
     memcpy(room, s->m, s->n * sizeof *room);
-    gas->mass = median(room, s->n);
-    const size_t masses = near(room, s->n, gas->mass);
+    const struct right_value of_mass = find_right(room, s->n, mean / ratio, off);
     for (size_t i = 0; i < s->n; i++) room[i] = s->m[i] / gas->exact[i].rho;
-    const double volume = median(room, s->n);
-    const size_t volumes = near(room, s->n, volume);
-    gas->volume = volumes > masses ? volume : 0;
-    if (find_gases(gas, room) && gases_fit(gas)) return true;
+    const struct right_value of_volume = find_right(room, s->n, volume / (double)s->n, off);
+    const bool volumes = of_mass.of_whole != of_volume.of_whole ? of_volume.of_whole
+                                                                : of_volume.count > of_mass.count;
+    const struct right_value *right = volumes ? &of_volume : &of_mass;
+    gas->mass = of_mass.value;
+    gas->volume = volumes ? of_volume.value : 0;
+    if (!right->of_whole && find_gases(gas, room) && gases_fit(gas)) return true;
     gas->gases = 0;
-    return 2 * (volumes > masses ? volumes : masses) > s->n;
+    return right->of_whole || 2 * right->count > s->n;
 }
 
 /* Does the file say so of most particles? Some codes have a pressure of their own. */
@@ -227,11 +251,7 @@ static bool are_moved(const struct start_gas *gas)
 /* All masses are so many times the case's: each for itself looks right. */
 static void look_at_all_mass(const struct start_gas *gas, double ratio, struct judge_start *start)
 {
-    enum { PER_CENT = 100 };
-    bool closed = true;
-    for (int d = 0; d < gas->problem->domain.dim; d++)
-        closed = closed && gas->problem->boundary[d] == BOUNDARY_PERIODIC;
-    if (start->wrong || !closed || !(fabs(ratio - 1) * PER_CENT > 2)) return;
+    if (start->wrong || !(fabs(ratio - 1) > MASS_OFF)) return;
     start->wrong = gas->snapshot->n;
     snprintf(start->message, sizeof start->message,
              "all particles have the wrong mass: it is %.6g times the case's", ratio);
@@ -244,8 +264,8 @@ static void look(struct start_gas *gas, double precision, double mass_ratio, dou
     const struct snapshot *s = gas->snapshot;
     const struct problem *problem = gas->problem->problem;
     measure_gas(gas);
-    const bool known[START_FIELDS] = {true, !problem->mean_energy, measure_masses(gas, room),
-                                      pressures_follow(gas)};
+    const bool known[START_FIELDS] = {true, !problem->mean_energy,
+                                      measure_masses(gas, mass_ratio, room), pressures_follow(gas)};
     for (int f = 0; f < START_FIELDS; f++) {
         start->worst[f] = known[f] ? 0 : (double)NAN;
         for (size_t i = 0; known[f] && i < s->n; i++) {
@@ -278,6 +298,8 @@ enum status judge_start_look(const struct run_result *result, double precision, 
     const struct snapshot *s = &result->snapshot;
     struct start_gas gas = {.problem = &result->problem, .snapshot = s, .spacing = result->spacing};
     *start = (struct judge_start){.looked = false};
+    for (int d = 0; d < result->problem.domain.dim; d++)
+        if (result->problem.boundary[d] != BOUNDARY_PERIODIC) mass_ratio = (double)NAN;
     if (result->time != 0 || problem->liquid || problem->filed || problem->own != OWN_NOT ||
         s->n < 4)
         return STATUS_OK;
