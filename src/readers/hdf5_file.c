@@ -277,7 +277,6 @@ static enum status take(const struct dataset *d, const struct snapshot_source *s
         else
             for (size_t i = 0; i < file->n; i++) file->column[column + c][i] = all[i * columns + c];
     }
-    if (column == SNAPSHOT_X) file->columns = (int)columns;
     set_precision(file, column, d->type);
     free(all);
     return status;

@@ -46,7 +46,6 @@ struct snapshot_file {
     size_t n;                         /* all rows: gas first */
     size_t gas;                       /* rows of gas */
     int dim;                          /* as the file says it, or as its positions vary */
-    int columns;                      /* positions that the file has: 1 to 3 */
     double *column[SNAPSHOT_COLUMNS]; /* n each; NULL: the file has none */
     double precision[2];              /* relative, of positions and of what is stored besides */
     struct snapshot_value time, gamma;

@@ -182,7 +182,6 @@ static const char *header_differs(const struct snapshot_file *a, const struct sn
            : !boxes_equal                     ? "box"
            : strcmp(a->boundary, b->boundary) ? "boundary"
            : a->dim != b->dim                 ? "dimension"
-           : a->columns != b->columns         ? "number of coordinates"
                                               : NULL;
 }
 
@@ -315,7 +314,7 @@ static enum status find_dimension(const char *path, struct snapshot_file *file, 
 {
     int dim = 0;
     char value[16];
-    for (int d = 0; d < file->columns; d++) {
+    for (int d = 0; d < 3 && file->column[d]; d++) {
         const double *x = file->column[d];
         size_t i = 1;
         while (i < file->n && x[i] == x[0]) i++;

@@ -231,7 +231,6 @@ enum status text_table_read(const struct text_table *table, size_t from, size_t 
     if (!status && typed) gas_first(file, type, type + file->n);
     free(type);
     file->precision[0] = file->precision[1] = DBL_EPSILON / 2;
-    file->columns = !file->column[1] ? 1 : !file->column[2] ? 2 : 3;
     file->parts = 1;
     return status;
 }

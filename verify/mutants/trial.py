@@ -57,7 +57,7 @@ def quick_tests(build):
 
 
 def units_of(build, source, tree, wanted):
-    """The tests of the quick suite as they stand in meson; groups of checks one check at a time.
+    """The tests of the quick suite as they stand in meson; groups of checks one check at a time, transcripts too.
     tree: the rewritten copy of source. wanted: a regular expression for their names."""
     checked, tested = os.path.join(source, "verify", "check"), os.path.join(source, "verify", "test")
     rooms = [os.path.join(source, r) for r in ("src", "reference", "reports", "cases", "verify")]
@@ -79,8 +79,10 @@ def units_of(build, source, tree, wanted):
         own += glob.glob(os.path.join(tested, "*.h"))
         if test["name"] == "suite":
             own += files_below(checked)
-        units.append(Unit(test["name"], [program if os.path.exists(program) else command[0]] + command[1:], folder,
-                          common + hash_of(own, source)))
+        program = program if os.path.exists(program) else command[0]
+        for one in command[2:] if test["name"] == "transcripts" else [None]:
+            units.append(Unit("transcripts/" + one if one else test["name"],
+                              [program] + ([command[1], one] if one else command[1:]), folder, common + hash_of(own, source)))
     return [u for u in units if re.search(wanted, u.name)]
 
 

@@ -189,8 +189,8 @@ static enum status read(const struct snapshot_source *source,
     if (text_table_name(&table, options->map, error) ||
         text_table_read(&table, at, line, file, error))
         return error->status;
-    for (int d = 0; d < 3; d++)
-        if (file->boxed && d < file->columns && !(file->box[d] > 0 && isfinite(file->box[d])))
+    for (int d = 0; d < 3 && file->column[d]; d++)
+        if (file->boxed && !(file->box[d] > 0 && isfinite(file->box[d])))
             return error_set(error, STATUS_BAD_INPUT, "%.200s: box = %g; allowed: above 0",
                              source->path, file->box[d]);
     snprintf(file->code, sizeof file->code, "unknown");

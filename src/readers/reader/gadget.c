@@ -329,7 +329,6 @@ static enum status take_blocks(const struct binary *b, const struct layout *layo
                    {ENERGIES, SNAPSHOT_U},      {DENSITIES, SNAPSHOT_RHO}, {WIDTHS, SNAPSHOT_H},
                    {ACCELERATIONS, SNAPSHOT_AX}};
     file->n = file->gas = b->particles[0];
-    file->columns = 3;
     for (size_t k = 0; k < sizeof columns / sizeof *columns; k++)
         if ((columns[k].block != MASSES || b->mass[0] == 0) &&
             take_block(b, layout, columns[k].block, columns[k].column, file, error))

@@ -31,7 +31,7 @@ static void place(const struct snapshot_source *source, struct snapshot_file *fi
     hdf5_text(source, "Header", "Keys", file->keys, sizeof file->keys);
     if (!file->boxed || hdf5_numbers(source, "Header", "Origin", corner, 3) != 3) return;
     file->placed = true;
-    for (int d = 0; d < file->columns; d++) {
+    for (int d = 0; d < 3 && file->column[d]; d++) {
         file->corner[d] = corner[d];
         for (size_t i = 0; i < file->n; i++) file->column[d][i] += corner[d];
     }

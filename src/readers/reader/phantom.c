@@ -255,7 +255,6 @@ static enum status read(const struct snapshot_source *source,
                            "%.200s: its particles need real arrays x, y, z and h; they have:%s",
                            source->path, dump.arrays);
     file->parts = 1;
-    file->dim = file->columns = 3;
     snprintf(file->code, sizeof file->code, "%.79s", words + 3);
     file->code[strcspn(file->code, " ")] = '\0';
     if (!status) status = phantom_gas(source->path, &values.header, types, file, error);

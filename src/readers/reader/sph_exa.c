@@ -53,7 +53,6 @@ static enum status read(const struct snapshot_source *source,
     hdf5_last(source, "/", "Step#", step, sizeof step);
     if (hdf5_gas(source, step, names, sizeof names / sizeof *names, file, error))
         return error->status;
-    file->columns = !file->column[1] ? 1 : !file->column[2] ? 2 : 3;
     if (hdf5_numbers(source, step, "time", &number, 1) >= 1)
         file->time = (struct snapshot_value){true, number};
     if (hdf5_numbers(source, step, "gamma", &number, 1) >= 1) {

@@ -494,7 +494,6 @@ static enum status read_vtu(const struct snapshot_source *source,
         refuse(&vtk, "has no Piece; allowed: one, with points");
         return error->status;
     }
-    file->columns = !file->column[1] ? 1 : !file->column[2] ? 2 : 3;
     file->parts = 1;
     snprintf(file->code, sizeof file->code, "unknown");
     return STATUS_OK;

@@ -27,7 +27,7 @@ static const double boxed[3] = {1, 1, 1}, open_box[3] = {0, 0, 0};
 /* Particles at random in a unit box, with widths that differ; the last tenth is no gas. */
 static struct snapshot_file scatter(int dim, size_t n, double h, double masses)
 {
-    struct snapshot_file file = {.dim = dim, .columns = dim, .n = n, .gas = n - n / 10};
+    struct snapshot_file file = {.dim = dim, .n = n, .gas = n - n / 10};
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++)
         if (c < dim || (c >= SNAPSHOT_VX && c < SNAPSHOT_VX + dim) ||
             (c >= SNAPSHOT_M && c <= SNAPSHOT_H))
