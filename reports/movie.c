@@ -93,7 +93,7 @@ enum status movie_add(struct movie *movie, const struct plot *plot, struct error
     return error_set(error, STATUS_ENVIRONMENT, "no memory for the pictures of a movie");
 }
 
-/* ffmpeg writes into the file that takes its place when it is whole. */
+/* ffmpeg writes a temporary file, which replaces the movie when it is whole. */
 enum status movie_write(const struct movie *movie, const char *path, struct error *error)
 {
     const bool gif = !strcmp(strrchr(path, '.'), ".gif");

@@ -19,7 +19,7 @@ static void tile(struct buffer *to, const char *label, double good, double all, 
                   good < all ? "bad" : "good", anchor, good, all, label);
 }
 
-/* Orders and errors of runs: as expected of those that could be judged, and what became of the
+/* How many of the orders and errors that could be judged are as expected, and what became of the
  * others. */
 static void gates_tile(struct buffer *to, const json_t *verdict)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What orders are lost to: of each autopsy its sentence, a picture, and the shares at the finest
- * level. */
+ * What orders are lost to: for each autopsy its conclusion, a picture, and the shares of the error
+ * at the finest level. */
 #include <stdio.h>
 #include <string.h>
 
@@ -40,11 +40,12 @@ void page_autopsies(struct page_writer *writer, const json_t *autopsies)
     const json_t *document;
     buffer_add(
         to,
-        "<section id=\"autopsies\"><h2>What orders are lost to</h2>\n<p>The error of the velocity "
-        "where the solution is smooth, shared among its parts: the time step by runs with smaller "
-        "ones; gradient, volume elements, disorder and viscosity by what they make of exact "
-        "fields, at regular positions and where the run's particles have come to. The order of a "
-        "part is that of its share of the error, with its 95 % interval.</p>\n");
+        "<section id=\"autopsies\"><h2>What orders are lost to</h2>\n<p>Where the solution is "
+        "smooth, the error of the velocity is shared among its causes. What the time step costs is "
+        "measured by runs with smaller steps. What gradient, volume elements, disorder and "
+        "viscosity cost is measured on exact fields, at regular positions and at those of the "
+        "run's particles at its end. The order of a cause is that of its share of the error, with "
+        "its 95 % interval.</p>\n");
     json_array_foreach(autopsies, k, document) {
         char name[NAME], what[32];
         snprintf(what, sizeof what, "autopsy-%zu", k + 1);

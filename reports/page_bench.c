@@ -69,8 +69,8 @@ static size_t read_curves(const json_t *document, struct curve *curves, size_t m
     return count;
 }
 
-/* Errors of other codes, whose times were not kept. A case of cases/README.md names its
- * M/reference; reference = 0.148. */
+/* Errors of other codes, whose times were not kept: 0.148 is the exact amplitude, and 1 minus the
+ * factor before it is M/reference in cases/README.md. */
 static const struct {
     const char *case_name, *error_of, *label;
     double error;
@@ -184,9 +184,9 @@ static void cheapest_table(struct buffer *to, const json_t *ways)
 static void explain(struct buffer *to, bool of_codes)
 {
     buffer_add(to, of_codes
-                       ? "<section id=\"cost\"><h2>What an error costs</h2>\n<p>The levels of "
-                         "each ladder: means over the runs of a level. CPU time is of all "
-                         "processes of a run, of another code with its start and its files."
+                       ? "<section id=\"cost\"><h2>What an error costs</h2>\n<p>Each point is the "
+                         "mean over the runs of one level of a ladder. CPU time counts all "
+                         "processes of a run; another code's includes its start and its files."
                          "</p>\n"
                        : "<section id=\"cost\"><h2>What an error costs</h2>\n<p>Each scheme at "
                          "several resolutions. At order p in d dimensions, the merit "

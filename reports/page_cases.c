@@ -192,7 +192,7 @@ static void range(const double *values, size_t n, double *low, double *high)
     }
 }
 
-/* How far the particles go beyond the exact solution's range, in parts of it. */
+/* How far particles go beyond the range of the exact solution, as a part of that range. */
 static double overshoot(const struct curves *curves, size_t k, int q)
 {
     double low, high, exact_low, exact_high;
@@ -244,8 +244,8 @@ static void shape_table(struct buffer *to, const struct curves *curves, const js
     }
     html_table_end(to);
     buffer_add(to, "<p class=\"note\">How far particles go beyond the range of the exact solution, "
-                   "in parts of that range; and the largest error of pressure within 4 h of the "
-                   "contact, where pressure should not notice that density jumps.</p>\n");
+                   "as a part of that range, and the largest error of pressure within 4 h of the "
+                   "contact, where density jumps and pressure should not.</p>\n");
 }
 
 /* ---- one case ---- */
@@ -255,7 +255,7 @@ static bool is_failure(const char *state)
     return !strcmp(state, "fail") || !strcmp(state, "broke_down") || !strcmp(state, "failed");
 }
 
-/* What is seen of a case that is folded. */
+/* The line that is shown of a folded case. */
 static void case_head(struct buffer *to, const char *name, const json_t *title,
                       const json_t *const *studies, size_t study_count, const char *state)
 {

@@ -83,10 +83,11 @@ static void pairing_plot(struct page_writer *writer, const json_t *claim)
                               .panels = panels,
                               .panel_count = used};
     if (used)
-        page_plot(writer, &plot,
-                  "Dashed: kernels whose Fourier transform becomes negative. 1.07 in 2D and 1.12 "
-                  "in 3D: the densest lattice; towards 0: all particles stand in pairs. A missing "
-                  "point: that run broke down.");
+        page_plot(
+            writer, &plot,
+            "Kernels whose Fourier transform becomes negative are dashed. The densest lattice "
+            "has 1.07 in 2D and 1.12 in 3D; near 0 all particles stand in pairs. Runs that "
+            "broke down have no point.");
     for (size_t i = 0; curves && i < (size_t)DIMS * KERNELS; i++) buffer_free(&curves[i].label);
     free(curves);
 }
@@ -115,10 +116,10 @@ static void pairing_table(struct page_writer *writer, const json_t *claim)
     claim_head(to, claim);
     buffer_format(
         to,
-        " Gas that starts in disorder comes to rest; who has a neighbour nearer than half "
-        "a spacing stands in a pair, and up to %g %% of the particles may. Theory "
-        "(Dehnen &amp; Aly 2012): where the transform becomes negative, and the number "
-        "of neighbours from which pairs have less energy than single particles.</p>\n",
+        " Gas that starts in disorder comes to rest. A particle with a neighbour nearer than "
+        "half a spacing stands in a pair; up to %g %% of the particles may. The columns of theory "
+        "(Dehnen &amp; Aly 2012) say where the kernel's transform becomes negative, and from "
+        "which number of neighbours on pairs have less energy than single particles.</p>\n",
         100 * value_member(claim, "bound"));
     pairing_plot(writer, claim);
     html_list(to, "runs", ladders, json_object_get(claim, "ladders"), NULL);
@@ -157,8 +158,8 @@ void page_claims(struct page_writer *writer, const json_t *claims)
     size_t i;
     buffer_add(to, "<section id=\"claims\"><h2>Claims, measured</h2>\n<p>Two schemes that differ "
                    "in one key on the same problem. A claim holds in a row if it makes the error "
-                   "smaller by a factor of 1.25 at least. By day runs are small; what holds at "
-                   "real sizes is in the report of the night.</p>\n");
+                   "smaller by a factor of at least 1.25. Runs are small in the quick report; the "
+                   "nightly one has runs of real size.</p>\n");
     json_array_foreach(claims, i, claim) {
         if (json_object_get(claim, "ladders"))
             pairing_table(writer, claim);

@@ -8,14 +8,14 @@
 
 #include "page_plot.h"
 
-/* Ends within an open <div class="figures">, for what else there is to show beside the last one.
- * Pictures of the runs (run documents) of one case: the first one's maps, the errors of all (the
- * densities, where nothing is exact) on one colour scale, and all of them over the exact curve.
- * all_maps: every map of all runs on one colour scale, in place of the first one's. */
+/* Pictures of the runs (run documents) of one case: maps of the first run, maps of all errors on
+ * one colour scale (of all densities where there is no exact solution), and all runs over the exact
+ * curve. all_maps: every map of every run, on common colour scales, in place of those of the first
+ * run. The element <div class="figures"> is left open, so that the caller can add figures. */
 void page_cloud_plots(struct page_writer *writer, const char *case_name, const json_t *const *runs,
                       size_t count, bool all_maps);
 
-/* Errors, conservation and cost; scalars beside what they should be. */
+/* Errors, conservation and cost, and scalars beside their exact values. */
 void page_cloud_tables(struct buffer *to, const json_t *const *runs, size_t count);
 
 #endif

@@ -155,14 +155,14 @@ static void why(struct buffer *to, const json_t *gate)
     buffer_escape(to, *why ? why : value_text(gate, "source"));
 }
 
-/* What must hold, of the snapshot with most particles. */
+/* Gates, of the snapshot with the most particles. */
 static const struct html_column gates[] = {
     COLUMN("gate", "name", .kind = CELL_CODE), COLUMN("#found", "value"),
     COLUMN("#allowed", NULL, .cell = allowed), COLUMN("", "status", .kind = CELL_STATUS),
     COLUMN("why", NULL, .cell = why),          {0}};
 
-/* Of several snapshots: orders where numbers of particles differ, what is conserved where times
- * do. */
+/* Several snapshots have orders if their numbers of particles differ, and show what is conserved if
+ * their times differ. */
 static void together(struct buffer *to, const json_t *document)
 {
     static const char *const kept[] = {"mass", "momentum", "angular_momentum", "energy"};

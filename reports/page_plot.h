@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What the parts of the page write to: its text, and its plots, whose scripts and data belong
- * beside it. */
+ * What the parts of the page write to: its text, and its plots, whose scripts and data stand beside
+ * the page. */
 #ifndef SPHPROOF_PAGE_PLOT_H
 #define SPHPROOF_PAGE_PLOT_H
 
@@ -19,7 +19,7 @@ struct page_plots {
     size_t file_count;
     size_t missing; /* the page says where; message is the first one's reason */
     char message[512];
-    bool no_gnuplot; /* found out; it is not asked again */
+    bool no_gnuplot; /* it was missing once, and is not tried again */
 };
 void page_plots_free(struct page_plots *plots);
 
@@ -29,11 +29,11 @@ struct page_writer {
     bool alone; /* nothing will lie beside the page */
 };
 
-/* Draws and inlines a plot as <figure>; keeps its sources for beside the page. One that cannot be
- * drawn leaves a note. */
+/* Draws a plot into the page as <figure>, and keeps its script and data, to be written beside the
+ * page. In place of a plot that cannot be drawn there is a note. */
 void page_plot(struct page_writer *writer, const struct plot *plot, const char *caption);
 
-/* "CASE-WHAT" as a plot's name: what is not allowed there becomes '_'. */
+/* Makes "CASE-WHAT" a plot's name, with '_' for characters that are not allowed there. */
 void page_plot_name(char *name, size_t size, const char *case_name, const char *what);
 
 #endif

@@ -167,7 +167,7 @@ static bool is_number(const json_t *entry, const char *name)
     return json_is_number(json_object_get(entry, name));
 }
 
-/* stable_below: a predicted growth that is none; NaN: no growth is predicted. */
+/* stable_below: a predicted growth below this counts as stable; NaN if none is predicted. */
 static void cell(struct buffer *to, const json_t *entry, double stable_below)
 {
     const char *outcome = value_text(entry, "outcome");
@@ -270,11 +270,12 @@ void page_stress(struct page_writer *writer, const json_t *stress)
     struct buffer *to = &writer->to;
     const json_t *atlas = json_object_get(stress, "atlas"), *group;
     size_t i;
-    buffer_add(to,
-               "<section id=\"stability\"><h2>Stability: what survives, and where it breaks</h2>"
-               "\n<p>Linear theory of the whole scheme on a uniform lattice (smoothing length, "
-               "density, energy and force varied together), confirmed by runs from noise of a "
-               "millionth of the spacing; then hard problems, one map each.</p>\n");
+    buffer_add(
+        to,
+        "<section id=\"stability\"><h2>Stability: what survives, and where it breaks</h2>"
+        "\n<p>Linear theory of the whole scheme on a uniform lattice (smoothing length, "
+        "density, energy and force varied together) is confirmed by runs that start with noise of "
+        "a millionth of the spacing. Maps of hard problems follow.</p>\n");
     if (atlas) {
         buffer_add(to, "<div class=\"figures\">");
         plot_growth(writer, atlas, "ia");
@@ -284,7 +285,7 @@ void page_stress(struct page_writer *writer, const json_t *stress)
         buffer_add(to, "</div>\n");
     }
     buffer_add(to,
-               "<p>What a number is stands above each map; a colour is the outcome: <span "
+               "<p>The line above each map says what its numbers are; colours are outcomes: <span "
                "class=\"map\"><span class=\"ok\"> ok "
                "</span> <span class=\"inaccurate\"> ≉ inaccurate </span> <span "
                "class=\"broke_down\"> broke down </span></span>. A pointer resting on a cell shows "

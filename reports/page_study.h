@@ -12,10 +12,13 @@
 void page_study(struct page_writer *writer, const char *case_name, const json_t *const *documents,
                 size_t count);
 
-/* The order of what the case is judged by first, or NULL; "L1(density)" for it; the error itself at
- * the finest level. */
+/* The order of the quantity that the case is judged by first, or NULL. */
 const json_t *page_study_main(const json_t *document);
+
+/* The quantity of an order, such as "L1(density)". */
 void page_study_name(struct buffer *to, const json_t *order);
+
+/* The error of that first quantity at the finest level. */
 double page_study_finest(const json_t *document);
 
 /* The entry of a converge document for a field and a norm, or NULL. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a run says that cannot go on. */
+ * The message of a run that cannot go on. */
 #ifndef SPHPROOF_BREAKDOWN_H
 #define SPHPROOF_BREAKDOWN_H
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Layers of particles whose state is kept, at the ends of directions with boundary=fixed: those
  * that start within three times their smoothing length of an end. They do not move and keep their
- * energy. The outermost third, whose own sums see the emptiness outside, has the density that the
- * setup says; the others' sums are complete, so that moving particles next to the layer feel gas
- * like their own. */
+ * energy. The outermost third, whose own sums reach into empty space, has the density that the
+ * setup gives; the sums of the others are complete, so that moving particles next to the layer feel
+ * gas like their own. */
 #ifndef SPHPROOF_FIXED_H
 #define SPHPROOF_FIXED_H
 

@@ -19,8 +19,8 @@ struct integrator {
     double cfl;         /* default of the key cfl, in support radii; see the member's comment */
     double cloud_cfl;   /* the same in 2D and 3D, unless viscosity takes the form mu; 0: cfl */
     bool cfl_per_width; /* the default is cfl / eta: in particle spacings */
-    /* Density sums stand evenly between steps, and energy is not kept to a high order: h may be
-     * predicted, and total energy is the one to integrate (see scheme_default). */
+    /* Density is summed at even distances in time, and energy is not conserved to a high order: h
+     * may be predicted, and total energy should be integrated (see scheme_default). */
     bool predicts;
     /* where h is predicted: P = P(rho, U) (1 - follow (gamma - 1)(V/V_predicted - 1)), 0 for none;
      * see predicted_midpoint.h */
@@ -37,7 +37,7 @@ struct integrator {
     size_t keeps;
     /* Advances the state (x, p, e, alpha) by dt; rates of the state are there when it begins. */
     enum status (*step)(struct simulation *simulation, double dt, struct error *error);
-    /* No step follows for now: brings the state to the present time if it is not there. */
+    /* Brings the state to the present time if it is not there; called when no step follows. */
     void (*synchronise)(struct simulation *simulation);
 };
 

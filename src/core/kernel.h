@@ -49,17 +49,17 @@ struct kernel {
 extern const struct family kernel_family;
 
 /* Plug-ins: kernels that a program brings besides those of kernels.def. In kernel_family.members
- * they stand behind its n members: iteration skips plug-ins, and they are found by name. They have
- * no specialised loops. plugin_w is set, the constants are the
- * plug-in's.
+ * they stand behind its n members: iteration skips plug-ins, and they are found by name.
+ *
+ * They have no specialised loops. Their plugin_w is set, and they bring their own constants.
  */
 enum { KERNEL_PLUGINS_MAX = 16 };
 
-/* Takes a plug-in in (not owned, with a name that no other has); its place, -1: there is no room.
- */
+/* Adds a plug-in, which is not owned and must have a new name. Returns its place, or -1 if there is
+ * no room. */
 int kernel_add(const struct kernel *plugin);
 
-/* Place in kernel_family.members of the kernel called name, a plug-in or not; -1: there is none. */
+/* The place in kernel_family.members of the kernel or plug-in called name, or -1. */
 int kernel_index(const char *name);
 
 /* Copies the kernel called name into *kernel and completes it: sinc_order (3..12) is used by sinc
@@ -68,8 +68,8 @@ int kernel_index(const char *name);
 enum status kernel_select(struct kernel *kernel, const char *name, int sinc_order,
                           struct error *error);
 
-/* Position in kernels.def of the built-in kernel whose shape functions this kernel has, and with it
- * the place of its specialised loops in every table of them; -1: none has them (a plug-in). */
+/* The position in kernels.def of the built-in kernel whose shape functions this kernel has, which
+ * is also the place of its specialised loops in all their tables; -1 for plug-ins. */
 int kernel_specialisation(const struct kernel *kernel);
 
 /* W(r,h), dW/dr and dW/dh in dim dimensions; r >= 0, h > 0. */

@@ -2,9 +2,9 @@
  * Particle shifting with fluxes, in 2D and 3D, CONVENTIONS eqs. 6.14 and 6.15. In a vortex
  * particles become disordered, and the gradient of a constant pressure is then no longer 0:
  * particles move against what the gradient makes of a constant, and exchange the gas that they
- * sweep over. Both vanish as the spacing does. Of the exchange either particle gains what the other
- * loses: mass, momentum and total energy, and with the mean velocity of the pair kinetic and
- * internal energy each for itself. Uniform velocity and specific energy stay uniform. */
+ * sweep over. Both vanish as the spacing does. One particle gains the mass, momentum and total
+ * energy that the other loses. As the gas has the pair's mean velocity, kinetic and internal energy
+ * are each conserved. Uniform velocity and specific energy stay uniform. */
 #ifndef SPHPROOF_SHIFTING_H
 #define SPHPROOF_SHIFTING_H
 

@@ -12,7 +12,7 @@
 
 enum { PIECES_NODES = 32 }; /* of a series */
 
-/* On what terms a kernel is judged: what is declared of it, how hard it is looked at. */
+/* The terms on which a kernel is judged: what it declares, and how closely it is looked at. */
 struct terms {
     bool single;             /* values in single precision: bounds at TERMS_SINGLE_BOUND */
     bool negative;           /* declared to have a negative lobe */

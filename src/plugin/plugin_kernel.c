@@ -35,7 +35,7 @@ void plugin_allow(plugin_certify *certify, bool uncertified)
     any_certificate = uncertified;
 }
 
-/* The digits behind a path, NULL: there are none. */
+/* The hash that stands behind a path, or NULL. */
 static const char *hash_of(const char *word)
 {
     const char *at = strrchr(word, '@');
@@ -122,7 +122,7 @@ static enum status certify(const void *context, json_t **reply, struct error *er
     return status;
 }
 
-/* What speaks against it; "": nothing. */
+/* Why the plug-in is refused, or "" if it is not. */
 static void find_faults(const struct guard_verdict *verdict, char *text, size_t size)
 {
     size_t k;
@@ -194,7 +194,7 @@ static enum status load(struct plugin *plugin, int dim, struct error *error)
     kernel->dw = loaded->dw;
     kernel->plugin_w = loaded->plugin_w;
     kernel->plugin_dw = loaded->plugin_dw;
-    kernel->plugin_dw_dh = NULL; /* it agrees with w and dw, or the certificate says so */
+    kernel->plugin_dw_dh = NULL; /* if it does not agree with w and dw, the certificate says so */
     kernel->knot_count = loaded->knot_count;
     kernel->knots = loaded->knots;
     kernel->constant[dim] = loaded->constant[dim];

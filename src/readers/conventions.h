@@ -19,7 +19,7 @@ enum density_sum {
     DENSITY_SUMS
 };
 
-/* What the user says that a file's h is; all 0: the user says nothing. */
+/* What the user says about a file's h; all 0 if nothing is said. */
 struct width_meaning {
     double ratio;      /* support radius over h */
     double deviations; /* h over the kernel's standard deviation */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Which reader a file belongs to; several files of one snapshot; what no snapshot may hold. HDF5
- * files are read in a process of their own, which hands over the columns through a file without a
- * name. */
+ * Finds the reader that a file belongs to, joins the files of one snapshot, and refuses what no
+ * snapshot may hold. HDF5 files are read in a process of their own, which hands over the columns
+ * through a file without a name. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -116,7 +116,7 @@ static enum status read_hdf5(struct snapshot_source *source, const struct snapsh
 {
     enum { SECONDS = 60 };
     struct guard_verdict verdict = {0};
-    /* here once, not in each other process */
+    /* loaded here once, and not in each of the other processes */
     if (hdf5_load(source->path, error)) return error->status;
     const struct errand errand = {source, options, output_temporary()};
     if (!errand.results)
@@ -154,7 +154,7 @@ static enum status read_one(const char *path, const struct snapshot_options *opt
 
 /* ---- several files ---- */
 
-/* snap_007.0.hdf5 -> snap_007.3.hdf5; false: the name has no such number. */
+/* Makes snap_007.3.hdf5 of snap_007.0.hdf5. False if the name has no such number. */
 static bool part_path(const char *path, int part, char *text, size_t size)
 {
     const char *base = strrchr(path, '/');
@@ -169,7 +169,7 @@ static bool same(struct snapshot_value a, struct snapshot_value b)
     return a.known == b.known && a.value == b.value;
 }
 
-/* What the headers of two parts say differently; NULL: nothing. */
+/* The first thing in which the headers of two parts differ, or NULL. */
 static const char *header_differs(const struct snapshot_file *a, const struct snapshot_file *b)
 {
     bool boxes_equal = a->boxed == b->boxed && a->placed == b->placed;
@@ -309,7 +309,7 @@ static enum status check_columns(const char *path, const struct snapshot_file *f
     return STATUS_OK;
 }
 
-/* The directions along which positions differ, the first ones. */
+/* The number of leading directions along which positions differ. */
 static enum status find_dimension(const char *path, struct snapshot_file *file, struct error *error)
 {
     int dim = 0;

@@ -104,7 +104,8 @@ static void skip_blanks(const char **at, const char *end)
     while (*at < end && (**at == ' ' || **at == '\t' || **at == '\r')) ++*at;
 }
 
-/* One number of a line that ends at end, behind the separator unless it is the first. */
+/* Takes one number of a line that ends at `end`, with the separator before it unless the number is
+ * the first. */
 static bool take_number(const char **at, const char *end, char separator, bool first, double *value)
 {
     char word[48];
@@ -143,7 +144,7 @@ static size_t count_rows(const struct text_table *table, size_t from)
     return rows;
 }
 
-/* The refusal of what stands from `at` to the next separator, in place of a number. */
+/* Refuses what stands from `at` to the next separator, because it is not a number. */
 static enum status no_number(const struct text_table *table, size_t line, size_t column,
                              const char *at, const char *end, struct snapshot_file *file,
                              struct error *error)

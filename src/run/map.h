@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Maps of a state: particles of a plane, or of a slice through the middle of a box, in cells that
- * are about as wide as particles are apart. Code units. */
+ * Maps of a state: the particles of a plane, or of a slice through the middle of a box, are sorted
+ * into cells about as wide as the particles' spacing. Code units. */
 #ifndef SPHPROOF_MAP_H
 #define SPHPROOF_MAP_H
 
@@ -29,9 +29,9 @@ enum status map_create(struct map *map, const struct domain *domain, const struc
                        size_t most, struct error *error);
 void map_free(struct map *map);
 
-/* z[j nx + i]: mean of the n values over the particles in cell (i, j); in an empty one the mean of
- * the nearest cells that hold any; NaN where no particle's h reaches, or there are none within
- * MAP_REACH cells: a void. */
+/* z[j nx + i] is the mean of the n values over the particles in cell (i, j). An empty cell takes
+ * the mean of the nearest cells that have particles. It is a void, NaN, where no particle's h
+ * reaches or where no cell within MAP_REACH has particles. */
 enum { MAP_REACH = 4 };
 void map_mean(const struct map *map, const double *values, double *z);
 

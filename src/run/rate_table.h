@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * One evaluation: what the solver finds of particles that do not move, in the order of the setup.
- */
+ * One evaluation of the solver, for particles in the order of the setup. They do not move. */
 #ifndef SPHPROOF_RATE_TABLE_H
 #define SPHPROOF_RATE_TABLE_H
 
@@ -17,8 +16,8 @@ struct rate_table {
     double *storage;
 };
 
-/* STATUS_BAD_INPUT: the setup is none; STATUS_BROKE_DOWN: no sound state; STATUS_ENVIRONMENT: no
- * memory. Free with rate_table_free, also after a failure. */
+/* STATUS_BAD_INPUT: the setup is refused; STATUS_BROKE_DOWN: its state is not sound;
+ * STATUS_ENVIRONMENT: no memory. Free with rate_table_free, also after a failure. */
 enum status rate_table_make(struct rate_table *table, const struct setup *setup,
                             struct error *error);
 void rate_table_free(struct rate_table *table);

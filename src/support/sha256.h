@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * SHA-256 (FIPS 180-4), by which files are named in results as sha256sum names them. */
+ * SHA-256 (FIPS 180-4): results name files by the same sums as the program sha256sum prints. */
 #ifndef SPHPROOF_SHA256_H
 #define SPHPROOF_SHA256_H
 
@@ -17,10 +17,10 @@ struct sha256 {
 
 void sha256_begin(struct sha256 *sum);
 void sha256_add(struct sha256 *sum, const void *bytes, size_t n);
-/* 64 hexadecimal digits. */
+/* Writes 64 hexadecimal digits. */
 void sha256_end(struct sha256 *sum, char text[SHA256_TEXT]);
 
-/* Of what a file holds; false: it cannot be read. */
+/* The sum of a file's content; false if the file cannot be read. */
 bool sha256_file(const char *path, char text[SHA256_TEXT]);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How the solver starts from states that are hard at once: particles at one place, light particles
- * at rest beside a high pressure, and a density that falls within a width. */
+ * How the solver starts from states that are hard from the first step on: particles at one place,
+ * light particles at rest beside a high pressure, and a density that falls steeply within one
+ * smoothing length. */
 #include <math.h>
 
 #include "check.h"
@@ -10,7 +11,7 @@
 
 enum { PARTICLES = 24 };
 
-/* What is put in place of the right values: widths of the two kernels, mass of a light particle. */
+/* What mutants change: the widths of the two kernels, and the mass of a light particle. */
 struct start {
     double narrow, wide, light;
 };
@@ -57,7 +58,9 @@ static double distance(const struct scheme *scheme)
     return most - least <= 1e-9 ? 1e3 * least : (double)NAN;
 }
 
-/* Steps to 1.5 cfl sqrt(h/a), from rest, of a tube 1e9 in pressure. */
+/* The number of steps up to t = 1.5 cfl sqrt(h/a), from rest, in a tube with a pressure ratio of
+ * 1e9.
+ */
 static double steps_to(double light)
 {
     static struct hydro_state state;
@@ -86,9 +89,9 @@ static double steps_to(double light)
     return status ? (double)NAN : (double)cost.steps;
 }
 
-/* Where the density falls 200 times within a width, h -> eta m/rho(h) runs away from its root:
- * speed of the first particle beyond, after some steps with predicted widths, against that with
- * roots. */
+/* Where the density falls by a factor of 200 within one smoothing length, the iteration
+ * h -> eta m/rho(h) leaves its root. The result compares the speed of the first particle beyond the
+ * fall, after some steps with predicted h, with that in a run whose h are roots. */
 static double lost_push(void)
 {
     enum { DENSE = 400, THIN = 4 };

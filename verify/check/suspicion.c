@@ -50,7 +50,8 @@ static bool coarse_suspected(const struct suspicion_subject *s)
     return s->swapped(2, names, 2, volume, values, exacts, NULL);
 }
 
-/* A field at this part of the way from its exact solution to the other's: suspected beyond 2/3. */
+/* Density that lies this part of the way from its own exact solution to that of pressure. It is
+ * suspected beyond two thirds of the way. */
 static bool between_suspected(const struct suspicion_subject *s, double part)
 {
     static const char *const names[] = {"density", "pressure"};
@@ -60,9 +61,9 @@ static bool between_suspected(const struct suspicion_subject *s, double part)
     return s->swapped(2, names, 2, volume, values, exacts, NULL);
 }
 
-/* A coarse blast: the shock has passed all of the window, gas that should fall is at rest
- * throughout, and rest is near the small energy of gas that no shock has reached. How much even[0]
- * and even[1] differ: 0 is a field that is even, and follows nothing. */
+/* A coarse blast, whose shock has passed all of the window: gas that should fall is at rest
+ * everywhere, and its velocity 0 is near the small energy of gas ahead of the shock. difference:
+ * twice that of the two velocities; where it is 0 the velocity is uniform, and follows no field. */
 static bool even_suspected(const struct suspicion_subject *s, double difference)
 {
     static const char *const names[] = {"velocity", "energy"};
@@ -102,7 +103,7 @@ static void measure(struct check_run *run, const void *subject)
     expect(run, coarse_suspected(s), false, "an error that points to another field");
     expect(run, between_suspected(s, 0.6666), false, "just over half as far from another field");
     expect(run, between_suspected(s, 0.6667), true, "just under half as far from another field");
-    expect(run, even_suspected(s, 0), false, "an even field near a small one");
+    expect(run, even_suspected(s, 0), false, "a uniform field near a small one");
     expect(run, even_suspected(s, 0.249), false, "a field that hardly follows another");
     expect(run, even_suspected(s, 0.251), true, "a field that follows another");
 }

@@ -15,8 +15,8 @@
  *
  * Each run has a folder of its own, in which the command starts. A word of a command that names a
  * file beside the code file stands for that file. Paths of templates and `depends` are relative to
- * the code file. Every key and every @WORD@ is checked when the file is read; whether a
- * program is there, when a case is run. */
+ * the code file. Every key and every @WORD@ is checked when the file is read, but programs are
+ * looked for when a case is run. */
 #ifndef SPHPROOF_CODE_FILE_H
 #define SPHPROOF_CODE_FILE_H
 
@@ -89,7 +89,9 @@ extern const struct member *const code_words[CODE_WORDS]; /* name, meaning */
 
 enum { CODE_NAME = 64, CODE_FAULTS_MAX = 16, CODE_PATH = 1024 };
 
-/* How a case, or a fault, is run: the values as they stand there, "" of what is not said. */
+/* How a case, or a fault, is run: the values as the file has them, "" for keys that it does not
+ * set.
+ */
 struct code_way {
     char value[CODE_KEYS][INI_TEXT_LINE + 1];
     int line[CODE_KEYS]; /* where it stands */
@@ -117,15 +119,15 @@ struct code {
 enum status code_load(struct code *code, const char *path, struct error *error);
 void code_free(struct code *code);
 
-/* A case as a fault runs it: the keys that the fault says, and else those of the case. */
+/* A case as a fault runs it: keys that the fault does not set are those of the case. */
 void code_with_fault(const struct code_case *of, const struct code_fault *fault,
                      struct code_case *faulty);
 
-/* NULL: STATUS_BAD_INPUT in error, which names the cases that there are. */
+/* The case of that name. NULL: STATUS_BAD_INPUT in error, which lists the cases of the file. */
 const struct code_case *code_case_of(const struct code *code, const char *name,
                                      struct error *error);
 
-/* The value as it counts: what is said, or the fallback. */
+/* The value of a key, or its fallback where the file does not set it. */
 const char *code_value(const struct code_way *way, enum code_key key);
 double code_timeout(const struct code_way *way);
 double code_memory(const struct code_way *way); /* bytes; INFINITY: no limit */

@@ -77,10 +77,11 @@ static void print_parts(const struct autopsy *autopsy, const struct table_style 
         printf("\n");
     }
     printf(
-        "%sthe time step and the measure: in L1 of the velocity; the others: rms of the "
-        "acceleration, of\nwhich the exact one has %.3g. What the first two leave of the error the "
-        "others share: noise as the\nsquares of their noise, a smooth error as what is smooth in "
-        "them and points along it. The order\nof the size, and that of what is lost%s\n",
+        "%sSizes are L1 of the velocity for the time step and the measure, and the rms of the "
+        "acceleration for\nthe others (the exact acceleration has %.3g). What the first two do not "
+        "explain of the error is shared\namong the others: noise by the squares of their noise, a "
+        "smooth error by their smooth parts along it.\nThe first order is that of the size, the "
+        "last that of the share of the error.%s\n",
         style->faint, finest->acceleration, style->end);
 }
 
@@ -103,7 +104,8 @@ static void print_power(const struct autopsy_level *level, const struct table_st
             printf("  %-44s %10.2e %10.2e %10.1e\n", autopsy_term_family.members[k]->label,
                    power->work, power->heat, (power->work + power->heat) / largest);
     }
-    printf("%swork is done on the flow; their sum: over all that the largest gives and takes%s\n",
+    printf("%swork is what a term does on the flow; the sum of work and heat is given relative to "
+           "all\nthat the largest term gives and takes%s\n",
            style->faint, style->end);
 }
 
@@ -144,12 +146,11 @@ static void print_operator(const struct autopsy *autopsy, const struct table_sty
                100 * pow(level->velocity.noise / level->velocity.rms, 2), level->regularity.spread,
                level->regularity.gradient);
     }
-    printf(
-        "%sregular: of the positions of the start; noise: of the square of the velocity's error, "
-        "what "
-        "differs\nbetween neighbours; spread: of distances to nearest neighbours over their mean, "
-        "and E0, h |sum V\ngrad W|, at t_end%s\n",
-        style->faint, style->end);
+    printf("%sregular: at the positions of the start. noise: the share of the velocity's squared "
+           "error "
+           "that differs\nbetween neighbours. spread: of the distances to nearest neighbours, over "
+           "their mean. E0: h |sum V grad W|.\nThe last two are taken at t_end.%s\n",
+           style->faint, style->end);
 }
 
 static enum status take_ladder(const struct options *options, const struct run_settings *settings,
@@ -171,7 +172,7 @@ static enum status take_ladder(const struct options *options, const struct run_s
     return STATUS_OK;
 }
 
-/* files: of snapshots, finest last; NULL: the runs were ours. */
+/* files: one for each snapshot, finest last; NULL if the runs were ours. */
 static enum status tell(const struct options *options, const struct run *run,
                         const struct autopsy *autopsy, json_t *files, struct error *error)
 {
@@ -217,7 +218,7 @@ static enum status examine(const struct options *options, int n, char **argument
 
 /* ---- snapshots of another code ---- */
 
-/* By which kernel exact fields are evaluated where whose particles are. */
+/* Says whose particles they are, and by which kernel exact fields are evaluated there. */
 static void print_files(const struct options *options, const json_t *files, const struct run *used)
 {
     char gradient[SETTING_TEXT_MAX];
@@ -249,7 +250,7 @@ static int by_number(const void *a, const void *b)
     return (one->result.n > other->result.n) - (one->result.n < other->result.n);
 }
 
-/* The first is the option's own, the others are all arguments that are no keys. */
+/* The first snapshot is the option's argument; all arguments that are not keys are further ones. */
 static enum status take_theirs(const struct options *options, int n, char **arguments,
                                struct theirs *theirs, struct error *error)
 {

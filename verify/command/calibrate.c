@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof calibrate: bounds for the gates of a code file that are measured. */
+ * sphproof calibrate: measures bounds for the gates of a code file. */
 #include "calibrate.h"
 
 #include <math.h>
@@ -16,7 +16,8 @@
 
 enum { RUNS = 4 };
 
-/* NAME.calibrated.ini unless it is said; in the code file's folder, as paths in it are relative. */
+/* The file that is written, NAME.calibrated.ini unless --out says another. It stands in the code
+ * file's folder, because paths in code files are relative to that folder. */
 static enum status take_out(const struct options *options, const struct code *code,
                             char out[CODE_PATH], struct error *error)
 {
@@ -110,7 +111,7 @@ static void print_case(const struct calibrate *calibrate, const struct calibrate
 
 /* ---- the command ---- */
 
-/* Written only if the program reads it. */
+/* Writes the file only if the program can read it back. */
 static enum status write_code(const struct calibrate *calibrate, const char *out,
                               struct error *error)
 {
@@ -193,12 +194,14 @@ static const struct command_option own_options[] = {
 const struct command command_calibrate = {
     .name = "calibrate",
     .synopsis = "CODE.ini [CASE ...]",
-    .help = "bounds for another code's gates, measured: what round-off changes < bound < faults\n"
+    .help = "measure bounds for another code's gates: above what round-off changes, below what "
+            "faults do\n"
             "Each case (default: all of the file) is run several times, with starts that differ by "
             "2\nunits in the last place, other seeds, and other numbers of @THREADS@; then with "
-            "each\n[fault NAME] of the code file. A copy of the file is written with gates of two "
-            "sides\nbetween the two: errors that are too small fail as well. What no fault changes "
-            "is no gate.\nExit status 1: a fault is seen by no gate.",
+            "each\n[fault NAME] of the code file. The gates that are written into a copy of the "
+            "file lie "
+            "between\nthe two, with a least and a greatest error. A figure that no fault changes "
+            "gets no gate.\nThe exit status is 1 if no gate sees some fault.",
     .run = run,
     .options = own_options,
     .examples = "sphproof calibrate mine.ini\n"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A tabulated kernel: (1-q)^4 (1+4q) at 65 points (-DPOINTS=N: at N), between them the cubic spline
- * with slope 0 at both ends. Class C2, with a knot at every inner point, which sphproof finds by
- * itself. */
+ * A tabulated kernel: (1-q)^4 (1+4q) at 65 points (or at N, with -DPOINTS=N), and between them the
+ * cubic spline with slope 0 at both ends. It is of class C2 and has a knot at every inner point;
+ * sphproof finds both by itself. */
 #include "plugin.h"
 
 #ifndef POINTS

@@ -9,7 +9,7 @@
 
 #include "status.h"
 
-/* Of the same mode, the newest count. */
+/* At most so many nights, the newest ones of the same mode, are read. */
 enum { HISTORY_NIGHTS_MAX = 120 };
 
 /* The results' place in the history at path (which need not be there yet; lines that cannot be

@@ -93,8 +93,8 @@ static enum status compute_league(json_t **document, struct error *error)
     return status;
 }
 
-/* Schemes that answer the first two questions: which kernel, and at shocks which gradient, in
- * smooth flow which viscosity. */
+/* Schemes that answer the first two questions: which kernel is best, and then which gradient at
+ * shocks, or which viscosity in smooth flow. */
 static const char *vary(const struct settings *settings)
 {
     if (settings->dim > 1) return "kernel=cubic_spline,wendland_c2,wendland_c4,gradient";
@@ -191,7 +191,7 @@ static enum status compute(const void *context, json_t **document, struct error 
     return STATUS_OK;
 }
 
-/* About how many seconds a piece takes that is no run. */
+/* An estimate of the seconds that a piece takes which is not a run. */
 static double weight_of(const struct report_piece *piece)
 {
     static const double weights[] = {0, 0, 0.1, 2, 5, 3, 4};
@@ -229,7 +229,7 @@ enum status report_piece_add(struct pool *pool, struct report_piece *piece, stru
 
 /* ---- joining checks ---- */
 
-/* Distinct mutants; one counts as detected where it is in every entry. */
+/* Counts each mutant once; it is detected if every entry that has it detected it. */
 static void count_mutants(const json_t *list, json_t *summary)
 {
     json_int_t mutants = 0, detected = 0;

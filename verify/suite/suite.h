@@ -51,8 +51,8 @@ struct suite_choice {
 };
 
 /* Runs the chosen ones of checks[0..count-1]. STATUS_CHECK_FAILED if a figure failed or a mutant
- * slipped through (suite is complete); STATUS_ENVIRONMENT: no memory (suite is empty). Free a suite
- * with suite_free. */
+ * was not detected (suite is complete); STATUS_ENVIRONMENT: no memory (suite is empty). Free a
+ * suite with suite_free. */
 enum status suite_run(struct suite *suite, const struct check *const *checks, size_t count,
                       const struct suite_choice *choice, struct error *error);
 void suite_free(struct suite *suite);
@@ -64,16 +64,16 @@ json_t *suite_keep(const struct suite *suite);
 enum status suite_join(struct suite *suite, const struct check *const *checks,
                        const json_t *const *documents, size_t count, struct error *error);
 
-/* Seconds that a check takes with its mutants, about; > 0. */
+/* An estimate of the seconds that a check takes with its mutants, above 0. */
 double suite_cost(const struct check *check);
 
-/* Is it one of those that were chosen? */
+/* True if the check is among those that were chosen. */
 bool suite_chosen(const struct check *check, const struct suite_choice *choice);
 
-/* All figures and outcomes are there: counts them. STATUS_OK or STATUS_CHECK_FAILED. */
+/* Counts the figures and outcomes, once all are there. STATUS_OK or STATUS_CHECK_FAILED. */
 enum status suite_count(struct suite *suite);
 
-/* Does GROUP or GROUP/NAME mean this check? */
+/* True if GROUP or GROUP/NAME means this check. */
 bool suite_names(const char *name, const struct check *check);
 
 /* The distinct groups of checks[0..count-1], in order, and their number; to be freed. NULL: no

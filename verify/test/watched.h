@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Memory that is watched: the linker's --wrap brings every call of the project here (meson.build).
- * New memory is full of NaN, what is given back is spoiled; both ends of every block are fenced,
- * and a fence that was written to is told when the block is given back. Calls can be refused, and
- * are counted. For one test file; free must not be given what libraries took. */
+ * New memory is filled with NaN, and memory is overwritten before it is freed. Both ends of every
+ * block are fenced; a fence that was overwritten is counted when the block is freed. Calls can be
+ * refused, and are counted. For one test file; memory that a library has allocated must not be
+ * freed here. */
 #ifndef SPHPROOF_WATCHED_H
 #define SPHPROOF_WATCHED_H
 

@@ -47,7 +47,7 @@ static uint32_t word(const unsigned char *bytes, bool swapped)
     return (uint32_t)fortran_unsigned(bytes, 4, swapped);
 }
 
-/* Does the file begin with a record of 256 bytes, or with the name of a block? */
+/* True if the file begins with a record of 256 bytes, or with the name of a block. */
 static bool begins(const struct snapshot_source *source, bool swapped, uint32_t *first)
 {
     if (source->size < HEADER + 8) return false;
@@ -130,7 +130,7 @@ static enum status read_header(struct binary *b, struct error *error)
     return STATUS_OK;
 }
 
-/* Bytes of a number, if the record has count of them; else 0. */
+/* The bytes of one number if the record holds `count` of them, else 0. */
 static size_t width_of(const struct record *record, size_t count)
 {
     if (count && record->size == 4 * count) return 4;
@@ -159,8 +159,8 @@ static bool positive(double value)
     return value > 1e-30 && value < 1e30;
 }
 
-/* Could these be masses, densities and widths of the gas? All must be positive, fill a volume
- * between a half and two times that of the box (its extent, where it has none), and have widths of
+/* True if these may be masses, densities and widths of the gas. All must be positive, fill a volume
+ * between half and twice that of the box (or of their extent, without a box), and have widths of
  * 0.3 to 30 spacings. */
 static bool plausible(const struct binary *b, const struct layout *layout, double volume, int dim)
 {

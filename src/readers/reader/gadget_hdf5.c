@@ -22,7 +22,8 @@ static const struct hdf5_names names[] = {
     {SNAPSHOT_DU, {"RateOfChangeOfInternalEnergy"}, false},
 };
 
-/* Our own snapshots say where the box begins, from which positions count, and what they are of. */
+/* Our own snapshots say where the box begins, as positions in the file are relative to that corner,
+ * and which case they are of. */
 static void place(const struct snapshot_source *source, struct snapshot_file *file)
 {
     double corner[3];

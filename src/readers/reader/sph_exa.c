@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * HDF5 as SPH-EXA writes it (Cavelan et al. 2020): groups Step#0, Step#1 ..., each with a dataset
- * for each coordinate, time and gamma; half of the support radius is called h. The last step
- * counts. */
+ * HDF5 as SPH-EXA writes it (Cavelan et al. 2020): groups Step#0, Step#1 ..., each with one dataset
+ * for each coordinate, its time and gamma. Its h is half of the support radius. The last step is
+ * read. */
 #include <math.h>
 #include <stdio.h>
 

@@ -159,7 +159,7 @@ static double find_rates(void)
     return step;
 }
 
-/* Columns by the names in the first line; `# box = A:B C:D` and `# gamma = G`. */
+/* Finds columns by their names in the first line, and reads `# box = A:B C:D` and `# gamma = G`. */
 static void read_start(const char *path)
 {
     char line[1000], names[1000] = "", *rest, *word;

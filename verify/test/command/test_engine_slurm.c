@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The engine slurm on a cluster that is made up (made_slurm.h): what becomes of a study for every
- * fate of its tasks, and what is submitted. */
+ * The engine slurm on a made-up cluster (made_slurm.h): what it submits, and what becomes of a
+ * study when its tasks end in every possible way. */
 #define _GNU_SOURCE /* nftw */
 #include "test.h"
 
@@ -30,13 +30,13 @@ static const struct {
     {CANCELLED_RUNNING, "CANCELLED", true},
     {CANCELLED_WAITING, "CANCELLED", true},
     {CANCELLED_AT_ONCE, "CANCELLED", true},
-    /* of these nobody knows whether they were cancelled with their array */
+    /* such a task may have been cancelled with its array: the engine cannot know */
     {HELD, "PENDING", false},
     {NEVER_SEEN, "not in the queue", false},
 };
 enum { ROWS = sizeof rows / sizeof *rows };
 
-/* Once: a share meets its fate and is submitted again, and only it. */
+/* A share that ends badly once is submitted again, and no other share is. */
 TEST(once)
 {
     for (int i = 0; i < SHARES * ROWS; i++) {
@@ -68,7 +68,8 @@ TEST(once)
     }
 }
 
-/* Three times: it is given up, the others are not; what is missing and where to look is said. */
+/* A share that ends badly three times is given up, and the others go on. The message names what is
+ * missing, and where its logs are. */
 TEST(thrice)
 {
     for (int r = 0; r < ROWS; r++) {
@@ -101,7 +102,8 @@ TEST(thrice)
         assert_int_equal(missing, shares_computations(2));
         if (!rows[r].given_up) says("submitted again (1 of 2)"), says("submitted again (2 of 2)");
         assert_int_equal(files("*.json"), 0);
-        /* who calls again begins anew, even while the queue still shows what was cancelled */
+        /* a new call starts from the beginning, even while the queue still shows what was cancelled
+         */
         made.arrays[0] = '\0';
         made.tries[2] = 3;
         assert_int_equal(compute_all(), STATUS_OK);
@@ -110,7 +112,7 @@ TEST(thrice)
     }
 }
 
-/* All shares at once, and each after another fate. */
+/* Shares that all end badly at the same time, each in another way. */
 TEST(many)
 {
     srand(26);
@@ -140,7 +142,7 @@ TEST(many)
     }
 }
 
-/* What is said of a share is of its last task. */
+/* Messages about a share describe its last task. */
 TEST(one_after_the_other)
 {
     again();
@@ -156,7 +158,7 @@ static void submit_share_2(void)
     if (made.tries[2] == 1) add_tasks("2", 90);
 }
 
-/* A share that two tasks are at, in whichever order they are listed: one that lives counts. */
+/* Two tasks compute one share: the one that is alive counts, in whichever order they are listed. */
 TEST(two_tasks_of_a_share)
 {
     for (int backwards = 0; backwards < 2; backwards++)
@@ -174,7 +176,8 @@ TEST(two_tasks_of_a_share)
         }
 }
 
-/* What ended well is waited for 30 s: folders of other machines show things later. */
+/* The engine waits 30 s for the results of a task that ended well, because files from other
+ * machines may become visible later. */
 TEST(what_ended_well_may_be_late)
 {
     again();
@@ -208,7 +211,7 @@ TEST(only_what_is_missing)
     assert_int_equal(made.questions, 0);
 }
 
-/* Ten minutes' work each, and no more tasks than computations. */
+/* Each task has ten minutes of work, and there are no more tasks than computations. */
 TEST(how_many_shares)
 {
     static const struct {
@@ -232,7 +235,8 @@ TEST(how_many_shares)
     }
 }
 
-/* The share's command line is this one's, without what is the caller's; a shell reads it back. */
+/* A share has this command line, without the options that are the caller's business, quoted so that
+ * a shell reads the same words. */
 TEST(the_line_of_a_share)
 {
     char program[1000], text[3000];
@@ -265,7 +269,7 @@ TEST(the_line_of_a_share)
     assert_true(made.output[0] == '/'); /* from wherever the task starts */
 }
 
-/* One that knows no --jobs is not told any. */
+/* A command without the option --jobs is not given it. */
 TEST(a_command_without_jobs)
 {
     static const struct command bench = {.name = "bench", .options = list + 1};

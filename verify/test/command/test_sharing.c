@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Shares: what comes of one for every outcome of its computations, in whatever order shares are
- * computed and joined; what is missing is computed by the last, plain call; every wrong option. */
+ * Shares of a computation: the result of a share for every outcome of its computations, in whatever
+ * order shares are computed and joined; the final plain call, which computes what is missing; and
+ * every wrong option. */
 #define _GNU_SOURCE /* nftw */
 #include "test.h"
 
@@ -15,7 +16,7 @@ static const struct command_option list[] = {
     {"jobs", "J", ""}, SHARING_OPTIONS, {NULL, NULL, NULL}};
 static const struct command command = {.name = "converge", .synopsis = "CASE", .options = list};
 
-/* What a computation is to end with. */
+/* How a computation is to end. */
 struct planned {
     enum status status;
     enum { ENDS, IS_KILLED, LEAVES } how;
@@ -102,7 +103,7 @@ static void listened(const int said[2], const int usual[2])
     call.said[length] = '\0';
 }
 
-/* Takes the options and runs the pool, which is left to the caller. shard: NULL, a plain call. */
+/* Reads the options and runs the pool, which the caller frees. shard: NULL for a plain call. */
 static enum status run_share(const char *shard)
 {
     int said[2], usual[2];
@@ -123,7 +124,7 @@ static enum status run_share(const char *shard)
 
 static const struct {
     struct planned planned;
-    enum status of_share; /* what a share that has one of these ends with */
+    enum status of_share; /* how a share ends that has one computation of this outcome */
     bool kept;
     const char *message;
 } outcomes[] = {
@@ -137,7 +138,7 @@ static const struct {
 };
 enum { OUTCOMES = sizeof outcomes / sizeof *outcomes };
 
-/* A share that has one computation of each outcome; the other shares do not notice. */
+/* One share has one computation of each outcome. The other shares are not affected. */
 TEST(a_share_ends_as_its_computations)
 {
     for (int k = 0; k < OUTCOMES; k++)
@@ -174,7 +175,7 @@ TEST(a_share_ends_as_its_computations)
         }
 }
 
-/* The plain call that follows has every outcome as one machine alone has it. */
+/* The plain call that follows shows every outcome as if one machine had computed everything. */
 TEST(joined_in_every_order)
 {
     static const int orders[][SHARES] = {{1, 2, 3}, {1, 3, 2}, {2, 1, 3}, {2, 3, 1}, {3, 1, 2},
@@ -212,7 +213,7 @@ TEST(joined_in_every_order)
     }
 }
 
-/* Damaged entries and a cache that cannot keep: said, and an error for a share. */
+/* Damaged entries and a cache that cannot be written are reported; for a share they are errors. */
 TEST(what_is_remarkable)
 {
     char path[CACHE_PATH_MAX];
@@ -250,7 +251,7 @@ TEST(what_is_remarkable)
     unlink(path);
 }
 
-/* What --speak is off for is not said. */
+/* Nothing is printed where speak is off. */
 TEST(a_share_may_be_silent)
 {
     call.options.speak = 0;
@@ -259,7 +260,7 @@ TEST(a_share_may_be_silent)
     pool_free(&call.pool);
 }
 
-/* --list: what there is, in whose share, and whether it is kept. */
+/* --list prints each computation, the share that it belongs to, and whether it is kept. */
 TEST(listing)
 {
     static const char *const shards[] = {NULL, "1/3", "2/3", "3/3"};
@@ -387,7 +388,7 @@ TEST(wrong_options)
     }
 }
 
-/* What right options come to. */
+/* What right options are read as. */
 TEST(right_options)
 {
     struct sharing sharing;

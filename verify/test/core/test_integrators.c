@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What integrators say of themselves: those that keep the start of a step, and no others, write to
- * the arrays that an estimate of memory counts for them, as every scheme does to its own; none
- * writes beyond the particles; what they leave without internal energy is named. */
+ * Descriptors of integrators are true: exactly those that say so write to the arrays that keep the
+ * start of a step, and every scheme writes to the arrays that an estimate of memory counts for it.
+ * None writes beyond the particles. A particle that is left without internal energy is named. */
 #include "test.h"
 
 #include <stdio.h>
@@ -43,7 +43,7 @@ TEST(test_start_of_a_step)
 
 enum { SIDE = 12, N = SIDE * SIDE, ARRAYS_MOST = 64 };
 
-/* Disordered gas in a periodic box, on a line or in a plane, by these keys. */
+/* Disordered gas in a periodic box in 1D or 2D, with these keys. */
 static struct setup disordered(int dim, int count, char *const *keys)
 {
     static double x[3][N], v[3][N], m[N], u[N];
@@ -73,7 +73,7 @@ static struct setup disordered(int dim, int count, char *const *keys)
     return setup;
 }
 
-/* Gas at rest on a lattice of a line but for a few particles: most of it sleeps. */
+/* Gas at rest on a lattice in 1D, but for a few particles: most of it sleeps. */
 static void lie_still(struct setup *setup)
 {
     static double x[N], v[N], u[N];

@@ -291,8 +291,9 @@ static double plugin_dh(double r, double h, int dim)
     return 100 * r + 10 * h + dim;
 }
 
-/* As many as there is room for are found by name behind the others, as they are: constants are the
- * plug-in's, also where it has none. The last test: who has come stays. */
+/* As many plug-ins as there is room for are found by name behind the built-in kernels, unchanged;
+ * constants are the plug-in's, even if it has none. This test must be the last one, because
+ * plug-ins that were added stay. */
 TEST(test_plugins)
 {
     static struct kernel plugins[KERNEL_PLUGINS_MAX + 1];

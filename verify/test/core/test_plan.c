@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a run says that it will do, before it does: every pass once, running where the scheme needs
- * it, for reasons that are true of it; warnings where they are due. */
+ * What a plan says before a run: it lists every pass once, runs those that the scheme needs, gives
+ * reasons that are true of the scheme, and warns where it should. */
 #include "test.h"
 
 #include <math.h>
@@ -23,7 +23,7 @@ static struct run resolved(const char *name, size_t n, char *const *words)
     return run;
 }
 
-/* What the reasons speak of. */
+/* Words that the reason of each pass must have, if it runs and if it is skipped. */
 static void speaks_of_its_pass(const struct run *run, const struct plan_line *line)
 {
     const struct scheme *s = &run->scheme;
@@ -95,7 +95,8 @@ static void is_true(const struct run *run, const struct plan_line *line)
                     run->scheme.viscosity != VISCOSITY_CULLEN_DEHNEN);
 }
 
-/* Does the pass run, by what the scheme is; -1: there is no such pass in so many dimensions. */
+/* 1 if the pass should run with this scheme, 0 if not, -1 if there is no such pass in this number
+ * of dimensions. */
 static int expected(const struct run *run, const char *pass)
 {
     const struct scheme *s = &run->scheme;
@@ -160,7 +161,7 @@ static void plan_is_right(const struct run *run)
     assert_int_equal(wanted, run->asked.file.dimension == 1 ? PASSES - 6 : PASSES - 2);
 }
 
-/* Each choice of each key, one at a time. */
+/* Tries each choice of each key, one at a time. */
 static void every_choice(const char *name, int dim, const char *size)
 {
     static const enum setting keys[] = {
@@ -210,8 +211,8 @@ static void warns(const char *name, const char *words, const char *what)
     json_decref(document);
 }
 
-/* Off the widths whose sums are exact by more than 3 %; beyond what is stable; what loses digits.
- */
+/* Warnings: widths more than 3 % off those with exact sums, widths that are unstable, and boxes in
+ * which positions lose digits. */
 TEST(warnings)
 {
     warns("sod", "n=40", "");
@@ -233,7 +234,7 @@ TEST(warnings)
     warns("gresho", "n=8^2 kernel=cubic_spline eta=5 gradient=ia", "");
 }
 
-/* A setup of a scheme alone: 1D, cubic spline, no viscosity, energy of its own. */
+/* A setup without a scheme's defaults: 1D, cubic spline, no viscosity, internal energy. */
 static struct setup setup_of(double eta, enum gradient gradient)
 {
     struct setup setup = {.dim = 1, .threads = 1};
@@ -251,7 +252,8 @@ static size_t explained(const struct setup *setup, char *warnings, size_t size)
     return plan_explain(setup, lines, PASSES, warnings, size);
 }
 
-/* What has room is written, and no more; how many lines there are is said all the same. */
+/* A text that is too long is cut to the room that it has; the number of lines is that of the whole
+ * text. */
 TEST(room)
 {
     const struct setup setup = setup_of(5, GRADIENT_IA);
@@ -287,7 +289,7 @@ TEST(room)
     assert_string_equal(less, text);
 }
 
-/* Three per cent, exactly the limit, less than one width, and half way between two. */
+/* 3 %, exactly the limit, less than the least width, and half way between two exact widths. */
 TEST(limits)
 {
     static const struct {
@@ -322,7 +324,8 @@ TEST(limits)
     }
 }
 
-/* What each choice needs; loops are specialised unless the oracle is asked for. */
+/* Which passes each choice needs; loops are specialised unless the unspecialised ones are asked
+ * for. */
 TEST(needs)
 {
     for (int choice = 0; choice < GRADIENTS * FORMULATIONS * PAIR_WIDTHS; choice++)
@@ -344,7 +347,7 @@ TEST(needs)
         }
 }
 
-/* Gravity in any direction is gravity, and wakes everybody. */
+/* Gravity counts in whichever direction it points, and no particle may then sleep. */
 TEST(gravity)
 {
     for (int axis = 0; axis < 4; axis++)

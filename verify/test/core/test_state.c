@@ -31,7 +31,8 @@ static struct particles gas(int dim)
     return a;
 }
 
-/* v and U, and how many are left without: exactly nothing is as bad as less, and as no number. */
+/* v and U, and how many particles have no internal energy left: exactly 0, a negative one and NaN
+ * all count. */
 TEST(primitives)
 {
     for (int dim = 1; dim <= 3; dim++)
@@ -55,8 +56,8 @@ TEST(primitives)
         }
 }
 
-/* How far widths are off, and so how the Newton step goes: little; with a slope that is not; so far
- * that a step of a factor of 2 is the most, up or down. */
+/* Errors of the widths, and what the Newton step then does: small ones, a slope that does not help,
+ * and errors so large that the step is limited to a factor of 2, up or down. */
 enum { LITTLE, STEEP, MUCH_LESS, MUCH_MORE, CASES };
 
 static void draw_sums(struct density_sums *sums, const struct gas *gas, const struct particles *a,
@@ -159,7 +160,7 @@ TEST(alpha_grows_and_decays)
     particles_destroy(&a);
 }
 
-/* The largest one is found wherever it stands, and no other. */
+/* The largest value is found wherever it stands, and no other one. */
 TEST(largest_rates)
 {
     struct particles a = gas(1);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The arrays of particles: each has its own room, ghosts included, whatever the numbers; values
- * stay where room grows, are carried out and back with their ghosts, and follow a new order. Large
- * pages are asked for where arrays are as long as one, and only there. */
+ * The arrays of particles do not overlap, ghosts included, for any numbers. Values stay when the
+ * arrays grow, are serialised and read back with their ghosts, and follow a new order of the
+ * particles. Large pages are asked for where arrays are as long as one, and only there. */
 #include "test.h"
 
 #include <stdio.h>
@@ -40,7 +40,7 @@ static struct particles made(int dim, ptrdiff_t n, ptrdiff_t ghosts)
     return a;
 }
 
-/* A value of its own for every place of every array. */
+/* A different value for every element of every array. */
 static double value(size_t k, ptrdiff_t i)
 {
     return 1e4 * (double)(k + 1) + (double)i;
@@ -107,7 +107,7 @@ TEST(room_for_more_ghosts)
 
 /* --- carried ---------------------------------------------------------------------------------- */
 
-/* Those arrays that are of use; the others stay as they are. */
+/* Only those arrays that are in use are carried; the others stay as they are. */
 TEST(carried_with_ghosts)
 {
     static struct made_bytes bag;
@@ -151,7 +151,7 @@ static bool nothing(void *context, void *bytes, size_t n)
     return --*(int *)context > 0;
 }
 
-/* What cannot be carried leaves the rest as it is. */
+/* If reading back fails, the particles stay as they are. */
 TEST(failed_to_carry)
 {
     struct particles a = made(1, 9, 8);
@@ -210,8 +210,8 @@ TEST(sizes_of_vectors)
 
 /* --- pages ------------------------------------------------------------------------------------ */
 
-/* Does the system's list of mappings say that large pages were asked for at this address? -1: it
- * knows of none. */
+/* 1 if the system's list of mappings says that large pages were asked for at this address, 0 if
+ * not, -1 if there is no such list. */
 static int asked_for(uintptr_t address)
 {
     FILE *file = fopen("/proc/self/smaps", "r");
@@ -234,7 +234,8 @@ static void expect_pages(int dim, ptrdiff_t n, const char *array, bool asked)
 {
     struct particles a = made(dim, n, 64);
     const double *first = strcmp(array, "x") == 0 ? a.x[0] : a.signal;
-    /* where blocks are as long: a large page on, as the first one may begin after the array */
+    /* blocks as long as that: a large page further on, as the first one may begin after the
+     * array */
     const int found = asked_for((uintptr_t)first + (n < (1 << 17) ? 0 : 1 << 21));
     particles_destroy(&a);
     if (found != asked) fail_msg("%d-D, %td particles, %s: %d", dim, n, array, found);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How many threads work, on clocks that are made up: as fast as the better choice, wherever other
- * programs come and go. */
+ * The choice of how many threads work, on made-up clocks: it is as fast as the better choice
+ * whenever other programs start and end. */
 #include "test.h"
 
 #include <math.h>
@@ -36,8 +36,8 @@ TEST(stay_near_the_better_choice)
             assert_int_equal(team.size, t);
             assert_true(loss(&team, &now, paces[k], 1. / t) <= 1.1);
             assert_int_equal(team.size == 1 || team.size == t, 1);
-            /* somebody else comes: the present stretch is lost, the next ones are not; waiting for
-             * slices of time costs short steps most */
+            /* another program starts: the present stretch of steps is lost, the next ones are not;
+             * short steps suffer most from waiting for a slice of time */
             const double ratio = paces[k] < 1e-2 ? 8 : 1.5;
             loss(&team, &now, paces[k], ratio);
             for (int again = 0; again < 3; again++)
@@ -128,7 +128,8 @@ TEST(stretches_are_as_long_as_said)
         stretch(&team, &now, pace);
         stretch(&team, &now, 0.9 * pace);
         assert_true(team.size == 4 && !team.trying && team.stretch == 16);
-        /* slower than it was, but not by half; then by more: tried again at once */
+        /* slower than before, but by less than half; then by more, so that it is tried again at
+         * once */
         const double least = ceil(16 * 4e-3 / (1.3 * pace));
         assert_int_equal(stretch(&team, &now, 1.3 * pace), (int)fmax(16, least));
         assert_true(team.size == 1 && team.trying);

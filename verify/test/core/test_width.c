@@ -38,7 +38,7 @@ TEST(widths_of_even_gas)
     }
 }
 
-/* As strict as the scheme, and at the start as 1e-10 at least. */
+/* The scheme's tolerance, and at the start one of at most 1e-10. */
 TEST(rules_of_simulations)
 {
     for (int dim = 1; dim <= 3; dim++)
@@ -62,7 +62,8 @@ struct batch {
     struct width_bracket bracket;
 };
 
-/* Widths up to a third off what their sums ask for, and one more that is not to be touched. */
+/* Widths up to a third off those that their sums ask for, and one more behind them that must not be
+ * changed. */
 static struct batch drawn_batch(const struct width_rule *rule, double high)
 {
     struct batch b;
@@ -184,7 +185,8 @@ TEST(who_has_no_root)
             }
 }
 
-/* 1/h goes on as it has changed, by no more than a quarter up and a fifth down. */
+/* 1/h is extrapolated as it has changed, but grows by no more than a quarter and falls by no more
+ * than a fifth. */
 TEST(predicted_widths)
 {
     for (int len = BATCH_MAX - 1; len <= BATCH_MAX; len++) {

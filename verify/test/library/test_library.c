@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The public library through its own headers: what is right passes, what is wrong is named. */
+ * The public library through its own headers: right kernels, gradients and settings pass, wrong
+ * ones are refused with a message that names the fault. */
 #include "test.h"
 
 #include <math.h>
@@ -275,7 +276,7 @@ static double x[N], v[N], m[N], u[N], y[N];
 static const char *const keys[] = {"kernel=cubic_spline", "eta=2.4", "integrator=leapfrog",
                                    "energy=internal", NULL};
 
-/* In an order that is not that of their places. */
+/* The order of the particles is not that of their positions. */
 static struct sphproof_setup setup_of_a_wave(void)
 {
     for (int k = 0; k < N; k++) {
@@ -330,7 +331,7 @@ TEST(a_simulation_conserves)
     sphproof_simulations_free(NULL);
 }
 
-/* Up to its own time there is nothing to compute, and earlier ones are past. */
+/* A run up to the present time computes nothing, and one up to an earlier time is refused. */
 TEST(times_of_a_simulation)
 {
     const double refused[] = {-1e-300, 0.01, nextafter(0.02, 0), (double)NAN, HUGE_VAL, -HUGE_VAL};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The library's certificate of a kernel on figures that are planted, and every shape that is none:
- * knots, constants, values, dimensions. */
+ * The library's certificate of a kernel, with planted figures, and all shapes that are refused for
+ * their knots, constants, values or dimensions. */
 #include "test.h"
 
 #include <math.h>
@@ -64,7 +64,7 @@ static void see(void *context, const struct sphproof_figure *figure)
     seen[seen_count++] = *figure;
 }
 
-/* As a person would decide. */
+/* The verdict, found independently. */
 static bool holds(const struct figure *figure, bool single)
 {
     const double bound = single && figure->bound > 0 && figure->bound < 1e-6 ? 1e-6 : figure->bound;
@@ -201,7 +201,7 @@ static enum sphproof_status own(const struct sphproof_shape *shape, const char *
     return status;
 }
 
-/* Knots are strictly within ]0, 1[, and ascend. */
+/* Knots must ascend within ]0, 1[. */
 TEST(knots)
 {
     static const struct {

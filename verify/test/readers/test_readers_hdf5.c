@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Readers of HDF5: every layout is made from a list of all that it may hold. Then each item of the
- * list in turn is left out, stored in every other form (which must change nothing) and spoilt in
- * every way (which must be refused, or read as absent). */
+ * Readers of HDF5: each layout is written from a list of all that it may hold. Then each item of
+ * the list in turn is left out, is stored in every other form, which must change nothing, and is
+ * damaged in every way, which must be refused or read as absent. */
 #include "test.h"
 
 #ifdef HAVE_HDF5
@@ -30,7 +30,7 @@ TEST(left_out)
             else
                 reads(l, items, l->fields[k].path);
         }
-        /* without masses of their own, where the table has gas alone; and without any */
+        /* particles without masses, with and without a mass in the header's table */
         items_of(l, items);
         for (size_t k = 0; k < l->count && !a; k++)
             if (l->fields[k].column == SNAPSHOT_M)
@@ -45,7 +45,7 @@ TEST(left_out)
         for (size_t k = 0; k < l->count; k++)
             if (l->fields[k].meaning == MASS) items[k].path[0] = '\0';
         if (named) refuses(l, items, "no masses", "no masses");
-        /* neither of two that stand for each other */
+        /* both of two items are missing, of which one would do */
         items_of(l, items);
         for (size_t k = 0; k < l->count; k++)
             if (l->fields[k].column == SNAPSHOT_U || l->fields[k].column == SNAPSHOT_P)
@@ -54,7 +54,8 @@ TEST(left_out)
     }
 }
 
-/* The same, read in a process of its own; and where that cannot hand over what it has read. */
+/* The same, read in a process of its own, also when that process cannot hand over what it has
+ * read. */
 static void apart(void **state)
 {
     struct rlimit usual, none;
@@ -98,7 +99,7 @@ static void apart(void **state)
     here.here = true;
 }
 
-/* Numbers may be stored in any way: nothing that is read differs. */
+/* Numbers may be stored in any type and layout: what is read does not differ. */
 TEST(other_forms)
 {
     static const enum stored numbers[] = {F32, F32_BIG, I64, I32_BIG};
@@ -140,13 +141,14 @@ static double fault_of(int fault)
     return faults[fault];
 }
 
-/* Phantom's particles without width are none. */
+/* Phantom's particles without a width are not counted as particles. */
 static bool is_dead(const struct layout *l, const struct field *f, double h)
 {
     return strcmp(l->name, "phantom_hdf5") == 0 && f->column == SNAPSHOT_H && h <= 0;
 }
 
-/* Columns of another shape, of words, a group in their place, and values that cannot be. */
+/* Columns of another shape, columns of words, a group in place of a column, and impossible
+ * values. */
 TEST(spoilt_columns)
 {
     for (int a = 0; a < LAYOUTS; a++) {
@@ -160,7 +162,8 @@ TEST(spoilt_columns)
             for (int more = -1; more < 2; more += 2) {
                 items_of(l, items);
                 items[k].shape[0] = (hsize_t)(N + more);
-                /* rows of others, or a count in the header, do not agree with those of positions */
+                /* the number of rows of a column, or the count in the header, is not that of the
+                 * positions */
                 snprintf(says, sizeof says, "%s has %d x %d numbers; allowed: %d x %s", f->path,
                          N + more, f->width, N,
                          f->meaning == COLUMN &&

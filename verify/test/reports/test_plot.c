@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Plots: what goes into a page is well-formed, prefixed and self-contained; what can go wrong with
- * gnuplot ends in a status. */
+ * Plots: what is put into a page is well-formed, has prefixed ids and needs no other file; every
+ * fault of gnuplot ends in a status. */
 #include "test.h"
 
 #include <math.h>
@@ -207,7 +207,7 @@ TEST(processes)
                      PROCESS_NOT_FOUND);
     buffer_free(&output);
     free(input);
-    /* nothing of this has changed what this process does with a broken pipe */
+    /* none of this has changed how this process handles a broken pipe */
     sigset_t mask;
     sigprocmask(SIG_BLOCK, NULL, &mask);
     assert_false(sigismember(&mask, SIGPIPE));
@@ -225,7 +225,7 @@ TEST(missing_gnuplot)
     assert_non_null(strstr(message, "gnuplot-nox"));
 }
 
-/* The judge of the other tests must itself be able to say no. */
+/* What judges in the other tests must itself be able to fail. */
 TEST(markup)
 {
     char fault[256];

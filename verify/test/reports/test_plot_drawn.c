@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Scripts and data of plots drawn at random, and SVG as gnuplot writes it and as it does not,
- * adapted: those that were made before, byte for byte: data/drawn/plots.txt; kept as
- * test_page_drawn.c says. */
+ * Scripts and data of plots that are drawn at random, and the adaptation of gnuplot's SVG and of
+ * malformed SVG, must be byte for byte those in data/drawn/plots.txt; test_page_drawn.c says how
+ * that file is renewed. */
 #include "test.h"
 
 #include <math.h>

@@ -44,7 +44,7 @@ TEST(test_order_interval)
                   gsl_cdf_tdist_Pinv(0.975, freedom) * sqrt(0.01 / 5), 1e-12);
     assert_int_equal(order_fit(4, spacing, error, &faint, &replicated, NULL), STATUS_OK);
     near_relative(replicated.high - replicated.low, fit.high - fit.low, 1e-9);
-    /* of so many levels as there are variances, whatever is behind them */
+    /* as many levels as there are variances are used, whatever stands behind them */
     const double behind[] = {0.01, 0.01, 0.01, 0.01, NAN};
     assert_int_equal(
         order_fit(4, spacing, error, &(struct order_noise){behind, 9}, &replicated, NULL),
@@ -102,7 +102,7 @@ TEST(test_classes)
     assert_int_equal(class_of((double[]){16, 8, 4, 2, 1}), ORDER_ASYMPTOTIC);
     assert_int_equal(class_of((double[]){16, 8, 4, 3.6, 3.5}), ORDER_FLOOR_LIMITED);
     assert_int_equal(class_of((double[]){16, 8, 4, 3.6, 3.7}), ORDER_FLOOR_LIMITED);
-    /* the last order is a third of the best to the last bit, and a little less */
+    /* the last order is a third of the best one exactly, and a little less */
     const double spacing[] = {16, 8, 4, 2, 1};
     for (int less = 0; less < 2; less++) {
         struct order_fit fit;
@@ -195,8 +195,8 @@ TEST(test_one_rise)
     }
 }
 
-/* Levels off their line by as much as replicates explain at 1 %, an F test, or just more: then the
- * scatter has the last word. */
+/* Levels that are off their line by as much as replicates explain at 1 % (an F test), or by just
+ * more: then the scatter decides. */
 TEST(test_order_curvature)
 {
     const double e = 0.02, limit = gsl_cdf_fdist_Qinv(0.01, 2, 4 * 8);

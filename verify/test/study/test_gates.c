@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Gates of one run, of made documents: what bounds are at n, what compared schemes are held to,
- * what is conserved and by whom. */
+ * Gates of one run, on made-up documents: which bound holds at n, what compared schemes have to
+ * reach, and which conserved quantities are asked of which scheme. */
 #include "test.h"
 
 #include <math.h>
@@ -45,7 +45,7 @@ static void says(const json_t *list, const char *name, double value, double boun
     assert_int_equal(!json_object_get(gate, "known"), strcmp(status, "known") != 0);
 }
 
-/* At a quarter of the finest number of particles, spacings of twice the length. */
+/* With a quarter of the finest number of particles (in 2D) spacings are twice as long. */
 TEST(errors)
 {
     static const struct {
@@ -74,8 +74,8 @@ TEST(errors)
     }
 }
 
-/* Beyond the case's own ladder a bound may be another one; a compared scheme's own holds
- * everywhere. */
+/* Above the case's own ladder another bound may hold; the bound of a compared scheme holds at every
+ * n. */
 TEST(beyond_the_ladder)
 {
     static const char more[] = "[finer]\nvelocity_l1 = 0.25\ndisc_error = 0.5\n";
@@ -95,7 +95,7 @@ TEST(beyond_the_ladder)
     }
 }
 
-/* What is known is an error of any size, but an error. */
+/* A known weakness allows an error of any size, but the error must be a number. */
 TEST(no_number_is_not_known)
 {
     for (int compared = 0; compared < 2; compared++) {
@@ -113,7 +113,7 @@ TEST(no_number_is_not_known)
     }
 }
 
-/* A gate whose figure a run does not have has compared nothing. */
+/* A gate fails if the run does not have its figure: nothing was compared. */
 TEST(what_is_missing_fails)
 {
     const struct case_file file = file_of(false);
@@ -129,7 +129,8 @@ TEST(what_is_missing_fails)
     json_decref(run);
 }
 
-/* Where a scheme leaves nothing to be measured, an error that is measured must pass. */
+/* Where a scheme's order cannot be measured because its errors are round-off, a measured error must
+ * pass. */
 TEST(absence_is_known)
 {
     const struct case_weakness absent = {(double)NAN, "no shock"}, any = {(double)INFINITY, "slow"},
@@ -140,7 +141,8 @@ TEST(absence_is_known)
     assert_true(!gates_know(&some, 1, (double)NAN) && !gates_know(&unsaid, 1, 0));
 }
 
-/* No number fails; what has no exact value is no gate; beyond the ladder a bound is the case's. */
+/* An error that is not a number fails. Figures without an exact value are no gates. Above the
+ * ladder the case's bound holds. */
 TEST(odd)
 {
     const struct case_file file = file_of(false);
@@ -158,7 +160,8 @@ TEST(odd)
     json_decref(run);
 }
 
-/* Walls push, gravity pulls, and heat that is integrated alone knows nothing of the rest. */
+/* Momentum is not asked for where walls push or gravity pulls, and energy is not where only heat is
+ * integrated. */
 TEST(conserved)
 {
     static const struct {
