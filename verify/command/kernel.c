@@ -9,7 +9,6 @@
 #include "certificate.h"
 #include "command.h"
 #include "guard.h"
-#include "picture.h"
 #include "result.h"
 #include "text.h"
 #include "user_kernel.h"
@@ -294,10 +293,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
     struct request request;
     json_t *reply = NULL;
     if (n != 1) return command_usage(options, error, "one kernel or one F.so is needed");
-    const char *plot = options_value(options, "plot");
     enum status status = take_request(options, &request, error);
     request.word = arguments[0];
-    if (!status && plot) status = picture_probe(plot, error);
     if (!status)
         status = user_kernel_is_path(request.word) ? certify_guarded(&request, &reply, error)
                                                    : certify(&request, &reply, error);

@@ -62,7 +62,7 @@ static bool next_tag(const char *at, const char *end, struct tag *tag)
         if (!stop) return false;
         tag->closes = at[1] == '/';
         tag->name = at + 1 + tag->closes;
-        tag->length = stop > tag->name ? (size_t)(stop - tag->name) : 0;
+        tag->length = (size_t)(stop - tag->name);
         tag->behind = at = stop + 1;
         if (tag->length && isalpha((unsigned char)tag->name[0])) return true;
     }
