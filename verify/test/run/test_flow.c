@@ -328,28 +328,6 @@ TEST(nothing_is_known_of_a_file)
 
 static const char square_keys[] = "kind=square|lo=-1 2 0|hi=3 4 8|gamma=1.6|contrast=5";
 
-/* A corner belongs to the square where it begins, and not where it ends. */
-TEST(square_is_half_the_box)
-{
-    for (int dim = 2; dim <= 3; dim++) {
-        struct settings s;
-        const struct prepared p = prepared_of(
-            &s, dim, dim == 3 ? square_keys : "kind=square|lo=-1 2|hi=3 4|gamma=1.6|contrast=5");
-        static const double inside[3] = {1, 3, 4}, lo[3] = {0, 2.5, 2}, hi[3] = {2, 3.5, 6};
-        for (int d = 0; d < 3; d++)
-            for (int k = 0; k < 5; k++) {
-                const double to[] = {lo[d], lo[d] - 1e-12, hi[d], hi[d] - 1e-12, inside[d]};
-                double x[3] = {inside[0], inside[1], inside[2]};
-                x[d] = to[k];
-                const bool dense = d >= dim || k == 0 || k >= 3;
-                const struct problem_state have = sampled(&p, x[0], x[1], x[2], 0.3);
-                assert_true(have.rho == (dense ? 5 : 1) && have.P == 2.5);
-                assert_true(have.v[0] == 0 && have.v[1] == 0 && have.v[2] == 0);
-                near_relative(have.u, 2.5 / (0.6 * have.rho), 1e-14);
-            }
-    }
-}
-
 /* Equal spacing: a lattice of 4 by 4 cells or multiples, no cell on both sides of an edge. */
 TEST(squares_share_a_lattice)
 {

@@ -109,26 +109,6 @@ TEST(columns)
     }
 }
 
-/* Names that are too many for the text are left out at its end. */
-TEST(many_columns_are_ignored)
-{
-    char head[2048] = "x,vx,m,u", row[2048] = "1,2,3,4", text[8192], want[1024] = "";
-    for (int k = 0; k < 20; k++) {
-        char name[32];
-        snprintf(name, sizeof name, "column_%02d", k);
-        strcat(strcat(head, ","), name);
-        strcat(row, ",0");
-        strcat(strcat(want, k ? " " : ""), name);
-    }
-    snprintf(text, sizeof text, "%s\n%s\n%s\n", head, row, row);
-    struct particle_file file;
-    struct error error = {0};
-    assert_int_equal(particle_file_read(written(text), &file, &error), STATUS_OK);
-    want[sizeof file.ignored - 1] = '\0';
-    assert_string_equal(file.ignored, want);
-    particle_file_free(&file);
-}
-
 TEST(setups_get_a_box)
 {
     struct particle_file file;

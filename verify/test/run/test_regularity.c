@@ -167,54 +167,6 @@ TEST(what_lies_on_a_limit)
     }
 }
 
-/* The widest h stands for neighbours that are further away, whoever has it; h beyond the last is
- * nobody's. */
-TEST(the_widest_is_looked_for)
-{
-    const struct kernel kernel = kernel_named("cubic_spline");
-    static const double x[] = {1, 5, 9}, volume[] = {1e-8, 1e-8, 1e-8};
-    for (int widest = 0; widest < 3; widest++) {
-        double h[4] = {1e-8, 1e-8, 1e-8, 9};
-        h[widest] = 4e-8;
-        const struct regularity_cloud cloud = {
-            .box = {1, {0}, {10}}, .n = 3, .x = {x}, .volume = volume, .h = h, .kernel = &kernel};
-        struct regularity found;
-        struct error error;
-        assert_int_equal(regularity_measure(&cloud, &found, &error), STATUS_OK);
-        near_relative(found.nearest, 4, 1e-14);
-    }
-}
-
-/* On a line points that have left a periodic box come in again at the other end; where the ends are
- * open they are out. */
-TEST(out_of_the_box)
-{
-    const struct kernel kernel = kernel_named("cubic_spline");
-    static const double inside[] = {1.25, 1.75, 3, 2.25}, out[] = {3.25, 1.75, 3, 0.25},
-                        volume[] = {0.5, 0.625, 0.5, 0.75}, h[] = {0.75, 0.8, 0.85, 0.9};
-    struct regularity found[2];
-    struct error error;
-    struct regularity_cloud cloud = {.box = {1, {1, (double)NAN}, {3, (double)NAN}},
-                                     .periodic = {true},
-                                     .n = 4,
-                                     .volume = volume,
-                                     .h = h,
-                                     .kernel = &kernel};
-    for (int k = 0; k < 2; k++) {
-        cloud.x[0] = k ? out : inside;
-        assert_int_equal(regularity_measure(&cloud, &found[k], &error), STATUS_OK);
-    }
-    const struct regularity want = (cloud.x[0] = inside, directly(&cloud));
-    near_relative(found[0].nearest, want.nearest, 1e-14);
-    near_relative(found[0].gradient, want.gradient, 1e-14);
-    assert_memory_equal(&found[0], &found[1], sizeof found[0]);
-    cloud.periodic[0] = false;
-    cloud.x[0] = out; /* 0.25 1.75 3 3.25: one is whole, with nobody near */
-    assert_int_equal(regularity_measure(&cloud, &found[0], &error), STATUS_OK);
-    near_relative(found[0].nearest, (0.25 / 0.5 + 0.9 / 0.625 + 0.25 / 0.5 + 0.9 / 0.75) / 4,
-                  1e-14);
-}
-
 /* More points than are looked at in one go: a lattice, and some that stand beside one of it. */
 TEST(blocks_of_points)
 {

@@ -170,34 +170,6 @@ TEST(in_a_plane)
     }
 }
 
-/* Two fields that have changed places in the window are seen, and nothing that lies beside it. */
-TEST(changed_places)
-{
-    static const int pairs[][2] = {{0, 1}, {0, 2}, {1, 2}, {2, 3}, {0, 3}};
-    for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++)
-        for (int where = 0; where < 2; where++) {
-            struct run_result result;
-            struct error error = {0};
-            make(&result, "sod", 1);
-            double *const fields[] = {rho, v[0], P, u};
-            for (int i = 0; i < N; i++) {
-                const bool inside = x[0][i] >= -0.35 && x[0][i] <= 0.5;
-                if ((where == 1) == inside) continue;
-                const double kept = fields[pairs[k][0]][i];
-                fields[pairs[k][0]][i] = fields[pairs[k][1]][i];
-                fields[pairs[k][1]][i] = kept;
-            }
-            assert_int_equal(run_measure_errors(&result, &error), STATUS_OK);
-            const bool seen = where == 0;
-            static const char *const names[] = {"density", "velocity", "pressure", "energy"};
-            assert_true((result.suspicion[0] != 0) == seen);
-            if (seen) {
-                assert_non_null(strstr(result.suspicion, names[pairs[k][0]]));
-                assert_non_null(strstr(result.suspicion, names[pairs[k][1]]));
-            }
-        }
-}
-
 /* What lies in a large volume counts for more, also where fields have changed places. */
 TEST(large_ones_count)
 {

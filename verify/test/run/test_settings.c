@@ -31,41 +31,6 @@ static void resolve(struct settings *settings, struct scheme *scheme, int n, ...
     assert_int_equal(settings_scheme(settings, 1, scheme, &error), STATUS_OK);
 }
 
-TEST(defaults_are_the_fastest_scheme)
-{
-    struct settings settings;
-    struct scheme s;
-    resolve(&settings, &s, 0);
-    assert_string_equal(s.kernel.member.name, "quadratic_spline");
-    assert_string_equal(s.integrator->member.name, "predicted_midpoint");
-    near_relative(s.eta, 1.5, 1e-15);
-    near_relative(s.cfl, 1.1 / 1.5, 1e-15);
-    near_relative(s.alpha, 0.75, 1e-15);
-    near_relative(s.beta, 1.5, 1e-15);
-    assert_int_equal(s.energy, ENERGY_TOTAL);
-    assert_int_equal(s.pair_width, PAIR_WIDTH_MAX);
-    assert_int_equal(s.h_method, H_PREDICTED);
-    resolve(&settings, &s, 2, "gradient=ia", "viscosity=reconstructed");
-    assert_int_equal(s.pair_width, PAIR_WIDTH_HARMONIC);
-    resolve(&settings, &s, 1, "formulation=lagrangian");
-    assert_int_equal(s.pair_width, PAIR_WIDTH_MEAN);
-}
-
-TEST(textbook_scheme_has_no_surprises)
-{
-    struct settings settings;
-    struct scheme s;
-    resolve(&settings, &s, 3, "integrator=modified_leapfrog", "kernel=cubic_spline", "eta=4.8");
-    near_relative(s.cfl, s.integrator->cfl, 1e-15);
-    near_relative(s.alpha, 1, 1e-15);
-    near_relative(s.beta, 2, 1e-15);
-    assert_int_equal(s.energy, ENERGY_INTERNAL);
-    assert_int_equal(s.pair_width, PAIR_WIDTH_MEAN);
-    assert_int_equal(s.h_method, H_NEWTON);
-    resolve(&settings, &s, 2, "alpha=1.5", "alpha=0.5"); /* the last one counts */
-    near_relative(s.beta, 1, 1e-15);
-}
-
 TEST(keys_read_what_they_write)
 {
     struct settings settings, again;
@@ -82,26 +47,6 @@ TEST(keys_read_what_they_write)
         assert_memory_equal(again.value[i].real, settings.value[i].real,
                             sizeof again.value[i].real);
     }
-}
-
-TEST(keys_refuse_the_rest)
-{
-    static const char *const never[] = {"", " ", "nan", "inf", "1e3x", "0x1", "1e300", "-1e300"};
-    for (int i = 0; i < SETTINGS; i++)
-        for (size_t j = 0; j < sizeof never / sizeof *never; j++) {
-            struct settings settings;
-            struct error error = {0};
-            if (setting_keys[i].type == SETTING_PATH) continue; /* a file may have any name */
-            settings_init(&settings);
-            const struct setting_value before = settings.value[i];
-            assert_int_equal(
-                settings_set(&settings, (enum setting)i, never[j], SOURCE_USER, "f:7", &error),
-                STATUS_BAD_INPUT);
-            assert_memory_equal(&before, &settings.value[i], sizeof before);
-            assert_ptr_equal(strstr(error.message, "f:7"), error.message);
-            assert_non_null(strstr(error.message, setting_keys[i].name));
-            assert_non_null(strstr(error.message, "allowed"));
-        }
 }
 
 static enum status set(enum setting key, double value, int count, struct settings *settings)
@@ -268,61 +213,6 @@ TEST(messages)
         assert_string_equal(settings.file, n < SETTING_TEXT_MAX ? word + 5 : "");
         word[5 + n] = 'f';
     }
-}
-
-/* One number or word for all directions, or each its own; who said it. */
-TEST(directions)
-{
-    char *const one[] = {"gravity=2", "boundary=open"},
-                *const each[] = {"gravity=2,3 4", "boundary=open,fixed reflecting", "lo=5 6"},
-                *const two[] = {"boundary=open,fixed", "energy=total"},
-                *const any[] = {"gravity=auto", "boundary=auto", "lattice=auto", "window=auto"};
-    struct settings settings;
-    struct error error;
-    memset(&settings, 0xff, sizeof settings);
-    settings_init(&settings);
-    assert_true(settings.dim == 0 && !settings.file[0]);
-    assert_int_equal(settings.value[SETTING_gravity].source, SOURCE_FALLBACK);
-    /* whoever says where opens the message */
-    assert_int_equal(settings_set(&settings, SETTING_kernel, "./no.so", SOURCE_CASE, "f:7", &error),
-                     STATUS_BAD_INPUT);
-    assert_ptr_equal(strstr(error.message, "f:7: kernel './no.so'"), error.message);
-    assert_int_equal(settings_set(&settings, SETTING_boundary, "no", SOURCE_CASE, "f:7", &error),
-                     STATUS_BAD_INPUT);
-    assert_ptr_equal(strstr(error.message, "f:7: no boundary 'no'"), error.message);
-    assert_int_equal(settings_apply(&settings, 2, one, &error), STATUS_OK);
-    assert_int_equal(settings.value[SETTING_gravity].source, SOURCE_USER);
-    assert_false(settings.value[SETTING_gravity].automatic);
-    for (int d = 0; d < 3; d++) {
-        assert_true(settings_along(&settings, SETTING_gravity, d) == 2);
-        assert_int_equal(settings_choice_along(&settings, SETTING_boundary, d), BOUNDARY_OPEN);
-    }
-    assert_int_equal(settings_apply(&settings, 3, each, &error), STATUS_OK);
-    static const int ends[] = {BOUNDARY_OPEN, BOUNDARY_FIXED, BOUNDARY_REFLECTING};
-    for (int d = 0; d < 3; d++) {
-        assert_true(settings_along(&settings, SETTING_gravity, d) == 2 + d);
-        assert_int_equal(settings_choice_along(&settings, SETTING_boundary, d), ends[d]);
-    }
-    assert_true(settings_along(&settings, SETTING_lo, 0) == 5 &&
-                settings_along(&settings, SETTING_lo, 1) == 6);
-    assert_int_equal(settings.value[SETTING_lo].given, 2);
-    assert_int_equal(settings.value[SETTING_boundary].given, 3);
-    assert_int_equal(settings_apply(&settings, 2, two, &error), STATUS_OK);
-    for (int d = 0; d < 2; d++)
-        assert_int_equal(settings_choice_along(&settings, SETTING_boundary, d), ends[d]);
-    assert_int_equal(settings.value[SETTING_energy].given, 0);
-    assert_int_equal(settings_apply(&settings, 4, any, &error), STATUS_OK);
-    assert_true(settings.value[SETTING_gravity].automatic &&
-                settings.value[SETTING_gravity].given == 1);
-    assert_true(settings.value[SETTING_boundary].automatic &&
-                settings.value[SETTING_boundary].given == 1);
-    assert_true(settings.value[SETTING_lattice].automatic &&
-                settings.value[SETTING_lattice].given == 0);
-    assert_true(settings.value[SETTING_window].automatic &&
-                settings.value[SETTING_window].given == 2);
-    assert_int_equal(setting_find("nothing"), -1);
-    assert_int_equal(settings_choice(&settings, SETTING_skip), SKIP_AUTO);
-    assert_false(settings.value[SETTING_skip].automatic); /* a word of its own */
 }
 
 /* Every key of a scheme gets there, and what it leaves open comes back as it is used. */

@@ -270,19 +270,3 @@ TEST(each_gas_has_a_lattice)
         check_cloud(&p, &s);
     }
 }
-
-/* Either gas may be the one whose particles are too few. */
-TEST(gases_without_a_lattice_are_refused)
-{
-    for (int k = 0; k < 3; k++) {
-        struct settings s;
-        struct initial initial = {0};
-        struct error error = {0};
-        const struct prepared p = prepared_of(
-            &s, 2, k == 2 ? "n=60|left=0.01 0 1|right=1 0 1" : "n=60|left=1 0 1|right=0.01 0 1");
-        s.value[SETTING_lattice].choice = k ? LATTICE_GLASS : LATTICE_FCC;
-        assert_int_equal(p.problem->fill(&p, &s, &initial, &error), STATUS_BAD_INPUT);
-        assert_non_null(strstr(error.message, k ? "glass" : "lattice=fcc"));
-        free(initial.storage);
-    }
-}

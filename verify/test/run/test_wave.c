@@ -167,22 +167,6 @@ TEST(steps_are_counted)
     assert_true(restless > 0);
 }
 
-/* Without a wave they stand where uniform gas has its mass, to the last bit. */
-TEST(uniform_gas_is_laid_exactly)
-{
-    struct settings s;
-    const struct prepared p =
-        prepared_of(&s, 1, "kind=sound_wave|lo=-1|hi=2|background=1.3 0 1|n=37|amplitude=0");
-    const struct initial initial = prepared_filled(&p, &s);
-    const double mass = 1.3 * 3 / 37;
-    assert_int_equal(initial.n, 37);
-    for (int i = 0; i < 37; i++) {
-        assert_true(initial.m[i] == mass);
-        assert_true(initial.x[0][i] == -1 + (i + 0.5) * mass / 1.3);
-    }
-    free(initial.storage);
-}
-
 TEST(what_cannot_be_laid_is_said)
 {
     for (int dim = 1; dim <= 3; dim++) {
@@ -196,31 +180,6 @@ TEST(what_cannot_be_laid_is_said)
         s.value[SETTING_lattice].choice = LATTICE_FCC;
         if (dim == 2) assert_int_equal(p.problem->fill(&p, &s, &initial, &error), STATUS_BAD_INPUT);
     }
-}
-
-TEST(what_is_no_wave_is_refused)
-{
-    prepared_refused(1, "kind=sound_wave|background=0 0 1",
-                     "background=\"0 0 1\": rho v P with rho > 0 and P > 0 is needed");
-    prepared_refused(2, "kind=sound_wave|direction=0 0", "the wave runs nowhere");
-    prepared_refused(2, "kind=sound_wave|direction=0.5 1", "0.5 is no integer");
-    struct prepared p;
-    struct settings s;
-    struct error error;
-    assert_int_equal(prepared_try(&p, &s, 1, "kind=sound_wave", &error), STATUS_OK);
-    s.value[SETTING_background].real[1] = (double)NAN; /* no number that the key can have */
-    assert_int_equal(problem_prepare(&p, &s, 1, &error), STATUS_BAD_INPUT);
-    assert_string_equal(error.message, "no exact solution: v0 must be finite");
-
-    const struct prepared steep = made(&rows[1], &s);
-    const struct simple_wave wave = wave_of(&rows[1]);
-    char words[128];
-    assert_int_equal(problem_check_time(&steep, 100, &error), STATUS_BAD_INPUT);
-    snprintf(words, sizeof words,
-             "t_end=100: the wave breaks at %.6g and has no exact solution from there on; allowed: "
-             "t_end below that",
-             simple_wave_breaking_time(&wave) * (1 - 1e-3));
-    assert_string_equal(error.message, words);
 }
 
 /* ---- its mode ---- */
