@@ -500,7 +500,9 @@ def test_report():
 def test_corner():
     """A code that counts positions from 0 is drawn where the case is; how still its gas is, is told and not judged."""
     write("corner.ini", (FILE % ("corner sod", 60, "none")).split("[case gresho]")[0] + "n = 60 80 100 120\n")
-    found = document("report", "--code", "corner.ini", "--out", "corner", "--jobs", "2", status=None)
+    words = ("report", "--code", "corner.ini", "--out", "corner", "--jobs", "2")
+    found = document(*words, status=None)
+    assert "plots are missing: no plot: gnuplot" in call(*words, status=4, environment={**os.environ, "PATH": "/nowhere"})[1]
     runs = {run["label"]: run["profile"] for run in found["runs"]}
     for x in (runs["Stand-in"]["x"], runs["Stand-in"]["exact"]["x"]):
         assert -0.51 < min(x) < -0.45 and 0.45 < max(x) < 0.51, (min(x), max(x))
