@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How cases are found: built-in ones by name, files by path, and what is no case file at all. */
+ * How cases are found: built-in ones by name and files by path; and files that are no case
+ * files. */
 #include "test.h"
 
 #include <stdio.h>
@@ -46,7 +47,7 @@ TEST(built_in)
     assert_true(n > 10);
 }
 
-/* A path is what has a slash or ends in .ini: the file of a name is not looked for. */
+/* A word with a slash, or that ends in .ini, is a path; a file is not looked for by a name. */
 TEST(paths)
 {
     struct case_file file;
@@ -80,7 +81,7 @@ static void refused(const char *name, const char *why)
     assert_string_equal(error.message, said);
 }
 
-/* A file is read, whatever number it gets, and closed. */
+/* A case file is read and closed again, whichever file descriptor it gets. */
 TEST(descriptors)
 {
     struct case_file file;
@@ -144,7 +145,7 @@ TEST(no_case_files)
     unlink(path_of("bad.ini"));
 }
 
-/* All that there are are named, as far as the message goes. */
+/* The message lists all cases, as far as it has room. */
 TEST(unknown_names)
 {
     struct case_file file;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The state of a run in a file: it comes back to the last bit, at the right moments, or is refused
- * with the reason. */
+ * The state of a run in a file: it is written at the right moments, and is read back to the last
+ * bit or refused with the reason. */
 #include "test.h"
 
 #include <stdio.h>
@@ -38,7 +38,7 @@ static int end(void **state)
     return rmdir(folder);
 }
 
-/* So many seconds after the last time, or after the first question. */
+/* It is due so many seconds after it was last written, or after the first question. */
 TEST(when)
 {
     struct checkpoint checkpoint = {.every = 1000};
@@ -53,8 +53,8 @@ TEST(when)
     assert_true(checkpoint_due(&checkpoint));
     assert_true(checkpoint.written >= before && checkpoint.written <= clock_wall());
     assert_false(checkpoint_due(&checkpoint));
-    /* The clock counts from the start of the machine: a time before that is a time like any other.
-     */
+    /* The clock counts from the start of the machine, so that negative times are allowed as
+     * well. */
     checkpoint.written = -checkpoint.every;
     assert_true(checkpoint_due(&checkpoint));
     checkpoint = (struct checkpoint){.every = 0};
@@ -69,7 +69,7 @@ static void saved(struct simulation *simulation)
     if (checkpoint.trouble.status) fail_msg("%s", checkpoint.trouble.message);
 }
 
-/* What a run that begins with the file says. */
+/* The message of a run that starts from the file. */
 static enum status loaded(struct checkpoint *checkpoint, struct simulation *simulation,
                           struct error *error)
 {
@@ -120,7 +120,7 @@ static void write_all(const char *bytes, size_t n)
     fclose(file);
 }
 
-/* That a run, which is the usual one unless it says otherwise, does not begin with the file. */
+/* Asserts that a run, the usual one unless another is given, does not start from the file. */
 static void refused(struct checkpoint checkpoint, const char *why)
 {
     struct simulation *simulation = made_simulation(40);
@@ -208,7 +208,7 @@ TEST(forged)
     simulation_destroy(self);
 }
 
-/* More than what is read at once: a fault in any part of it is seen. */
+/* The file is longer than what is read at once; a fault in any part of it is found. */
 TEST(large_ones)
 {
     static char bytes[1 << 23];
@@ -233,7 +233,7 @@ TEST(large_ones)
     }
 }
 
-/* Of another build or run: what differs is said. */
+/* For the state of another build or run the message says what differs. */
 TEST(others)
 {
     static const struct {
@@ -299,8 +299,8 @@ TEST(long_runs)
     }
 }
 
-/* Where nothing can be written the trouble says so, until it can; what cannot be opened is refused.
- */
+/* Where nothing can be written, the trouble is reported until it can; a file that cannot be opened
+ * is refused. */
 TEST(no_room)
 {
     struct simulation *self = made_simulation(40);

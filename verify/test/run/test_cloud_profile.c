@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Profiles of a run in 2D and 3D, of a gas and particles that are made here: maps, the particles of
- * the window over the one coordinate that counts, the exact curve, and when there is none. */
+ * Profiles of a run in 2D and 3D, with a made-up gas and made-up particles: maps, the particles of
+ * the window over the coordinate that the solution depends on, the exact curve, and cases without
+ * one. */
 #include "test.h"
 
 #include <stdlib.h>
@@ -28,7 +29,7 @@ static struct run_result result; /* at `now`, with a boost */
 
 static const double behind = 0.4921875; /* in the window */
 
-/* Whoever asks for a place behind the last particle, or changes more than the boost, is told. */
+/* Fails if a place behind the last particle is asked for, or if more than the boost is changed. */
 static void sample(const struct prepared *p, const double at[3], double t, struct problem_state *s)
 {
     const double x = at[0] - centre[0], y = at[1] - centre[1],
@@ -52,7 +53,8 @@ static void sample(const struct prepared *p, const double at[3], double t, struc
 
 static double x[3][MANY + 1], v[3][MANY + 1], rho[MANY + 1], P[MANY + 1], h[MANY + 1];
 
-/* n particles where they have been carried by the boost, and one behind them that is nowhere. */
+/* n particles at positions to which the boost has carried them, and one behind them that is
+ * nowhere. */
 static void make(int dim, bool circular, size_t n)
 {
     around = circular;
@@ -252,7 +254,8 @@ TEST(particles_and_the_curve)
     }
 }
 
-/* Of many about 600, drawn by Knuth's generator, and not every k-th one. */
+/* If there are many particles, about 600 are kept, drawn by Knuth's generator instead of every k-th
+ * one. */
 TEST(some_of_many)
 {
     uint64_t drawn = 1;
@@ -280,8 +283,8 @@ static bool has_a_curve(void)
     return curve;
 }
 
-/* One particle of a gas that is elsewhere the same stands where one quantity is another one, by a
- * little less or more than a billionth of 1 and of itself. */
+/* One particle of an otherwise uniform gas has another value of one quantity, by a little less or
+ * more than 1e-9, absolute and relative. */
 TEST(what_is_no_function_of_the_coordinate)
 {
     for (int k = 0; k < 8; k++) {

@@ -92,7 +92,7 @@ static void is(double got, double want, const struct run *run, const char *what)
                  run->scheme.kernel.member.name, run->scheme.integrator->member.name);
 }
 
-/* What the keys say that auto is, of a scheme whose choices are made. */
+/* Judges a scheme whose choices are made by what the keys' meanings say about auto. */
 static void judge(const struct run *run, int dim)
 {
     const struct scheme *s = &run->scheme;
@@ -175,7 +175,7 @@ TEST(nothing_but_these)
     assert_int_equal(integrators.n, integrator_family.n);
 }
 
-/* Where nothing is chosen at all; and what takes long steps away. */
+/* A scheme without any choice, and choices that take long time steps away. */
 TEST(nothing_chosen)
 {
     static const struct {
@@ -317,8 +317,8 @@ TEST(numbers_that_are_refused)
     }
 }
 
-/* Lagrangian forms have no width of a pair. Members of families that stand behind those with a form
- * in a line are for more dimensions. */
+/* Lagrangian forms have no pair width. In each family, members behind those that have a form in 1D
+ * are for 2D and 3D only. */
 TEST(choices_that_are_refused)
 {
     const struct run_settings base = case_of("sod");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Particles of equal masses, worked out a second time. */
+ * Particles of equal masses, compared with an independent construction. */
 #include "test.h"
 
 #include <gsl/gsl_qrng.h>
@@ -11,7 +11,8 @@
 #include "made_digits.h"
 #include "near.h"
 
-/* Sobol's sequence, its digits exchanged, shifted, each point with the density's probability. */
+/* The construction: Sobol's sequence with its digits exchanged, shifted; each point is kept with a
+ * probability that follows from the density. */
 TEST(equal_masses_follow_the_density)
 {
     for (int dim = 2; dim <= 3; dim++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Where particles start: arrays, lattices, balls, pairs and jitter, each worked out a second time.
- */
+ * Where particles start: arrays, lattices, balls, pairs and jitter, each compared with an
+ * independent construction. */
 #include "test.h"
 
 #include <gsl/gsl_rng.h>
@@ -62,7 +62,8 @@ static bool left_of(const void *context, const double x[3])
     return x[0] + 0.01 * x[1] + 0.001 * x[2] < *(const double *)context;
 }
 
-/* A lattice behind what is there already, and some of it taken out again. */
+/* A lattice is added behind the particles that are there already, and some of it is taken out
+ * again. */
 TEST(lays_and_keeps)
 {
     for (int dim = 2; dim <= 3; dim++) {
@@ -122,7 +123,7 @@ TEST(lays_and_keeps)
     }
 }
 
-/* A ball: about n lattice points of the box around it, those within. */
+/* A ball has about n points: those points of the surrounding box's lattice that lie within it. */
 TEST(balls_are_cut_from_lattices)
 {
     static const double part[] = {0, 1, 3.14159265358979323846 / 4, 3.14159265358979323846 / 6};
@@ -172,8 +173,8 @@ TEST(balls_are_cut_from_lattices)
 
 enum { LINE = 10 };
 
-/* Like neighbours, some that differ in density or mass alone, three alike, and one behind the last.
- */
+/* Neighbours with the same state, some that differ only in density or mass, three equal ones, and
+ * one behind the last. */
 static enum status fill_line(const struct prepared *p, const struct settings *settings,
                              struct initial *initial, struct error *error)
 {
@@ -203,7 +204,7 @@ static struct initial created(const struct prepared *p, const struct settings *s
     return initial;
 }
 
-/* Pairs of like neighbours, a tenth of their distance apart, or none. */
+/* Equal neighbours become pairs a tenth of their distance apart; others stay. */
 TEST(pairs_of_a_line)
 {
     const struct prepared p = {.problem = &line, .domain = {1, {0}, {9}}, .boost = {100}};
@@ -252,8 +253,9 @@ static enum status fill_cloud(const struct prepared *p, const struct settings *s
     return STATUS_OK;
 }
 
-/* Each place is moved by up to jitter times its spacing; round the box, back from an end that is
- * none, and on a line no further than the end. Flows without a jump are sampled again. */
+/* Jitter moves each particle by up to jitter times its spacing: round a periodic box, back from an
+ * end that is not periodic, and in 1D no further than the end. Flows without a jump are then
+ * sampled again. */
 TEST(jitter_moves_all)
 {
     for (int dim = 1; dim <= 3; dim++)

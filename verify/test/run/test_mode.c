@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Problems that start from a growing mode: base state and perturbation in the problem's own units,
- * and what is measured of the mode in states that are made here, by sums written a second time. */
+ * Problems that start from a growing mode: the base state and the perturbation in the problem's own
+ * units, and what is measured of the mode, on made-up states and by independent sums. */
 #include "test.h"
 
 #include <complex.h>
@@ -120,9 +120,8 @@ TEST(samples_are_base_and_mode)
 
 enum { N = 700, BINS = 32 };
 
-/* A state of points that lie anywhere, with volumes of their own and a velocity that is not only
- * the mode; its boost is there, too. Three in a row have no one else in their part of the height.
- */
+/* A state of arbitrary points with arbitrary volumes, whose velocity is the mode, something else
+ * and a boost. Three points of one row have no others in their part of the height. */
 struct made_state {
     double x[2][N + 1], v[2][N + 1], volume[N + 1]; /* one behind them */
     struct snapshot snapshot;
@@ -213,8 +212,9 @@ TEST(measured_as_defined)
     }
 }
 
-/* On a regular grid waves are orthogonal: nothing but the mode is found where nothing else is, and
- * of a wave of another length all is noise. The other parity is told from the mode's own. */
+/* On a regular grid waves are orthogonal: if the state is the mode alone, nothing but the mode is
+ * found, and a wave of another length is all noise. The other parity is told apart from the mode's
+ * own. */
 TEST(grid_knows_the_mode_alone)
 {
     enum { SIDE = 64 };
@@ -245,12 +245,12 @@ TEST(grid_knows_the_mode_alone)
     near_relative(mode_amplitude.measure(&p, &s), 3, 1e-12);
     near_below(mode_error.measure(&p, &s), 1e-12);
     near_relative(mode_noise.measure(&p, &s), sqrt(noise / squares), 1e-10);
-    for (int i = 0; i < SIDE * SIDE; i++) /* one layer only: as much of either parity */
+    for (int i = 0; i < SIDE * SIDE; i++) /* a single layer: both parities are equally strong */
         if (i / SIDE >= SIDE / 2) v[1][i] = p.boost[1];
     near_relative(mode_other_parity.measure(&p, &s), 1, 1e-10);
 }
 
-/* Sides that differ by a millionth of a millionth are alike, by the last bit more they are not. */
+/* Sides that differ by 1e-12 count as equal; one bit more and they do not. */
 TEST(boxes_are_square)
 {
     const double bit = 0x1p-52;
@@ -302,8 +302,8 @@ TEST(what_no_mode_has_is_refused)
     }
 }
 
-/* From twice the start to a tenth of the layer's width: that amplitude is none yet, a last bit less
- * is one. */
+/* The growth is fitted from twice the initial amplitude up to, but not including, a tenth of the
+ * layer's width. */
 TEST(amplitudes_leave_room_to_grow)
 {
     static const char *const names[] = {"kelvin_helmholtz_mode", "rayleigh_taylor_mode"};
@@ -342,7 +342,7 @@ TEST(layers_need_a_square)
     made("kelvin_helmholtz_mode", 3, keys);
 }
 
-/* Sinuous and varicose modes are different ones; gravity that nobody gives is that of the layer. */
+/* Sinuous and varicose modes differ. Gravity that is not given is that of the layer. */
 TEST(keys_choose_the_mode)
 {
     const struct prepared one = made("kelvin_helmholtz_mode", 2,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Particles from files: what is read of which columns, and of bad files the whole message. */
+ * Particles from files: what is read from which columns, and the complete message for each bad
+ * file. */
 #include "test.h"
 
 #include <stdio.h>
@@ -23,7 +24,7 @@ static const char *written(const char *text)
     return path;
 }
 
-/* Does the message end so, after the path? */
+/* Asserts that the message ends so, behind the path. */
 static void says(const struct error *error, const char *words)
 {
     assert_int_equal(error->status, STATUS_BAD_INPUT);
@@ -122,7 +123,7 @@ TEST(setups_get_a_box)
     near_relative(setup.lo[0], -5.08, 1e-15);
     near_relative(setup.hi[0], 3.08, 1e-15);
     assert_true(setup.lo[1] == 6 && setup.hi[1] == 8);
-    particle_file_free(&file); /* whoever comes first or last may be the outermost */
+    particle_file_free(&file); /* the outermost particle may be the first or the last one */
     assert_int_equal(
         particle_file_read(written("x,vx,m,u\n5,0,1,1\n1,0,1,1\n-3,0,1,1\n"), &file, &error),
         STATUS_OK);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * From keys to a prepared problem: what is refused, with the words that help, and what becomes of
- * the rest; what problems share: boosts, circles, directions, times up to which they hold. */
+ * From keys to a prepared problem: what is refused, with a message that helps, what the problem
+ * makes of the rest, and up to which times it holds. */
 #include "test.h"
 
 #include <stdio.h>
@@ -223,7 +223,7 @@ TEST(what_is_left_open_is_chosen)
     assert_true(p.boundary[1] == BOUNDARY_FIXED && p.boundary[2] == BOUNDARY_PERIODIC);
 }
 
-/* What a problem chooses is written where it was asked for, over what was there. */
+/* Choices that a problem makes are written where the setting was `auto`. */
 TEST(choices_are_written_back)
 {
     struct settings s;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Profiles of a run on a line, of a gas and particles that are made here: the exact curve bends
- * where one of its fields does, and nowhere else; particles are those of the window. */
+ * Profiles of a run in 1D, with a made-up gas and made-up particles: the exact curve has points
+ * where one of its fields bends, and nowhere else; the particles are those of the window. */
 #include "test.h"
 
 #include <string.h>
@@ -85,7 +85,7 @@ TEST(bends)
     json_decref(profile);
 }
 
-/* A curve that bends by a billionth of its values from point to point is straight. */
+/* A curve that bends by 1e-9 of its values from point to point counts as straight. */
 TEST(nearly_straight)
 {
     struct problem problem;

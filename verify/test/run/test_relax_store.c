@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Glasses that are kept: in which folder, how many points, and that they come back to the last bit.
- */
+ * Glasses that are kept on disk: in which folder, for how many points, and that they are read back
+ * to the last bit. */
 #include "test.h"
 
 #include <fcntl.h>
@@ -86,7 +86,8 @@ TEST(folders)
     assert_false(access("xdg2", F_OK) == 0 || access("own2", F_OK) == 0);
 }
 
-/* Few are not worth it, and too many take too much: there is no folder for them. */
+/* Glasses of few points are not kept because they are cheap, and glasses of too many because they
+ * are large. */
 TEST(numbers)
 {
     static const struct {
@@ -103,7 +104,7 @@ TEST(numbers)
     }
 }
 
-/* What nobody has used for a month goes when another one comes. */
+/* A glass that was not used for a month is removed when another one is kept. */
 TEST(old_ones_go)
 {
     static const char old[] = "old/sphproof/glass/00/1.entry";

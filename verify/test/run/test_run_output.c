@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A run's result as a document and as a table, on results that are made here: every figure in its
- * place, and null where there is none. */
+ * A run's result as a document and as a table, with made-up figures: every figure is in its place,
+ * and null where there is none. */
 #include "test.h"
 
 #include <stdio.h>
@@ -172,7 +172,8 @@ TEST(documents)
     }
 }
 
-/* A glass has a start; what broke down says how; a matrix that nobody uses is none. */
+/* A run from a glass says how it started, a run that broke down says how, and a run without a
+ * matrix has no figures of it. */
 TEST(what_may_be_absent)
 {
     struct run_settings settings;

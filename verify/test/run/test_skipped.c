@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How much of a run is skipped, beside what an exact solution leaves in peace. */
+ * How much of a run is skipped, compared with the gas that the exact solution leaves
+ * undisturbed. */
 #include "test.h"
 
 #include <math.h>
@@ -29,7 +30,7 @@ static struct bench_shares shares_of(const char *name, const char *words)
     return shares;
 }
 
-/* At least four fifths of what is allowed sleep, and no particle that should not. */
+/* At least four fifths of the allowed particles sleep, and no others do. */
 TEST(test_shares)
 {
     static const struct {
@@ -84,8 +85,8 @@ TEST(test_columns)
     }
 }
 
-/* Without an exact front gas that hardly changes is possible: all of a box at rest, nothing of an
- * inflow that converges. The map has everybody asleep, or nobody. */
+/* Without an exact front, gas that hardly changes could sleep: in a box at rest all of it, in an
+ * inflow that converges none. The map then shows every particle asleep, or none. */
 TEST(test_coarse)
 {
     static const struct {

@@ -121,7 +121,7 @@ static void compare(struct setup *setup)
     near_relative(skipping.sums.energy, plain.sums.energy, 1e-13);
 }
 
-/* A pulse leaves gas in peace that is three smoothing lengths ahead of it, mean over time. */
+/* Gas more than three smoothing lengths ahead of a pulse is undisturbed; mean over time. */
 static void skip_enough_of_pulse(const struct setup *setup)
 {
     const double h = setup->scheme.eta * pow(m[0], 1. / setup->dim);
@@ -172,8 +172,8 @@ TEST(test_boosted)
     }
 }
 
-/* Cold gas whose halves stream apart feels no force, but its density changes where they part: it is
- * awake there, with the same figures. */
+/* The halves of cold gas stream apart: no force acts, but the density changes where they part, so
+ * that gas is active there, with the same figures. */
 TEST(test_cold_streams)
 {
     struct settings settings;

@@ -151,7 +151,7 @@ TEST(runs_are_written)
     }
 }
 
-/* Only a box has periods, along the directions that the boundary does not close or open. */
+/* A snapshot has periods only if it has a box, and only along directions that are periodic. */
 TEST(periods)
 {
     static const struct {

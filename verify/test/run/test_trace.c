@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a run leaves of itself through time ends with what the run says of its end, and knows what
- * jittered particles that come to rest do. */
+ * A run's record through time: it ends with the figures of the run's end, and shows how jittered
+ * particles come to rest. */
 #include "test.h"
 
 /* after the four that it needs */
@@ -48,7 +48,7 @@ TEST(ends_with_the_run)
     same(end->nearest, result.regularity.nearest);
     same(end->spread, result.regularity.spread);
     same(end->gradient, result.regularity.gradient);
-    /* what the jitter of 0.2 has done is undone */
+    /* the displacements by the jitter of 0.2 have gone */
     assert_true(start->spread > 0.1 && end->spread < 0.5 * start->spread);
     json_t *through = trace_json(&trace, 2);
     same(last(json_object_get(through, "angular_momentum")), result.angular_momentum);
@@ -88,8 +88,8 @@ static struct conservation sums_at(double k)
                                  .turning_scale = 9};
 }
 
-/* Every step at first; then every second one, and so on: what is kept is spaced evenly, and has the
- * start and what came with each time. */
+/* At first every step is kept, then every second one, and so on. Entries are evenly spaced, begin
+ * with the start, and keep together what belongs to one time. */
 TEST(thins_evenly)
 {
     static struct trace trace;
@@ -117,7 +117,7 @@ TEST(thins_evenly)
     assert_int_equal(trace.count, 5 * TRACE_MAX / 8 + 1);
 }
 
-/* The end replaces an entry of the same time, and no other. */
+/* The end replaces an entry of the same time, but no other one. */
 TEST(ends_once)
 {
     static struct trace trace;
@@ -138,7 +138,7 @@ TEST(ends_once)
     assert_true(trace.seen[0].nearest == 1 && trace.seen[1].nearest == 2);
 }
 
-/* At the start, at the first time at or after each sixteenth, and no more. */
+/* Entries are made at the start, and at the first time at or after each sixteenth of the run. */
 TEST(looks_at_even_times)
 {
     static struct trace trace;
@@ -230,7 +230,8 @@ TEST(motion_is_told)
     }
 }
 
-/* A vortex that is wound up while it runs keeps its energy as a whole, and is told. */
+/* A run of a steady vortex says how its motion fades. A boost does not count as motion, and a tube
+ * has no such figures. */
 TEST(a_run_tells_its_motion)
 {
     char *const keys[] = {"n=12^2", "t_end=0.5"}, *const boosted[] = {"n=12^2", "t_end=0.5",

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Tubes in time: how long their window is free, and what is measured of them: shocks, noise,
- * regions, still gas. Each is worked out a second time, on tubes drawn at random or made by hand.
- */
+ * regions and still gas. All of it is compared with an independent computation, on tubes that are
+ * drawn at random or made by hand. */
 #include "test.h"
 
 #include <math.h>
@@ -115,8 +115,8 @@ TEST(windows_are_free_until_waves_come)
     struct settings s;
     const struct prepared all = prepared_of(&s, 1, "window=-1 1|left=1 0 1");
     assert_true(all.problem->holds(&all, 0) && !all.problem->holds(&all, 1e-9));
-    /* gas that runs away from the left end a little faster than sound: nothing comes in there, now
-     * or later, and from the right end it comes at twice the speed of sound */
+    /* the gas leaves the left end a little faster than sound: nothing ever enters there, and from
+     * the right end waves come at twice the speed of sound */
     char keys[128];
     const double c = sqrt(1.4);
     snprintf(keys, sizeof keys, "left=1 %.17g 1|right=1 %.17g 1|window=-1 -0.75", -c * (1 + 1e-9),
@@ -125,8 +125,8 @@ TEST(windows_are_free_until_waves_come)
     assert_true(away.problem->holds(&away, 0.874 / c) && !away.problem->holds(&away, 0.876 / c));
 }
 
-/* A sound wave from the left end runs through the tube's own waves, v + c of the exact solution in
- * small steps: no window is called free that it has come into. */
+/* A sound wave from the left end travels through the tube's own waves with v + c of the exact
+ * solution, in small steps: no window may be called free once it has entered it. */
 TEST(no_sound_comes_into_free_windows)
 {
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
@@ -403,7 +403,7 @@ TEST(still_gas_is_far_from_waves)
     assert_true(found > 100 && none > 100);
 }
 
-/* One particle right at the limit is not far enough, and is a little further on. */
+/* A particle exactly at the limit is not far enough, and one a little further on is. */
 TEST(still_gas_begins_at_its_limits)
 {
     struct settings s;

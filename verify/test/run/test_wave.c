@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Sound waves as a problem: which wave the keys mean, particles that carry its mass, its mode, how
- * long it is known. The wave itself: test_simple_wave.c. */
+ * Sound waves as a problem: which wave the keys mean, how particles carry its mass, its mode, and
+ * how long it is known. The wave itself is tested in test_simple_wave.c. */
 #include "test.h"
 
 #include <math.h>
@@ -82,8 +82,8 @@ TEST(samples_are_the_wave)
     }
 }
 
-/* Each carries as much mass as all others; from the corner to it along the wave there is what would
- * be there if the gas were uniform and it stood on its point of the lattice. */
+/* All particles have the same mass. From the corner up to a particle, along the wave, there is as
+ * much mass as uniform gas would have up to its lattice point. */
 TEST(particles_carry_the_mass)
 {
     for (const struct row *row = rows; row < rows + ROWS; row++) {
@@ -138,8 +138,8 @@ TEST(particles_carry_the_mass)
     }
 }
 
-/* Fifty steps of Newton at most: of some the last ones go to and fro between two numbers, and a run
- * has the bits of that one where they end. */
+/* At most fifty steps of Newton's method: for some particles the last steps alternate between two
+ * numbers, and a run has the bits of the one at which they stop. */
 TEST(steps_are_counted)
 {
     int restless = 0;
