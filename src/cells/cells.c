@@ -30,6 +30,7 @@ struct cells_method cells_method_of(const struct scheme *scheme, const struct pl
         .velocity_gradient = plan->slope,
         .div_v = plan->alpha,
         .shift = plan->shift,
+        .closed = plan->closed,
         .conductivity = scheme->alpha_u,
         .worst_condition = DESCRIPTION_CONDITION,
         .local = plan->local,

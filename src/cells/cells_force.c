@@ -20,6 +20,7 @@ static void fill_sentinel(struct cells *cells)
     record[at[RECORD_H_INVERSE]] = 16 / (record[0] > 0 ? record[0] : 1);
     if (at[RECORD_DENSITY]) record[at[RECORD_DENSITY]] = 1;
     if (at[RECORD_MATRIX]) record[at[RECORD_MATRIX]] = 1;
+    if (cells->method.closed) record[at[RECORD_SOUND]] = 1;
 }
 
 /* Values of an inactive particle, extrapolated from its last two evaluations. */
@@ -320,6 +321,7 @@ static bool add_part(struct cells *cells, const struct pairs *pairs, int64_t *in
     const struct cells_method *method = &cells->method;
     const struct pressure pressure = find_pressure(method, pairs);
     cells_pair_gradients(cells, pairs);
+    if (method->closed) cells_close(cells, pairs);
     const bool viscous = cells_viscosity(cells, pairs);
     (method->formulation == FORMULATION_VANILLA_ICE ? add_vanilla_ice : add_lagrangian)(
         method->box.dim, method->energy, pairs, &pressure, totals, inside);

@@ -1,8 +1,46 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The exchange of particle shifting in 2D and 3D, pair by pair. Gradients and forces are there. */
+ * Particle shifting in 2D and 3D, pair by pair: gradients are closed before forces are found, and
+ * then there is the exchange. */
 #include "shifting.h"
 
 #include "pairs.h"
+
+ALWAYS_INLINE void close_body(int dim, double near, const struct pairs *pairs)
+{
+    const struct lanes *lanes = pairs->lanes;
+    const ptrdiff_t stride = lanes->stride;
+    const double *restrict x = lane(lanes, LANE_DX),
+                           *restrict c = pairs_theirs(pairs, RECORD_SOUND),
+                           *restrict h_inverse = pairs_theirs(pairs, RECORD_H_INVERSE),
+                           *restrict shift = pairs_theirs(pairs, RECORD_SHIFT);
+    const double *own_shift = pairs_own(pairs, RECORD_SHIFT);
+    const double own =
+        shifting_of_one(near, *pairs_own(pairs, RECORD_H_INVERSE), *pairs_own(pairs, RECORD_SOUND));
+    double *restrict G = lane(lanes, LANE_GX);
+#pragma omp simd
+    for (int n = 0; n < pairs->count; n++) {
+        const double theirs = shifting_of_one(near, h_inverse[n], c[n]);
+        double along = 0;
+        for (int a = 0; a < dim; a++) along += G[a * stride + n] * x[a * stride + n];
+        /* G is minus the gradient */
+        for (int a = 0; a < dim; a++)
+            G[a * stride + n] -=
+                shifting_closure(dim, along, own * own_shift[a], theirs * shift[a * stride + n]);
+    }
+}
+
+CLONES static void close_pairs(int dim, double near, const struct pairs *pairs)
+{
+    if (dim == 2)
+        close_body(2, near, pairs);
+    else
+        close_body(3, near, pairs);
+}
+
+void cells_close(const struct cells *cells, const struct pairs *pairs)
+{
+    close_pairs(cells->method.box.dim, cells->method.numbers.near, pairs);
+}
 
 ALWAYS_INLINE void exchange_body(int dim, const struct pairs *pairs, double *gained)
 {

@@ -32,6 +32,7 @@ struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool spec
         .jump = viscosity->find_goal,
         .local = scheme->steps == STEPS_LOCAL,
         .shift = scheme->shifting != SHIFTING_NONE,
+        .closed = scheme->shifting == SHIFTING_CLOSED,
         .sleep = skip && scheme->shifting == SHIFTING_NONE, /* gas at rest shifts, too */
         .quiet = skip,
         .signal_pass = scheme->integrator->signal_pass,
@@ -166,13 +167,16 @@ size_t plan_explain(const struct setup *setup, struct plan_line *lines, size_t m
              "alpha_u=0");
         line(&writer, "gravity", plan.gravity, "added to the forces", "gravity=0");
         line(&writer, "particle shifting", plan.shift,
-             "shifting=fluxes: mass, momentum and energy are exchanged inside the pair loop",
+             scheme->shifting == SHIFTING_CLOSED
+                 ? "shifting=closed: pair gradients are closed, and mass, momentum and energy "
+                   "exchanged inside the pair loop"
+                 : "shifting=fluxes: mass, momentum and energy are exchanged inside the pair loop",
              "shifting=none: particles move with the flow");
     }
     line(&writer, "sleep", plan.sleep,
          "skip=auto: no sums where no signal has been; acts as a start changed by 1e-11, in 2D and "
          "3D by up to 1e-8",
-         plan.shift     ? "shifting=fluxes: no particle is at rest"
+         plan.shift     ? "particle shifting: no particle is at rest"
          : plan.gravity ? "gravity: no particle is at rest"
                         : "skip=none: every particle at every step");
     line(&writer, "final state", !scheme->integrator->ends_evaluated,

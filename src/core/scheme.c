@@ -2,6 +2,7 @@
 #include "scheme.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "gradient.h"
 #include "integrator.h"
@@ -174,8 +175,11 @@ static enum status check_shifting(const struct scheme *scheme, struct error *err
         {gradient_of[scheme->gradient].weight == WEIGHT_NONE, MEMBER(gradient),
          "particles shift along the gradient that a moment matrix makes of a constant"},
     };
+    char chosen[40];
     if (scheme->shifting == SHIFTING_NONE) return STATUS_OK;
-    return refuse_first("shifting=fluxes", list, sizeof list / sizeof *list, error);
+    snprintf(chosen, sizeof chosen, "shifting=%s",
+             scheme_shifting_family.members[scheme->shifting]->name);
+    return refuse_first(chosen, list, sizeof list / sizeof *list, error);
 }
 
 /* Reports a value that is not in (least, most]. */

@@ -4,7 +4,9 @@
  * particles move against what the gradient makes of a constant, and exchange the gas that they
  * sweep over. Both vanish as the spacing does. One particle gains the mass, momentum and total
  * energy that the other loses. As the gas has the pair's mean velocity, kinetic and internal energy
- * are each conserved. Uniform velocity and specific energy stay uniform. */
+ * are each conserved. Uniform velocity and specific energy stay uniform.
+ * shifting=closed takes from the pair's area vector what makes gradients of constants, eq. 6.16: as
+ * particles shift, order need not come from forces. */
 #ifndef SPHPROOF_SHIFTING_H
 #define SPHPROOF_SHIFTING_H
 
@@ -27,6 +29,20 @@ ALWAYS_INLINE void shifting_velocity(int dim, const double *of_one, double eta, 
     }
     const double scale = square > most * most ? most / sqrt(square) : 1;
     for (int a = 0; a < dim; a++) shift[a] *= scale;
+}
+
+/* Times the shift: what the gradient makes of 1, as far as the shift shows it; near: 1/eta. */
+ALWAYS_INLINE double shifting_of_one(double near, double h_inverse, double c)
+{
+    return -9 * near * h_inverse / c;
+}
+
+/* What to take from a pair's mean gradient, `along` its x . gradient, which times V_j adds up to
+ * the dimension. With more of E than this the finest vortices get worse: forces no longer keep
+ * order, and shifts alone must. */
+ALWAYS_INLINE double shifting_closure(int dim, double along, double of_one_i, double of_one_j)
+{
+    return 0.35 / dim * along * (of_one_i - of_one_j);
 }
 
 /* What particle i gains: the volume that it sweeps over for j has the donor's density and specific

@@ -65,18 +65,19 @@ static enum status check_particle(const struct setup *setup, size_t i, struct er
  * and the potential energy of what is exchanged is in no flux. */
 static enum status check_shifting(const struct setup *setup, struct error *error)
 {
+    const char *chosen = scheme_shifting_family.members[setup->scheme.shifting]->name;
     for (int k = 0; k < setup->dim && setup->scheme.shifting != SHIFTING_NONE; k++) {
         const enum boundary boundary = setup->boundary[k];
         if (boundary != BOUNDARY_PERIODIC && boundary != BOUNDARY_REFLECTING)
             return error_set(error, STATUS_BAD_INPUT,
-                             "shifting=fluxes and boundary=%s exclude each other: particles shift "
+                             "shifting=%s and boundary=%s exclude each other: particles shift "
                              "between periodic and reflecting ends alone",
-                             scheme_boundary_family.members[boundary]->name);
+                             chosen, scheme_boundary_family.members[boundary]->name);
         if (setup->gravity[k] != 0)
             return error_set(error, STATUS_BAD_INPUT,
-                             "shifting=fluxes and gravity=%g exclude each other: the exchange "
+                             "shifting=%s and gravity=%g exclude each other: the exchange "
                              "knows no potential energy",
-                             setup->gravity[k]);
+                             chosen, setup->gravity[k]);
     }
     return STATUS_OK;
 }

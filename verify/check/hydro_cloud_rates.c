@@ -63,10 +63,10 @@ static void add_turns(struct check_run *run, int dim, size_t step)
     }
 }
 
-static struct scheme shifting_scheme(int dim, enum gradient gradient)
+static struct scheme shifting_scheme(int dim, enum shifting shifting, enum gradient gradient)
 {
     struct scheme s = hydro_cloud_scheme(dim);
-    s.shifting = SHIFTING_FLUXES;
+    s.shifting = shifting;
     s.gradient = gradient;
     s.formulation = FORMULATION_VANILLA_ICE;
     s.volume_element = VOLUME_NUMBER;
@@ -79,9 +79,9 @@ static struct scheme shifting_scheme(int dim, enum gradient gradient)
 /* In 3D the oracle takes four times as long. */
 static void subjects(struct check_run *run)
 {
-    add(run, 2, shifting_scheme(2, GRADIENT_CORRECTED));
-    add(run, 2, shifting_scheme(2, GRADIENT_BLENDED));
-    add(run, 3, shifting_scheme(3, GRADIENT_IA));
+    add(run, 2, shifting_scheme(2, SHIFTING_FLUXES, GRADIENT_CORRECTED));
+    add(run, 2, shifting_scheme(2, SHIFTING_CLOSED, GRADIENT_BLENDED));
+    add(run, 3, shifting_scheme(3, SHIFTING_CLOSED, GRADIENT_IA));
     add_turns(run, 2, 1);
     add_kernels(run, 2, 7);
     add_turns(run, 3, 13);

@@ -223,6 +223,8 @@ static void print_table(const struct request *r, const struct rate_table *t, siz
 {
     char matrix[DESCRIPTION_TEXT];
     printf("%s, %dD, %zu particles; one evaluation, code units\n", r->source, t->dim, t->n);
+    if (r->setup.scheme.shifting != SHIFTING_NONE)
+        printf("forces and heating are without what particles exchange as they shift\n");
     if (r->widths[0]) printf("h of the snapshot: %s\n", r->widths);
     if (r->file.ignored[0]) printf("columns that are not read: %s\n", r->file.ignored);
     printf("\n%8s %13s %13s %13s", "particle", "h", "rho", "P");

@@ -186,7 +186,7 @@ static void find_matrix(const struct oracle *oracle, size_t i)
     a->ill = !(a->condition <= worst_condition);
     if (!a->ill) a->C = invert(oracle->dim, T);
     if (!a->ill && oracle->scheme.gradient == GRADIENT_BLENDED) find_steep(oracle, i);
-    if (oracle->scheme.shifting == SHIFTING_FLUXES) find_shift(oracle, i);
+    if (oracle->scheme.shifting != SHIFTING_NONE) find_shift(oracle, i);
 }
 
 void oracle_find_matrices(struct oracle *oracle)

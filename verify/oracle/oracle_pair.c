@@ -195,6 +195,17 @@ static long double conducted(const struct oracle *oracle, const struct oracle_pa
            (a->U / a->m - b->U / b->m) / rho * along;
 }
 
+/* E from the shift, -9 s/(eta h c): 0.35 of the pair's difference goes, by x . G/d. */
+static void close_gradient(const struct oracle *oracle, const struct oracle_particle *a,
+                           const struct oracle_particle *b, const oracle_vector x,
+                           struct gradients *G)
+{
+    const long double weight = 0.35L * oracle_dot(x, G->mean) / oracle->dim;
+    for (int k = 0; k < 3; k++)
+        G->mean[k] += weight * 9 / oracle->scheme.eta *
+                      (a->shift[k] / (a->width * a->c) - b->shift[k] / (b->width * b->c));
+}
+
 /* What a gains of the volume that shifting sweeps over, with the density and the specific energy of
  * whom it comes from; momentum with the mean velocity, kinetic energy so that none becomes heat. */
 static void add_exchange(struct oracle_particle *a, const struct oracle_particle *b,
@@ -217,9 +228,10 @@ void oracle_add_pair(const struct oracle *oracle, struct oracle_particle *a,
     const oracle_vector v_ij = {a->v[0] - b->v[0], a->v[1] - b->v[1], a->v[2] - b->v[2]};
     struct gradients G;
     find_gradients(oracle, a, b, x, &G);
+    if (scheme->shifting == SHIFTING_CLOSED) close_gradient(oracle, a, b, x, &G);
     add_pressure(oracle, a, b, v_ij, &G);
     a->div_v -= b->V * oracle_dot(v_ij, G.mean);
-    if (scheme->shifting == SHIFTING_FLUXES) add_exchange(a, b, &G);
+    if (scheme->shifting != SHIFTING_NONE) add_exchange(a, b, &G);
     if (scheme->alpha_u > 0) a->dU += conducted(oracle, a, b, x, &G);
     if (scheme->viscosity == VISCOSITY_NONE) return;
     const long double r = sqrtl(oracle_dot(x, x)), w = closing_speed(oracle, a, b, x, v_ij, &G);

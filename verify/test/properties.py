@@ -96,6 +96,21 @@ def draw(program, number):
     return case, keys, rng.randint(1, 3)
 
 
+SHIFTING = [("gresho", 300, 0.1), ("noh_2d", 300, 0.1), ("kelvin_helmholtz", 300, 0.2), ("sedov_3d", 1000, 0.03)]
+
+
+def draw_shifting(number):
+    """Case, keys and threads of one run with shifting in 2D or 3D."""
+    rng = random.Random(number)
+    case, least, t_end = rng.choice(SHIFTING)
+    keys = {"shifting": rng.choice(["fluxes", "closed"]), "kernel": rng.choice(["cubic_spline", "wendland_c4"])}
+    if rng.random() < 0.3:
+        keys["alpha_u"] = round(rng.uniform(0.1, 1), 2)
+    keys.update(n=rng.randint(least, 2 * least), t_end=round(t_end * rng.uniform(0.3, 1), 4),
+                jitter=round(rng.uniform(0, 0.2), 2), seed=rng.randint(0, 4294967295))
+    return case, keys, rng.randint(1, 3)
+
+
 # Cases with blocks of local steps, and least numbers of particles.
 LOCALS = [("noh_2d", 300, 0.1), ("sedov_2d", 300, 0.05), ("noh_3d", 1000, 0.1), ("sedov_3d", 1000, 0.03)]
 LOCAL_BOUND = 1e-12  # of momentum, and of total energy where that is what is integrated
@@ -119,10 +134,10 @@ def draw_local(number):
     return case, keys, rng.randint(1, 3)
 
 
-def check_local(program, number):
+def check_cloud(program, drawn):
     """What is wrong with such a run (None if nothing), its command, its document."""
     with tempfile.TemporaryDirectory() as folder:
-        done, command = execute(program, *draw_local(number), folder + "/end.csv")
+        done, command = execute(program, *drawn, folder + "/end.csv")
     if not done or done.returncode not in (0, 3):
         return done.stderr.strip() if done else "more than %d s" % SECONDS, command, None
     document = json.loads(done.stdout)
@@ -132,7 +147,7 @@ def check_local(program, number):
     wrong = wrong_numbers({k: document[k] for k in ("conservation", "cost", "time", "errors")})
     if wrong:
         return "not finite: " + ", ".join(wrong), command, document
-    bounds = {"mass": 1e-15, "momentum": LOCAL_BOUND,
+    bounds = {"mass": 1e-15 if document["settings"]["shifting"] == "none" else 1e-13, "momentum": LOCAL_BOUND,
               "energy": LOCAL_BOUND if document["settings"]["energy"] == "total" else ENERGY_TAME}
     drifts = {name: kept[name] for name, bound in bounds.items() if not kept[name] <= bound}
     return "not kept: %s" % drifts if drifts else None, command, document
@@ -271,9 +286,12 @@ def main():
                                                                    command))
     in_blocks = 0
     for number in range(first, first + max(count // 8, 4)):
-        wrong, command, document = check_local(program.path, number)
+        wrong, command, document = check_cloud(program.path, draw_local(number))
+        shifted, shifting, _ = check_cloud(program.path, draw_shifting(number))
+        failed += bool(wrong) + bool(shifted)
+        if shifted:
+            print("draw %d of shifting: %s\n    %s" % (number, shifted, shifting))
         if wrong:
-            failed += 1
             print("draw %d of local steps: %s\n    %s" % (number, wrong, command))
         else:
             in_blocks += document["settings"]["skip"] == "none" and document["cost"]["skipped_particle_updates"] > 0
