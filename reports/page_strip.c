@@ -150,7 +150,6 @@ static void palette(unsigned char *at)
         for (int rgb = 0; rgb < 3; rgb++)
             at[4 * c + 2 - rgb] = (unsigned char)lround(
                 anchors[k][rgb] + (place - k) * (anchors[k + 1][rgb] - anchors[k][rgb]));
-        at[4 * c + 3] = 0;
     }
 }
 
