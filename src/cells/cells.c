@@ -340,6 +340,40 @@ double cells_distance2(const struct cells *cells, size_t a, size_t b)
     return separate(cells->method.box.dim, cells->lists[a].wrapped, cells, a, b, x);
 }
 
+/* Neighbours that are looked at together: from the particle to each of them; found: how far in
+ * units of h, and the cotangent of the angle, times its size. */
+enum { AT_ONCE = 64 };
+
+struct seen {
+    double x[AT_ONCE], y[AT_ONCE], z[AT_ONCE], far[AT_ONCE], size[AT_ONCE];
+};
+
+ALWAYS_INLINE void look(int dim, int count, double h_inverse, const double *restrict C,
+                        struct seen *restrict at)
+{
+#pragma omp simd
+    for (int k = 0; k < count; k++) {
+        const double a = at->x[k], b = at->y[k], c = dim == 3 ? at->z[k] : 0;
+        const double p = dim == 3 ? C[0] * a + C[1] * b + C[2] * c : C[0] * a + C[1] * b,
+                     q = dim == 3 ? C[3] * a + C[4] * b + C[5] * c : C[2] * a + C[3] * b,
+                     r = dim == 3 ? C[6] * a + C[7] * b + C[8] * c : 0;
+        const double dot = p * a + q * b + r * c, u = q * c - r * b, v = r * a - p * c,
+                     w = p * b - q * a;
+        at->far[k] = sqrt(a * a + b * b + c * c) * h_inverse;
+        at->size[k] = dot * fabs(dot) / (u * u + v * v + w * w);
+    }
+}
+
+CLONES static void look_2(int count, double h_inverse, const double *C, struct seen *at)
+{
+    look(2, count, h_inverse, C, at);
+}
+
+CLONES static void look_3(int count, double h_inverse, const double *C, struct seen *at)
+{
+    look(3, count, h_inverse, C, at);
+}
+
 ALWAYS_INLINE void describe_neighbours(int dim, const struct cells *cells, size_t slot,
                                        double h_inverse, const double C[CELLS_SQUARE], bool used,
                                        struct description *of)
@@ -348,27 +382,31 @@ ALWAYS_INLINE void describe_neighbours(int dim, const struct cells *cells, size_
     const int32_t *slots = /* an inactive particle has no list */
         list->kept ? grid_neighbours(cells->grid, &cells->lanes[0].reader, cells->lists, slot)
                    : NULL;
-    const bool wrapped = list->wrapped;
-    double cotangent = HUGE_VAL;
-    for (int32_t k = 0; k < list->count; k++) {
-        double x[3], Cx[3];
-        const double r2 = separate(dim, wrapped, cells, slot, (size_t)slots[k], x);
-        if (!(sqrt(r2) * h_inverse < 1)) continue;
-        of->neighbours++;
-        if (!used) continue;
-        for (int a = 0; a < dim; a++) {
-            Cx[a] = 0;
-            for (int b = 0; b < dim; b++) Cx[a] += C[a * dim + b] * x[b];
+    struct seen at;
+    double size = HUGE_VAL;
+    for (int32_t from = 0; from < list->count; from += AT_ONCE) {
+        const int count = list->count - from < AT_ONCE ? list->count - from : AT_ONCE;
+        for (int k = 0; k < count; k++) {
+            double x[3] = {0};
+            (void)separate(dim, list->wrapped, cells, slot, (size_t)slots[from + k], x);
+            at.x[k] = x[0], at.y[k] = x[1], at.z[k] = x[2];
         }
-        cotangent = description_cotangent(dim, Cx, x, cotangent);
+        (dim == 2 ? look_2 : look_3)(count, h_inverse, C, &at);
+        for (int k = 0; k < count; k++) {
+            if (!(at.far[k] < 1)) continue;
+            of->neighbours++;
+            if (at.size[k] < size) size = at.size[k]; /* no number: of two that coincide */
+        }
     }
-    of->angle = used && of->neighbours > 1 ? description_angle(cotangent) : nan("");
+    of->angle = used && of->neighbours > 1
+                    ? atan2(1, copysign(sqrt(fabs(size)), size)) * (180 / 3.14159265358979323846)
+                    : nan("");
 }
 
 static struct description describe(const struct cells *cells, const struct cells_fields *fields,
                                    size_t slot, size_t i)
 {
-    double C[CELLS_SQUARE];
+    double C[CELLS_SQUARE] = {0};
     struct description of = {.neighbours = 1, .condition = condition_of(cells, fields, i, C)};
     const bool used = of.condition <= cells->method.worst_condition;
     if (cells->method.box.dim == 2)

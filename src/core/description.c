@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "description.h"
 
+#include <math.h>
+
 #include "solver.h"
 
 void description_each(const struct simulation *simulation, description_visit *visit, void *context)

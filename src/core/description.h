@@ -6,7 +6,6 @@
 #ifndef SPHPROOF_DESCRIPTION_H
 #define SPHPROOF_DESCRIPTION_H
 
-#include <math.h>
 #include <stddef.h>
 
 struct simulation;
@@ -37,30 +36,5 @@ struct description_sums {
 
 /* Of the present state, after simulation_create or simulation_run. */
 struct description_sums description_sum(struct simulation *simulation);
-
-/* For the sums: the angle between a and b, as its cotangent, which falls from infinity to minus
- * infinity; infinity where one of them is 0. The least of it and of what others have: mostly that
- * is seen without a root. */
-static inline double description_cotangent(int dim, const double *a, const double *b, double others)
-{
-    double dot = 0, cross2 = 0;
-    for (int i = 0; i < dim; i++) {
-        dot += a[i] * b[i];
-        for (int j = 0; j < i; j++) {
-            const double turn = a[i] * b[j] - a[j] * b[i];
-            cross2 += turn * turn;
-        }
-    }
-    if (dot > 0 && (others <= 0 || dot * dot > others * others * cross2 * (1 + 1e-9)))
-        return others;
-    const double cotangent = cross2 > 0 ? dot / sqrt(cross2) : dot < 0 ? -HUGE_VAL : HUGE_VAL;
-    return cotangent < others ? cotangent : others;
-}
-
-/* Of that, the angle in degrees. */
-static inline double description_angle(double cotangent)
-{
-    return atan2(1, cotangent) * (180 / 3.14159265358979323846);
-}
 
 #endif
