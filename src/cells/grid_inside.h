@@ -25,6 +25,7 @@ struct grid_pool {
     int32_t **chunks;
     size_t *sizes;
     size_t count, used_chunks, used; /* chunks there are; in use; words used of the last one */
+    char apart[GRID_APART];
 };
 
 /* What one thread needs for the cell that it works on: candidates of its points. */
@@ -35,6 +36,7 @@ struct candidates {
     uint8_t *near;
     uint16_t *marks;
     int32_t *slots; /* 2D: of the points of the cells around */
+    char apart[GRID_APART];
 };
 
 /* What the points of a cell lie in, and the largest of their radii squared. */

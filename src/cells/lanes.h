@@ -94,6 +94,7 @@ struct lanes {
     int32_t *slots; /* a list without inactive particles, used instead of the grid's */
     ptrdiff_t room; /* entries, of two such lists */
     struct reactions_chunk chunk;
+    char apart[GRID_APART];
 };
 
 /* A search for widths: what each thread reads of it. */

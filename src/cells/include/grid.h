@@ -15,7 +15,10 @@
 
 /* A list is read in whole vectors; the rest of the last one is filled with the sentinel, a slot of
  * its own at the end of every array in slot order. */
-enum { GRID_LANES = 8 };
+enum {
+    GRID_LANES = 8,
+    GRID_APART = 128 /* bytes behind what each thread writes: no two write the same cache line */
+};
 
 struct grid_box {
     int dim; /* 2 or 3 */
