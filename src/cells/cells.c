@@ -340,16 +340,16 @@ double cells_distance2(const struct cells *cells, size_t a, size_t b)
     return separate(cells->method.box.dim, cells->lists[a].wrapped, cells, a, b, x);
 }
 
-/* Neighbours that are looked at together: from the particle to each of them; found: how far in
- * units of h, and the cotangent of the angle, times its size. */
+/* Neighbours that are described together: the vectors (x, y, z) from the particle to them; their
+ * length over h; and cot |cot| of the angle by which C turns them, which needs no root. */
 enum { AT_ONCE = 64 };
 
-struct seen {
-    double x[AT_ONCE], y[AT_ONCE], z[AT_ONCE], far[AT_ONCE], size[AT_ONCE];
+struct directions {
+    double x[AT_ONCE], y[AT_ONCE], z[AT_ONCE], distance[AT_ONCE], cot2[AT_ONCE];
 };
 
-ALWAYS_INLINE void look(int dim, int count, double h_inverse, const double *restrict C,
-                        struct seen *restrict at)
+ALWAYS_INLINE void find_angles(int dim, int count, double h_inverse, const double *restrict C,
+                               struct directions *restrict at)
 {
 #pragma omp simd
     for (int k = 0; k < count; k++) {
@@ -359,19 +359,21 @@ ALWAYS_INLINE void look(int dim, int count, double h_inverse, const double *rest
                      r = dim == 3 ? C[6] * a + C[7] * b + C[8] * c : 0;
         const double dot = p * a + q * b + r * c, u = q * c - r * b, v = r * a - p * c,
                      w = p * b - q * a;
-        at->far[k] = sqrt(a * a + b * b + c * c) * h_inverse;
-        at->size[k] = dot * fabs(dot) / (u * u + v * v + w * w);
+        at->distance[k] = sqrt(a * a + b * b + c * c) * h_inverse;
+        at->cot2[k] = dot * fabs(dot) / (u * u + v * v + w * w);
     }
 }
 
-CLONES static void look_2(int count, double h_inverse, const double *C, struct seen *at)
+CLONES static void find_angles_2(int count, double h_inverse, const double *C,
+                                 struct directions *at)
 {
-    look(2, count, h_inverse, C, at);
+    find_angles(2, count, h_inverse, C, at);
 }
 
-CLONES static void look_3(int count, double h_inverse, const double *C, struct seen *at)
+CLONES static void find_angles_3(int count, double h_inverse, const double *C,
+                                 struct directions *at)
 {
-    look(3, count, h_inverse, C, at);
+    find_angles(3, count, h_inverse, C, at);
 }
 
 ALWAYS_INLINE void describe_neighbours(int dim, const struct cells *cells, size_t slot,
@@ -382,8 +384,8 @@ ALWAYS_INLINE void describe_neighbours(int dim, const struct cells *cells, size_
     const int32_t *slots = /* an inactive particle has no list */
         list->kept ? grid_neighbours(cells->grid, &cells->lanes[0].reader, cells->lists, slot)
                    : NULL;
-    struct seen at;
-    double size = HUGE_VAL;
+    struct directions at;
+    double least = HUGE_VAL;
     for (int32_t from = 0; from < list->count; from += AT_ONCE) {
         const int count = list->count - from < AT_ONCE ? list->count - from : AT_ONCE;
         for (int k = 0; k < count; k++) {
@@ -391,15 +393,15 @@ ALWAYS_INLINE void describe_neighbours(int dim, const struct cells *cells, size_
             (void)separate(dim, list->wrapped, cells, slot, (size_t)slots[from + k], x);
             at.x[k] = x[0], at.y[k] = x[1], at.z[k] = x[2];
         }
-        (dim == 2 ? look_2 : look_3)(count, h_inverse, C, &at);
+        (dim == 2 ? find_angles_2 : find_angles_3)(count, h_inverse, C, &at);
         for (int k = 0; k < count; k++) {
-            if (!(at.far[k] < 1)) continue;
+            if (!(at.distance[k] < 1)) continue;
             of->neighbours++;
-            if (at.size[k] < size) size = at.size[k]; /* no number: of two that coincide */
+            if (at.cot2[k] < least) least = at.cot2[k]; /* NaN if the two coincide */
         }
     }
     of->angle = used && of->neighbours > 1
-                    ? atan2(1, copysign(sqrt(fabs(size)), size)) * (180 / 3.14159265358979323846)
+                    ? atan2(1, copysign(sqrt(fabs(least)), least)) * (180 / M_PI)
                     : nan("");
 }
 

@@ -41,7 +41,7 @@ struct cells_method {
     bool velocity_gradient; /* something needs it */
     bool div_v;             /* and the divergence by the pair gradient */
     bool shift;             /* particle shifting, with fluxes */
-    bool closed;            /* with pair gradients that make less of a constant */
+    bool closed;            /* and pair gradients that make less of a constant */
     double conductivity;    /* alpha_u; 0: none */
     double
         worst_condition; /* of a moment matrix; beyond it the pair's gradient is the standard one */

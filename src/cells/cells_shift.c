@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Particle shifting in 2D and 3D, pair by pair: gradients are closed before forces are found, and
- * then there is the exchange. */
+ * Particle shifting in 2D and 3D, pair by pair: with shifting=closed gradients are changed before
+ * forces are found; the exchange comes after them. */
 #include "shifting.h"
 
 #include "pairs.h"

@@ -13,7 +13,7 @@ enum {
     PART = 256,           /* slots of a part at most, but for a cell that holds more */
     SAMPLE = 1000,        /* radii that choose the size of the cells */
     CHUNK = 1 << 18,      /* words of lists that a thread asks for at once */
-    CHUNK_NEXT = 1 << 19, /* and then: a large page */
+    CHUNK_NEXT = 1 << 19, /* words of each chunk after the first: a large page */
     CELLS_A_POINT = 2,    /* at most */
     COPIED = 16,          /* points that are copied at once; arrays of slots are that much longer */
     AHEAD = 256,          /* words of lists that are fetched before they are written */

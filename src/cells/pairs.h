@@ -40,7 +40,7 @@ bool cells_viscosity(const struct cells *cells, const struct pairs *pairs);
  */
 void cells_project(int dim, const double L[CELLS_SQUARE], double projector[CELLS_SYMMETRIC]);
 
-/* Takes from the mean G of every pair what makes gradients of constants, by particles' shifts. */
+/* Changes the mean G of every pair so that it makes less of a constant, CONVENTIONS eq. 6.16. */
 void cells_close(const struct cells *cells, const struct pairs *pairs);
 
 /* Adds to gained what the particle gains of what shifting sweeps over: momentum along every axis,

@@ -5,14 +5,16 @@
  * sweep over. Both vanish as the spacing does. One particle gains the mass, momentum and total
  * energy that the other loses. As the gas has the pair's mean velocity, kinetic and internal energy
  * are each conserved. Uniform velocity and specific energy stay uniform.
- * shifting=closed takes from the pair's area vector what makes gradients of constants, eq. 6.16: as
- * particles shift, order need not come from forces. */
+ * With shifting=closed the gradients of a pair make less of a constant, eq. 6.16. Disorder then
+ * pushes particles less, and their shift alone has to spread them evenly. */
 #ifndef SPHPROOF_SHIFTING_H
 #define SPHPROOF_SHIFTING_H
 
 #include <math.h>
 
 #include "specialise.h"
+
+#define SHIFTING_PART 9. /* of eta h c E: the shift */
 
 /* The velocity relative to the flow, -eta h c E/9, at most c/4; E is what the particle's gradient
  * makes of 1. A shift that is a quarter longer is unstable in fine vortices at the longest steps of
@@ -24,22 +26,23 @@ ALWAYS_INLINE void shifting_velocity(int dim, const double *of_one, double eta, 
     const double most = 0.25 * c;
     double square = 0;
     for (int a = 0; a < dim; a++) {
-        shift[a] = -(eta / 9) * h * c * of_one[a];
+        shift[a] = -(eta / SHIFTING_PART) * h * c * of_one[a];
         square += shift[a] * shift[a];
     }
     const double scale = square > most * most ? most / sqrt(square) : 1;
     for (int a = 0; a < dim; a++) shift[a] *= scale;
 }
 
-/* Times the shift: what the gradient makes of 1, as far as the shift shows it; near: 1/eta. */
+/* E over the shift, so that E needs no field of its own; where the shift is limited, E comes out
+ * as small as the shift. near: 1/eta. */
 ALWAYS_INLINE double shifting_of_one(double near, double h_inverse, double c)
 {
-    return -9 * near * h_inverse / c;
+    return -SHIFTING_PART * near * h_inverse / c;
 }
 
-/* What to take from a pair's mean gradient, `along` its x . gradient, which times V_j adds up to
- * the dimension. With more of E than this the finest vortices get worse: forces no longer keep
- * order, and shifts alone must. */
+/* What is subtracted from a component of a pair's mean gradient; of_one_i and of_one_j are those of
+ * E. along: the distance times the gradient, whose sum over j, with V_j, is the dimension. With a
+ * larger share than 0.35 fine vortices have larger errors, because forces spread particles less. */
 ALWAYS_INLINE double shifting_closure(int dim, double along, double of_one_i, double of_one_j)
 {
     return 0.35 / dim * along * (of_one_i - of_one_j);

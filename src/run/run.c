@@ -250,7 +250,7 @@ static enum status begin_start(struct run *run, struct run_result *result, struc
     return status;
 }
 
-/* Of a liquid, whose pressure no gas has: the case's own. */
+/* The simulation has given the state the pressure of a gas; a liquid's is that of the case. */
 static void give_liquid_pressure(struct run_result *result)
 {
     const struct snapshot *s = &result->snapshot;

@@ -11,7 +11,7 @@
 
 /* Above this a difference is none of rounding. */
 #define WRONG    1e-4
-#define MASS_OFF 0.02 /* of the whole: no lattice's rounding */
+#define MASS_OFF 0.02 /* total masses that differ by less are taken for equal */
 
 static const char *const names[START_FIELDS] = {"velocity", "internal energy", "mass", "pressure"};
 
@@ -104,14 +104,16 @@ static bool gases_fit(const struct start_gas *gas)
     return fit;
 }
 
+/* The mass, or volume, that particles should have, how many have it, and whether it was found from
+ * the case's total mass. */
 struct right_value {
     double value;
     size_t count;
     bool of_whole;
 };
 
-/* The value that most have. Where the file's whole mass is not the case's, it is rather the one
- * that would make up the case's, if there are particles that have it: most may be wrong. */
+/* The median, which is right unless most particles are wrong. If the total mass is not the case's
+ * they may be: then `right`, the value that makes up the case's total, if any particle has it. */
 static struct right_value find_right(double *values, size_t n, double right, bool mass_is_off)
 {
     const bool of_whole = mass_is_off && near(values, n, right);
@@ -119,8 +121,8 @@ static struct right_value find_right(double *values, size_t n, double right, boo
     return (struct right_value){value, near(values, n, value), of_whole};
 }
 
-/* Masses are equal, or volumes are, or masses of each gas; false: none of it. ratio: the file's
- * whole mass to the case's; NaN where the box is not closed. */
+/* Finds whether masses are equal, or volumes, or the masses of each gas; false if none are. ratio:
+ * the file's total mass over the case's; NaN where the box is not closed. */
 static bool measure_masses(struct start_gas *gas, double ratio, double *room)
 {
     const struct snapshot *s = gas->snapshot;

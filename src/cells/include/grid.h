@@ -17,7 +17,7 @@
  * its own at the end of every array in slot order. */
 enum {
     GRID_LANES = 8,
-    GRID_APART = 128 /* bytes behind what each thread writes: no two write the same cache line */
+    GRID_APART = 128 /* bytes between what two threads write: they never share a cache line */
 };
 
 struct grid_box {
