@@ -80,6 +80,7 @@ static void lay_out_force(struct lanes_layout *force, const struct cells_method 
     if (method->balsara) add_field(force, RECORD_BALSARA, 1);
     if (method->conductivity > 0 || method->shift) add_field(force, RECORD_HEAT, 1);
     if (method->shift) add_field(force, RECORD_SHIFT, dim);
+    if (method->closed) add_field(force, RECORD_POTENTIAL, dim);
     if (lagrangian) add_field(force, RECORD_LAGRANGIAN, 3);
     if (gradient->weight != WEIGHT_NONE) add_field(force, RECORD_MATRIX, symmetric);
     if (gradient->share) add_field(force, RECORD_STEEP, 1);

@@ -41,7 +41,7 @@ struct cells_method {
     bool velocity_gradient; /* something needs it */
     bool div_v;             /* and the divergence by the pair gradient */
     bool shift;             /* particle shifting, with fluxes */
-    bool closed;            /* and pair gradients that make less of a constant */
+    bool closed;            /* and pair gradients that make nothing of a constant */
     double conductivity;    /* alpha_u; 0: none */
     double
         worst_condition; /* of a moment matrix; beyond it the pair's gradient is the standard one */
@@ -95,7 +95,7 @@ struct cells_fields {
     double *F[3], *de, *div_v, *signal; /* signal: largest speed of the particle's pairs */
     /* shifting: velocity relative to the flow, and rates of what it exchanges, in none of the above
      */
-    double *shift[3], *dm, *dp_shift[3], *de_shift;
+    double *shift[3], *potential[3], *dm, *dp_shift[3], *de_shift;
 };
 
 /* Particles whose velocity gradient or viscosity was left out by method.still. */

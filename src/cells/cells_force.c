@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "pairs.h"
+#include "shifting.h"
 #include "specialise.h"
 
 /* --- records ---------------------------------------------------------------------------------- */
@@ -20,7 +21,6 @@ static void fill_sentinel(struct cells *cells)
     record[at[RECORD_H_INVERSE]] = 16 / (record[0] > 0 ? record[0] : 1);
     if (at[RECORD_DENSITY]) record[at[RECORD_DENSITY]] = 1;
     if (at[RECORD_MATRIX]) record[at[RECORD_MATRIX]] = 1;
-    if (cells->method.closed) record[at[RECORD_SOUND]] = 1;
 }
 
 /* Values of an inactive particle, extrapolated from its last two evaluations. */
@@ -104,6 +104,12 @@ ALWAYS_INLINE void fill_record(int dim, const struct cells *cells,
     if (at[RECORD_STEEP]) record[at[RECORD_STEEP]] = fields->steep[i];
     for (int a = 0; at[RECORD_SHIFT] && a < dim; a++)
         record[at[RECORD_SHIFT] + a] = lanes_sign(mirrored, a) * fields->shift[a][i];
+    if (at[RECORD_POTENTIAL]) {
+        double *potential = record + at[RECORD_POTENTIAL];
+        for (int a = 0; a < dim; a++)
+            potential[a] = lanes_sign(mirrored, a) * fields->potential[a][i];
+        shifting_limit(dim, SHIFTING_POTENTIAL * fields->h_inverse[i], potential);
+    }
     fill_matrices(dim, mirrored, cells, fields, i, record);
 }
 
@@ -141,7 +147,7 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
 
 struct totals {
     double F[3], de, div_v, signal, pace;
-    double gained[5]; /* by shifting: momentum, energy, mass */
+    double gained[8]; /* by shifting: momentum, energy, mass; what is made of a constant */
 };
 
 /* Signal speeds of pairs within max(h_i, h_j), the largest of each lane, and how many there are. */
@@ -290,28 +296,29 @@ static double find_pace(const struct cells *cells, const int32_t *slots, int cou
 }
 
 /* Gives the neighbours their part of what has been worked out. */
-ALWAYS_INLINE void react_body(int dim, bool shifts, const struct pairs *pairs, double *restrict of)
+ALWAYS_INLINE void react_body(int dim, int values, const struct pairs *pairs, double *restrict of)
 {
     const ptrdiff_t stride = pairs->lanes->stride;
     const double *restrict reaction = lane(pairs->lanes, LANE_REACTION);
     for (int k = 0; k < pairs->reacting; k++) {
-        double *to = of + (ptrdiff_t)pairs->slots[k] * ((dim + 2) * (shifts ? 2 : 1));
+        double *to = of + (ptrdiff_t)pairs->slots[k] * values;
         for (int a = 0; a < dim + 1; a++) to[a] += reaction[a * stride + k];
         to[dim + 1] = largest(to[dim + 1], reaction[(dim + 1) * stride + k]);
-        for (int a = dim + 2; shifts && a < 2 * (dim + 2); a++) to[a] += reaction[a * stride + k];
+        for (int a = dim + 2; a < values; a++) to[a] += reaction[a * stride + k];
     }
 }
 
-static void react(int dim, bool shifts, const struct pairs *pairs, double *of)
+static void react(const struct cells_method *method, const struct pairs *pairs, double *of)
 {
-    if (dim == 2 && shifts)
-        react_body(2, true, pairs, of);
+    const int dim = method->box.dim, values = cells_reaction_values(method);
+    if (dim == 2 && values == 4)
+        react_body(2, 4, pairs, of);
     else if (dim == 2)
-        react_body(2, false, pairs, of);
-    else if (shifts)
-        react_body(3, true, pairs, of);
+        react_body(2, values, pairs, of);
+    else if (values == 5)
+        react_body(3, 5, pairs, of);
     else
-        react_body(3, false, pairs, of);
+        react_body(3, values, pairs, of);
 }
 
 /* What the neighbours in the lanes do to a particle. Returns whether there was viscosity. */
@@ -342,12 +349,26 @@ static void receive(const struct cells *cells, const struct cells_fields *fields
     fields->near_pace[i] = largest(fields->near_pace[i], totals->pace);
 }
 
-static void add_received(int dim, bool shifts, const double *received, struct totals *totals)
+static void add_received(const struct cells_method *method, const double *received,
+                         struct totals *totals)
 {
+    const int dim = method->box.dim, values = cells_reaction_values(method);
     for (int a = 0; a < dim; a++) totals->F[a] += received[a];
     totals->de += received[dim];
     totals->signal = largest(totals->signal, received[dim + 1]);
-    for (int a = 0; shifts && a < dim + 2; a++) totals->gained[a] += received[dim + 2 + a];
+    for (int a = dim + 2; a < values; a++) totals->gained[a - dim - 2] += received[a];
+}
+
+/* What shifting gives a particle, and the next evaluation's potential: what the closed gradients
+ * still make of a constant is added to it. G is minus the gradient. */
+static void add_gained(const struct cells_method *method, const struct cells_fields *fields,
+                       size_t i, const double *gained)
+{
+    const int dim = method->box.dim;
+    for (int a = 0; a < dim; a++) fields->dp_shift[a][i] += gained[a];
+    fields->de_shift[i] += gained[dim];
+    fields->dm[i] += gained[dim + 1];
+    for (int a = 0; method->closed && a < dim; a++) fields->potential[a][i] -= gained[dim + 2 + a];
 }
 
 /* What slots have received from the chunk before theirs. */
@@ -364,10 +385,7 @@ static void add_spilled(const struct cells *cells, const struct cells_fields *fi
             for (int a = 0; a < dim; a++) fields->F[a][i] += spilled[a];
             fields->de[i] += spilled[dim];
             fields->signal[i] = largest(fields->signal[i], spilled[dim + 1]);
-            if (!cells->method.shift) continue;
-            for (int a = 0; a < dim; a++) fields->dp_shift[a][i] += spilled[dim + 2 + a];
-            fields->de_shift[i] += spilled[2 * dim + 2];
-            fields->dm[i] += spilled[2 * dim + 3];
+            if (cells->method.shift) add_gained(&cells->method, fields, i, spilled + dim + 2);
         }
 }
 
@@ -387,13 +405,13 @@ static void force_pass(struct cells *cells, const struct cells_fields *fields, s
         pairs.reacting = list.reacting - from < pairs.count ? list.reacting - from : pairs.count;
         pairs.slots = list.slots + from;
         viscous |= add_part(cells, &pairs, &lanes->pairs, &totals);
-        react(cells->method.box.dim, cells->method.shift, &pairs, lanes->chunk.of);
+        react(&cells->method, &pairs, lanes->chunk.of);
     }
     const size_t i = cells->order[slot];
     const bool halves = lanes->chunk.of != NULL;
     if (halves)
-        add_received(cells->method.box.dim, cells->method.shift,
-                     reactions_received(&cells->reactions, &lanes->chunk, slot), &totals);
+        add_received(&cells->method, reactions_received(&cells->reactions, &lanes->chunk, slot),
+                     &totals);
     if (fields->local && halves) /* of all neighbours */
         totals.pace =
             find_pace(cells, grid_neighbours(cells->grid, &lanes->reader, cells->lists, slot),
@@ -408,11 +426,12 @@ static void force_pass(struct cells *cells, const struct cells_fields *fields, s
     if (!viscous) lanes->left_out.viscosity++;
     for (int a = 0; a < cells->method.box.dim; a++) fields->F[a][i] = totals.F[a];
     fields->de[i] = totals.de;
-    for (int a = 0; cells->method.shift && a < cells->method.box.dim; a++)
-        fields->dp_shift[a][i] = totals.gained[a];
     if (cells->method.shift) {
-        fields->de_shift[i] = totals.gained[cells->method.box.dim];
-        fields->dm[i] = totals.gained[cells->method.box.dim + 1];
+        for (int a = 0; a < cells->method.box.dim; a++) fields->dp_shift[a][i] = 0;
+        fields->de_shift[i] = fields->dm[i] = 0;
+        for (int a = 0; cells->method.closed && a < cells->method.box.dim; a++)
+            fields->potential[a][i] = pairs_own(&pairs, RECORD_POTENTIAL)[a];
+        add_gained(&cells->method, fields, i, totals.gained);
     }
     if (cells->method.div_v) fields->div_v[i] = totals.div_v;
     fields->signal[i] = totals.signal;

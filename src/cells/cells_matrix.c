@@ -122,6 +122,7 @@ static void find_shift(const struct cells *cells, const struct cells_fields *fie
     const int dim = cells->method.box.dim;
     double of_one[3] = {0}, shift[3];
     if (sound) moments_slope(dim, count, lanes, weight, inverse, lane(lanes, LANE_ONE), 0, of_one);
+    for (int a = 0; a < dim; a++) shift[a] = fields->shift[a][i];
     shifting_velocity(dim, of_one, 1 / cells->method.numbers.near, 1 / fields->h_inverse[i],
                       fields->c[i], shift);
     for (int a = 0; a < dim; a++) fields->shift[a][i] = shift[a];

@@ -5,44 +5,37 @@
 
 #include "pairs.h"
 
-ALWAYS_INLINE void close_body(int dim, double near, const struct pairs *pairs)
+ALWAYS_INLINE void close_body(int dim, const struct pairs *pairs)
 {
     const struct lanes *lanes = pairs->lanes;
     const ptrdiff_t stride = lanes->stride;
     const double *restrict x = lane(lanes, LANE_DX),
-                           *restrict c = pairs_theirs(pairs, RECORD_SOUND),
-                           *restrict h_inverse = pairs_theirs(pairs, RECORD_H_INVERSE),
-                           *restrict shift = pairs_theirs(pairs, RECORD_SHIFT);
-    const double *own_shift = pairs_own(pairs, RECORD_SHIFT);
-    const double own =
-        shifting_of_one(near, *pairs_own(pairs, RECORD_H_INVERSE), *pairs_own(pairs, RECORD_SOUND));
+                           *restrict potential = pairs_theirs(pairs, RECORD_POTENTIAL);
+    const double *own = pairs_own(pairs, RECORD_POTENTIAL);
     double *restrict G = lane(lanes, LANE_GX);
 #pragma omp simd
     for (int n = 0; n < pairs->count; n++) {
-        const double theirs = shifting_of_one(near, h_inverse[n], c[n]);
         double along = 0;
         for (int a = 0; a < dim; a++) along += G[a * stride + n] * x[a * stride + n];
-        /* G is minus the gradient */
         for (int a = 0; a < dim; a++)
-            G[a * stride + n] -=
-                shifting_closure(dim, along, own * own_shift[a], theirs * shift[a * stride + n]);
+            G[a * stride + n] -= shifting_closure(dim, along, own[a], potential[a * stride + n]);
     }
 }
 
-CLONES static void close_pairs(int dim, double near, const struct pairs *pairs)
+CLONES static void close_pairs(int dim, const struct pairs *pairs)
 {
     if (dim == 2)
-        close_body(2, near, pairs);
+        close_body(2, pairs);
     else
-        close_body(3, near, pairs);
+        close_body(3, pairs);
 }
 
 void cells_close(const struct cells *cells, const struct pairs *pairs)
 {
-    close_pairs(cells->method.box.dim, cells->method.numbers.near, pairs);
+    close_pairs(cells->method.box.dim, pairs);
 }
 
-ALWAYS_INLINE void exchange_body(int dim, const struct pairs *pairs, double *gained)
+ALWAYS_INLINE void exchange_body(int dim, bool closed, const struct pairs *pairs, double *gained)
 {
     const struct lanes *lanes = pairs->lanes;
     const ptrdiff_t stride = lanes->stride;
@@ -58,7 +51,8 @@ ALWAYS_INLINE void exchange_body(int dim, const struct pairs *pairs, double *gai
                  own_rho = *pairs_own(pairs, RECORD_DENSITY),
                  own_u = *pairs_own(pairs, RECORD_HEAT);
     double *restrict reaction = lane(lanes, LANE_REACTION + dim + 2);
-    double p[3][GRID_LANES] = {{0}}, e[GRID_LANES] = {0}, m[GRID_LANES] = {0};
+    double p[3][GRID_LANES] = {{0}}, e[GRID_LANES] = {0}, m[GRID_LANES] = {0},
+           of_one[3][GRID_LANES] = {{0}};
     for (int k = 0; k < pairs->count; k += GRID_LANES)
 #pragma omp simd
         for (int l = 0; l < GRID_LANES; l++) {
@@ -80,21 +74,30 @@ ALWAYS_INLINE void exchange_body(int dim, const struct pairs *pairs, double *gai
             reaction[dim * stride + n] = -energy;
             m[l] += mass;
             reaction[(dim + 1) * stride + n] = -mass;
+            for (int a = 0; closed && a < dim; a++) {
+                of_one[a][l] += V[n] * G[a * stride + n];
+                reaction[(dim + 2 + a) * stride + n] = -own_V * G[a * stride + n];
+            }
         }
     for (int a = 0; a < dim; a++) gained[a] += TREE(p[a]);
     gained[dim] += TREE(e);
     gained[dim + 1] += TREE(m);
+    for (int a = 0; closed && a < dim; a++) gained[dim + 2 + a] += TREE(of_one[a]);
 }
 
-CLONES static void exchange(int dim, const struct pairs *pairs, double *gained)
+CLONES static void exchange(int dim, bool closed, const struct pairs *pairs, double *gained)
 {
-    if (dim == 2)
-        exchange_body(2, pairs, gained);
+    if (dim == 2 && closed)
+        exchange_body(2, true, pairs, gained);
+    else if (dim == 2)
+        exchange_body(2, false, pairs, gained);
+    else if (closed)
+        exchange_body(3, true, pairs, gained);
     else
-        exchange_body(3, pairs, gained);
+        exchange_body(3, false, pairs, gained);
 }
 
 void cells_exchange(const struct cells *cells, const struct pairs *pairs, double *gained)
 {
-    exchange(cells->method.box.dim, pairs, gained);
+    exchange(cells->method.box.dim, cells->method.closed, pairs, gained);
 }

@@ -33,6 +33,7 @@ enum lanes_field {
     RECORD_PROJECTOR,    /* symmetric */
     RECORD_ACCELERATION, /* ax ay (az) */
     RECORD_SHIFT,        /* velocity relative to the flow */
+    RECORD_POTENTIAL,    /* its differences close pair gradients */
     RECORD_FIELDS
 };
 
@@ -78,11 +79,12 @@ enum lanes_array {
     LANE_GX_J,
     LANE_GY_J,
     LANE_GZ_J,
-    LANES_OWN,
+    LANE_LAST, /* of a reaction in 3D, with the one before the end */
+    LANES_OWN = LANE_LAST + 2,
     LANE_REACTION = LANE_SLOPE_I /* what neighbours get: force, energy, signal speed; once slopes, q
                                     and what is spare are not needed any more. Behind them what
-                                    shifting gives: momentum, energy, mass; vanilla_ice has only
-                                    one gradient */
+                                    shifting gives: momentum, energy, mass, what gradients make of
+                                    a constant; vanilla_ice has only one gradient */
 };
 
 struct lanes {
@@ -141,7 +143,8 @@ struct cells {
 /* Values of a reaction. */
 static inline int cells_reaction_values(const struct cells_method *method)
 {
-    return (method->box.dim + 2) * (method->shift ? 2 : 1);
+    const int dim = method->box.dim;
+    return (dim + 2) * (method->shift ? 2 : 1) + (method->closed ? dim : 0);
 }
 
 /* An array of the thread's own, or a value of the gathered records. */

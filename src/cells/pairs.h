@@ -40,11 +40,12 @@ bool cells_viscosity(const struct cells *cells, const struct pairs *pairs);
  */
 void cells_project(int dim, const double L[CELLS_SQUARE], double projector[CELLS_SYMMETRIC]);
 
-/* Changes the mean G of every pair so that it makes less of a constant, CONVENTIONS eq. 6.16. */
+/* Changes the mean G of every pair so that their sum makes nothing of a constant, CONVENTIONS eq.
+ * 6.16. */
 void cells_close(const struct cells *cells, const struct pairs *pairs);
 
 /* Adds to gained what the particle gains of what shifting sweeps over: momentum along every axis,
- * energy, mass. */
+ * energy, mass; then what closed gradients still make of a constant. */
 void cells_exchange(const struct cells *cells, const struct pairs *pairs, double *gained);
 
 /* Heat that is conducted to the particle. */

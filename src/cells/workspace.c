@@ -83,6 +83,7 @@ static void connect_fields(struct simulation *simulation)
         fields->F[k] = a->F[k];
         fields->impulse[k] = a->impulse[k];
         fields->shift[k] = a->shift[k];
+        fields->potential[k] = a->potential[k];
         fields->dp_shift[k] = a->dp_shift[k];
     }
     fields->heat = a->heat;

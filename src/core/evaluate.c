@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What an evaluation is made of, in its order; the sums know the geometry. */
+#include <math.h>
+
 #include "breakdown.h"
 #include "fixed.h"
+#include "shifting.h"
 #include "solver.h"
 #include "specialise.h"
 #include "state.h"
@@ -65,6 +68,15 @@ static void limit_time_step(struct simulation *simulation, double rate)
     simulation->time_step = simulation->scheme.cfl / largest(rate, simulation->sleep.rate);
 }
 
+/* Is there a constant of which closed gradients make something? On a lattice there is none. */
+static bool unsettled(const struct particles *a)
+{
+    for (int k = 0; k < a->dim; k++)
+        for (ptrdiff_t i = 0; i < a->n; i++)
+            if (fabs(a->potential[k][i]) > 1e-9 * a->h_inverse[i]) return true;
+    return false;
+}
+
 /* Rates of a state whose neighbours, widths and densities are known. */
 static enum status find_rates(struct simulation *simulation, struct error *error)
 {
@@ -72,6 +84,10 @@ static enum status find_rates(struct simulation *simulation, struct error *error
     double rate;
     if (plan->matrix || plan->slope) plan->sums->matrix(simulation);
     enum status status = plan->sums->forces(simulation, &rate, error);
+    for (int k = 1; status == STATUS_OK && plan->closed && simulation->dt <= 0 &&
+                    k < SHIFTING_START && unsettled(&simulation->particles);
+         k++)
+        status = plan->sums->forces(simulation, &rate, error);
     if (status == STATUS_OK && plan->gravity) fall(simulation);
     if (status == STATUS_OK) fixed_rates(simulation);
     if (status == STATUS_OK && plan->jump) plan->sums->find_switch(simulation);

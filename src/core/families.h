@@ -76,7 +76,8 @@
            "particles shift to where they are spread evenly, and exchange what they sweep over",   \
            "Nestor et al. 2009; Oger et al. 2016 with fluxes", __VA_ARGS__)                        \
     CHOICE(SHIFTING_CLOSED, "closed",                                                              \
-           "as fluxes, with pair gradients that make less of a constant", "", __VA_ARGS__)
+           "as fluxes, with pair gradients that make nothing of a constant",                       \
+           "Chiu, Wang, Hu & Jameson 2012; Trask, Bochev & Perego 2020", __VA_ARGS__)
 
 /* FAMILY(name, list, number of members, plural, title): enum name, scheme_name_family. Families
  * whose members have a file and a descriptor each: gradient.h, viscosity.h; those of plain choices;

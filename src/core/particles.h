@@ -74,6 +74,7 @@ enum particle_use {
     VECTOR(impulse, USE_LOCAL_STEPS, "from pairs of finer levels, since the step began")           \
     SCALAR(heat, USE_LOCAL_STEPS, "and the energy")                                                \
     VECTOR(shift, USE_SHIFT, "velocity relative to the flow")                                      \
+    VECTOR(potential, USE_SHIFT, "closed pair gradients: what closes them")                        \
     SCALAR(dm, USE_SHIFT, "mass that the shift exchanges, dm/dt")                                  \
     VECTOR(dp_shift, USE_SHIFT, "momentum that goes with it, not in F")                            \
     SCALAR(de_shift, USE_SHIFT, "and energy, not in de")

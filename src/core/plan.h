@@ -25,7 +25,7 @@ struct plan {
     bool jump;               /* alpha by a switch, once a step */
     bool local;              /* local steps */
     bool shift;              /* particle shifting, with fluxes of mass, momentum and energy */
-    bool closed;             /* and pair gradients that make less of a constant */
+    bool closed;             /* and pair gradients that make nothing of a constant */
     bool gravity;            /* a constant acceleration */
     bool signal_pass;        /* a pass of its own for the time step */
     bool sleep;              /* leave out particles that no signal has reached */

@@ -5,8 +5,11 @@
  * sweep over. Both vanish as the spacing does. One particle gains the mass, momentum and total
  * energy that the other loses. As the gas has the pair's mean velocity, kinetic and internal energy
  * are each conserved. Uniform velocity and specific energy stay uniform.
- * With shifting=closed the gradients of a pair make less of a constant, eq. 6.16. Disorder then
- * pushes particles less, and their shift alone has to spread them evenly. */
+ * With shifting=closed the gradients of all pairs of a particle also add up to 0, eq. 6.16, so that
+ * a constant pressure exerts no force (Chiu, Wang, Hu & Jameson 2012; Trask, Bochev & Perego 2020
+ * solve for such gradients). Their correction is antisymmetric: a difference of potentials, of
+ * which each evaluation makes one more step of Jacobi's iteration. Only their shift spreads
+ * particles then, as disorder does not push them. */
 #ifndef SPHPROOF_SHIFTING_H
 #define SPHPROOF_SHIFTING_H
 
@@ -14,38 +17,39 @@
 
 #include "specialise.h"
 
-#define SHIFTING_PART 9. /* of eta h c E: the shift */
+/* The longest potential, over h. In shocks and where spacings jump the sum of gradients is no
+ * disorder, and closing it there would carry it far into the gas around. */
+#define SHIFTING_POTENTIAL 0.05
+/* Evaluations of the first state, which has no potentials yet. */
+#define SHIFTING_START 8
 
-/* The velocity relative to the flow, -eta h c E/9, at most c/4; E is what the particle's gradient
- * makes of 1. A shift that is a quarter longer is unstable in fine vortices at the longest steps of
- * predicted_midpoint, which are a number of spacings; the factor eta makes that limit the same for
- * all widths. */
+/* Shortens a vector to this length at most. */
+ALWAYS_INLINE void shifting_limit(int dim, double most, double *vector)
+{
+    double square = 0;
+    for (int a = 0; a < dim; a++) square += vector[a] * vector[a];
+    const double scale = square > most * most ? most / sqrt(square) : 1;
+    for (int a = 0; a < dim; a++) vector[a] *= scale;
+}
+
+/* The velocity relative to the flow, 0.7 s - 0.12 eta h c E, at most c/10, in place of the last
+ * evaluation's s; E is what the particle's gradient makes of 1. With a memory of the last shift
+ * (the heavy-ball method of iterations) particles settle three times as fast as the longest stable
+ * shift would let them without. The factor eta makes that limit, a number of spacings in a step,
+ * the same for all widths. */
 ALWAYS_INLINE void shifting_velocity(int dim, const double *of_one, double eta, double h, double c,
                                      double *shift)
 {
-    const double most = 0.25 * c;
-    double square = 0;
-    for (int a = 0; a < dim; a++) {
-        shift[a] = -(eta / SHIFTING_PART) * h * c * of_one[a];
-        square += shift[a] * shift[a];
-    }
-    const double scale = square > most * most ? most / sqrt(square) : 1;
-    for (int a = 0; a < dim; a++) shift[a] *= scale;
+    for (int a = 0; a < dim; a++) shift[a] = 0.7 * shift[a] - 0.12 * eta * h * c * of_one[a];
+    shifting_limit(dim, 0.1 * c, shift);
 }
 
-/* E over the shift, so that E needs no field of its own; where the shift is limited, E comes out
- * as small as the shift. near: 1/eta. */
-ALWAYS_INLINE double shifting_of_one(double near, double h_inverse, double c)
+/* What is subtracted from a component of a pair's mean gradient; phi_i and phi_j are those of the
+ * potential. along: the distance times the gradient, whose sum over j, with V_j, is the
+ * dimension. */
+ALWAYS_INLINE double shifting_closure(int dim, double along, double phi_i, double phi_j)
 {
-    return -SHIFTING_PART * near * h_inverse / c;
-}
-
-/* What is subtracted from a component of a pair's mean gradient; of_one_i and of_one_j are those of
- * E. along: the distance times the gradient, whose sum over j, with V_j, is the dimension. With a
- * larger share than 0.35 fine vortices have larger errors, because forces spread particles less. */
-ALWAYS_INLINE double shifting_closure(int dim, double along, double of_one_i, double of_one_j)
-{
-    return 0.35 / dim * along * (of_one_i - of_one_j);
+    return along * (phi_i - phi_j) / dim;
 }
 
 /* What particle i gains: the volume that it sweeps over for j has the donor's density and specific

@@ -277,6 +277,7 @@ static void find_rates(struct oracle *oracle, size_t i)
     const struct scheme *scheme = &oracle->scheme;
     struct oracle_particle *a = &oracle->particles[i];
     a->F[0] = a->F[1] = a->F[2] = a->dU = a->div_v = 0;
+    a->of_one[0] = a->of_one[1] = a->of_one[2] = 0;
     a->dp_shift[0] = a->dp_shift[1] = a->dp_shift[2] = a->de_shift = a->dm = 0;
     a->neighbours = 0;
     for (size_t j = 0; j < oracle->n; j++)
@@ -297,10 +298,28 @@ static void find_rates(struct oracle *oracle, size_t i)
                     : 0;
 }
 
+/* Of a first state, closed: potentials by eight evaluations, each no longer than 1/(20 h). */
+static void find_potentials(struct oracle *oracle)
+{
+    for (size_t i = 0; i < oracle->n; i++)
+        for (int k = 0; k < 3; k++) oracle->particles[i].potential[k] = 0;
+    for (int evaluation = 1; evaluation < 8; evaluation++) {
+        for (size_t i = 0; i < oracle->n; i++) find_rates(oracle, i);
+        for (size_t i = 0; i < oracle->n; i++) {
+            struct oracle_particle *a = &oracle->particles[i];
+            for (int k = 0; k < 3; k++) a->potential[k] += a->of_one[k];
+            const long double length = sqrtl(oracle_dot(a->potential, a->potential)),
+                              most = 0.05L / a->width;
+            for (int k = 0; length > most && k < 3; k++) a->potential[k] *= most / length;
+        }
+    }
+}
+
 enum status oracle_evaluate(struct oracle *oracle, struct error *error)
 {
     const enum status status = find_state(oracle, error);
     if (status) return status;
+    if (oracle->scheme.shifting == SHIFTING_CLOSED) find_potentials(oracle);
     for (size_t i = 0; i < oracle->n; i++) find_rates(oracle, i);
     if (oracle->scheme.viscosity == VISCOSITY_CULLEN_DEHNEN) oracle_find_switch(oracle);
     oracle_signals(oracle);

@@ -38,7 +38,7 @@ struct oracle_particle {
     /* particle shifting: velocity relative to the flow, and rates of the exchange, in none of the
      * above
      */
-    oracle_vector shift, dp_shift;
+    oracle_vector shift, potential, of_one, dp_shift;
     long double dm, de_shift;
     size_t neighbours; /* others with r < h */
 };

@@ -157,7 +157,7 @@ static void find_steep(const struct oracle *oracle, size_t i)
     a->steep = t <= 0 ? 0 : t >= 1 ? 1 : 3 * t * t - 2 * t * t * t;
 }
 
-/* -eta h c/9 sum_j V_j C_i x weight, no longer than c/4; none where the matrix is ill. */
+/* -0.12 eta h c sum_j V_j C_i x weight, no longer than c/10; none where the matrix is ill. */
 static void find_shift(const struct oracle *oracle, size_t i)
 {
     struct oracle_particle *a = &oracle->particles[i];
@@ -171,9 +171,9 @@ static void find_shift(const struct oracle *oracle, size_t i)
         for (int c = 0; c < 3; c++) sum[c] += b->V * oracle_weight(oracle, r, a->width) * x[c];
     }
     if (!a->ill) oracle_product(&a->C, sum, of_one);
-    const long double rate = oracle->scheme.eta * a->width * a->c / 9,
+    const long double rate = oracle->scheme.eta * a->width * a->c * 0.12L,
                       speed = rate * sqrtl(oracle_dot(of_one, of_one)),
-                      factor = -rate * (speed > a->c / 4 ? a->c / 4 / speed : 1);
+                      factor = -rate * (speed > a->c / 10 ? a->c / 10 / speed : 1);
     for (int c = 0; c < 3; c++) a->shift[c] = factor * of_one[c];
 }
 

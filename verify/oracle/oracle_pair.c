@@ -195,15 +195,16 @@ static long double conducted(const struct oracle *oracle, const struct oracle_pa
            (a->U / a->m - b->U / b->m) / rho * along;
 }
 
-/* E from the shift, -9 s/(eta h c): 0.35 of the pair's difference goes, by x . G/d. */
-static void close_gradient(const struct oracle *oracle, const struct oracle_particle *a,
+/* The potentials' difference, by x . G/d, and what is left of a constant. */
+static void close_gradient(const struct oracle *oracle, struct oracle_particle *a,
                            const struct oracle_particle *b, const oracle_vector x,
                            struct gradients *G)
 {
-    const long double weight = 0.35L * oracle_dot(x, G->mean) / oracle->dim;
-    for (int k = 0; k < 3; k++)
-        G->mean[k] += weight * 9 / oracle->scheme.eta *
-                      (a->shift[k] / (a->width * a->c) - b->shift[k] / (b->width * b->c));
+    const long double weight = oracle_dot(x, G->mean) / oracle->dim;
+    for (int k = 0; k < 3; k++) {
+        G->mean[k] -= weight * (a->potential[k] - b->potential[k]);
+        a->of_one[k] += b->V * G->mean[k];
+    }
 }
 
 /* What a gains of the volume that shifting sweeps over, with the density and the specific energy of

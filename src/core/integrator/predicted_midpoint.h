@@ -193,7 +193,7 @@ static enum status predicted_midpoint_step(struct simulation *simulation, double
 INTEGRATOR(predicted_midpoint,
            .member = {"predicted_midpoint", "midpoint with predicted rates, one evaluation a step",
                       "van Leer 1979"},
-           .order = 2, .evaluations = 1, .cfl = 0.8, .cloud_cfl = 1.4, .cfl_per_width = true,
-           .predicts = true, .follow = 1.5, .first_step = 0.25, .local = true, .shifts = true,
-           .keeps = sizeof(struct predicted_midpoint),
+           .order = 2, .evaluations = 1, .cfl = 0.8, .cloud_cfl = 1.4, .closed_cfl = 1,
+           .cfl_per_width = true, .predicts = true, .follow = 1.5, .first_step = 0.25,
+           .local = true, .shifts = true, .keeps = sizeof(struct predicted_midpoint),
            .synchronise = predicted_midpoint_synchronise)

@@ -194,7 +194,7 @@ TEST(spreads_particles)
         simulation = made_of(&setup);
         const double before = disorder(simulation);
         assert_true(before > 0.01 && before < 0.25);
-        run_to(simulation, 0.3, NULL);
+        run_to(simulation, 1, NULL);
         near_below(disorder(simulation), 0.25 * before);
         simulation_destroy(simulation);
     }
@@ -207,7 +207,7 @@ static double of_constant(int dim, const char *kind)
     double sum = 0;
     member = kind;
     draw_state = 23;
-    struct setup setup = setup_of(dim, dim == 2 ? 24 : 9, 0.1, 0);
+    struct setup setup = setup_of(dim, dim == 2 ? 24 : 9, 0.02, 0);
     for (int once = 0; once < 2; once++) {
         struct simulation *simulation = made_of(&setup);
         const struct particles *a = &simulation->particles;
@@ -220,11 +220,11 @@ static double of_constant(int dim, const char *kind)
     return sqrt(sum / (double)setup.n);
 }
 
-TEST(closed_gradients_make_less_of_a_constant)
+TEST(closed_gradients_make_little_of_a_constant)
 {
     for (int dim = 2; dim <= 3; dim++) {
         const double ratio = of_constant(dim, "closed") / of_constant(dim, "fluxes");
-        assert_true(ratio > 0.5 && ratio < 0.85);
+        assert_true(ratio < 0.2);
     }
 }
 
