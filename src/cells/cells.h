@@ -177,10 +177,9 @@ struct cells_quiet {
 void cells_wake(struct cells *cells, const struct cells_fields *fields,
                 const struct cells_quiet *quiet, unsigned char *asleep);
 
-/* Marks as CELLS_JUST_ASLEEP the awake particles that are calm and have calm neighbours. Returns
- * how many. */
-size_t cells_lull(struct cells *cells, const struct cells_fields *fields,
-                  const struct cells_quiet *quiet, unsigned char *asleep);
+/* Marks as CELLS_JUST_ASLEEP the awake particles that are calm and have calm neighbours. */
+void cells_lull(struct cells *cells, const struct cells_fields *fields,
+                const struct cells_quiet *quiet, unsigned char *asleep);
 
 /* Square of the distance of the points at two slots. */
 double cells_distance2(const struct cells *cells, size_t a, size_t b);

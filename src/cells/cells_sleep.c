@@ -7,9 +7,9 @@
 #include "cells.h"
 #include "lanes.h"
 
-static const int32_t *list_of(struct cells *cells, size_t slot)
+static const int32_t *list_of(struct cells *cells, size_t slot, struct lanes *lanes)
 {
-    return grid_neighbours(cells->grid, &cells->lanes[0].reader, cells->lists, slot);
+    return grid_neighbours(cells->grid, &lanes->reader, cells->lists, slot);
 }
 
 /* Speed at which a particle and its neighbour at a slot move against each other, squared. */
@@ -38,18 +38,19 @@ static const double carried = 1e-5;
 static const double terms = 4;
 
 /* The disturbance of the particle at a slot that its neighbours have to expect. */
-static double expected_at(struct cells *cells, const struct cells_fields *fields,
-                          const struct cells_quiet *quiet, size_t slot)
+static double expected_at(struct cells *cells, const struct cells_fields *fields, size_t slot,
+                          struct lanes *lanes)
 {
-    const int32_t *slots = list_of(cells, slot);
+    const double *disturbance = cells->quiet->disturbance;
+    const int32_t *slots = list_of(cells, slot, lanes);
     const int32_t count = cells->lists[slot].count;
     double around = 0;
     for (int32_t k = 0; k < count; k++) {
         int mirrored;
         const size_t j = lanes_source(cells, fields->n, (size_t)slots[k], &mirrored);
-        around = fmax(around, quiet->disturbance[j]);
+        around = largest(around, disturbance[j]);
     }
-    return fmax(quiet->disturbance[cells->order[slot]], carried * around);
+    return largest(disturbance[cells->order[slot]], carried * around);
 }
 
 /* What arrives at a particle of a disturbance 1 of its neighbour `from`, the other way round as
@@ -63,24 +64,44 @@ static double part_of(const struct cells *cells, const struct cells_fields *fiel
     return terms * fields->V[from] * h * fabs(slope);
 }
 
+/* Most particles have no neighbour that sleeps: nothing arrives from them, -1. */
+static void expect_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
+                        struct lanes *lanes)
+{
+    double *expected = &cells->quiet->arriving[cells->order[slot]];
+    *expected = -1;
+    if (!grid_in_rim(cells->grid, slot)) return;
+    const int32_t *slots = list_of(cells, slot, lanes);
+    const int32_t count = cells->lists[slot].count;
+    for (int32_t k = 0; k < count && *expected < 0; k++) {
+        int mirrored;
+        if (cells->asleep[lanes_source(cells, fields->n, (size_t)slots[k], &mirrored)])
+            *expected = expected_at(cells, fields, slot, lanes);
+    }
+}
+
+/* What is expected of particles that are awake stands in the same array as what arrives at
+ * sleepers; sums at these are in the order of the slots. */
 void cells_wake(struct cells *cells, const struct cells_fields *fields,
                 const struct cells_quiet *quiet, unsigned char *asleep)
 {
+    cells->quiet = quiet;
+    cells->asleep = asleep;
     memset(quiet->arriving, 0, fields->n * sizeof *quiet->arriving);
     grid_find_rim(cells->grid, asleep);
+    lanes_all(cells, fields, expect_pass);
     for (size_t slot = 0; slot < cells->points; slot++) {
-        if (!grid_in_rim(cells->grid, slot)) continue;
         if (!cells->lists[slot].kept) continue; /* it sleeps, or is an image */
         const size_t i = cells->order[slot];
-        double expected = -1; /* most have no neighbour that sleeps and would need it */
-        const int32_t *slots = list_of(cells, slot);
+        const double expected = quiet->arriving[i];
+        if (expected < 0) continue;
+        const int32_t *slots = list_of(cells, slot, &cells->lanes[0]);
         const double limit2 = square_of_limit(fields, quiet, i);
         const int32_t count = cells->lists[slot].count;
         for (int32_t k = 0; k < count; k++) {
             int mirrored;
             const size_t j = lanes_source(cells, fields->n, (size_t)slots[k], &mirrored);
             if (!asleep[j]) continue;
-            if (expected < 0) expected = expected_at(cells, fields, quiet, slot);
             if (!(expected <= 1))
                 quiet->arriving[j] +=
                     expected * part_of(cells, fields, slot, (size_t)slots[k], j, i);
@@ -92,13 +113,14 @@ void cells_wake(struct cells *cells, const struct cells_fields *fields,
 
 /* Is the particle at a slot calm, does it move with all its neighbours, and does no more arrive
  * from those that are not calm? */
-static bool calm_around(struct cells *cells, const struct cells_fields *fields,
-                        const struct cells_quiet *quiet, size_t slot)
+static bool calm_around(struct cells *cells, const struct cells_fields *fields, size_t slot,
+                        struct lanes *lanes)
 {
+    const struct cells_quiet *quiet = cells->quiet;
     const size_t i = cells->order[slot];
     const double limit2 = square_of_limit(fields, quiet, i) * quiet->calm * quiet->calm;
     if (!(quiet->disturbance[i] <= quiet->calm)) return false;
-    const int32_t *slots = list_of(cells, slot);
+    const int32_t *slots = list_of(cells, slot, lanes);
     const int32_t count = cells->lists[slot].count;
     double sum = 0;
     for (int32_t k = 0; k < count; k++) {
@@ -112,18 +134,25 @@ static bool calm_around(struct cells *cells, const struct cells_fields *fields,
     return true;
 }
 
-size_t cells_lull(struct cells *cells, const struct cells_fields *fields,
-                  const struct cells_quiet *quiet, unsigned char *asleep)
+static void arrive_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
+                        struct lanes *lanes)
 {
-    size_t count = 0;
+    cells->quiet->arriving[cells->order[slot]] = expected_at(cells, fields, slot, lanes);
+}
+
+static void lull_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
+                      struct lanes *lanes)
+{
+    if (calm_around(cells, fields, slot, lanes))
+        cells->asleep[cells->order[slot]] = CELLS_JUST_ASLEEP;
+}
+
+void cells_lull(struct cells *cells, const struct cells_fields *fields,
+                const struct cells_quiet *quiet, unsigned char *asleep)
+{
+    cells->quiet = quiet;
+    cells->asleep = asleep;
     memset(quiet->arriving, 0, fields->n * sizeof *quiet->arriving);
-    for (size_t slot = 0; slot < cells->points; slot++)
-        if (cells->lists[slot].kept)
-            quiet->arriving[cells->order[slot]] = expected_at(cells, fields, quiet, slot);
-    for (size_t slot = 0; slot < cells->points; slot++) {
-        if (!cells->lists[slot].kept || !calm_around(cells, fields, quiet, slot)) continue;
-        asleep[cells->order[slot]] = CELLS_JUST_ASLEEP;
-        count++;
-    }
-    return count;
+    lanes_all(cells, fields, arrive_pass);
+    lanes_all(cells, fields, lull_pass);
 }

@@ -137,6 +137,8 @@ struct cells {
     struct lanes_layout density, matrix, force, shift; /* shift: of the switch */
     struct lanes *lanes;                               /* of each thread */
     struct lanes_newton newton;
+    const struct cells_quiet *quiet; /* while it is found who wakes and who falls asleep */
+    unsigned char *asleep;
     struct reactions reactions;
 };
 

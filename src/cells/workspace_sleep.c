@@ -27,7 +27,7 @@ static void lull(struct simulation *simulation, const struct cells_quiet *quiet)
 {
     struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
-    if (!cells_lull(workspace->cells, &workspace->fields, quiet, workspace->asleep)) return;
+    cells_lull(workspace->cells, &workspace->fields, quiet, workspace->asleep);
     for (ptrdiff_t i = 0; i < a->n; i++) {
         if (workspace->asleep[i] != CELLS_JUST_ASLEEP) continue;
         workspace->asleep[i] = CELLS_ASLEEP;
