@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "grid_inside.h"
 #include "pages.h"
-#include "specialise.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -77,70 +76,40 @@ static int compare_doubles(const void *a, const void *b)
  * little more than three quarters of the points need: if cells were slightly smaller than the
  * radius of a few points, all around these would look through 5^d cells in place of 3^d. Where few
  * points are much wider, cells follow the others. */
-static double usual_radius(size_t n, const double *radius, double widest)
+static double usual_radius(size_t n, const double *radius)
 {
-    double sample[SAMPLE];
-    const size_t count = n < SAMPLE ? n : SAMPLE, quartile = count * 3 / 4;
-    size_t alike = 0;
-    for (size_t k = 0; k < count; k++) {
-        sample[k] = radius[k * n / count];
-        alike += widest <= 1.2 * sample[k];
-    }
-    if (alike >= count - quartile) return widest;
+    double sample[SAMPLE], widest = 0;
+    const size_t count = n < SAMPLE ? n : SAMPLE;
+    for (size_t k = 0; k < count; k++) sample[k] = radius[k * n / count];
     qsort(sample, count, sizeof *sample, compare_doubles);
-    return sample[quartile];
-}
-
-/* finite: all of them are. */
-struct range {
-    double least, most;
-    bool finite;
-};
-
-CLONES static void find_range(size_t n, const double *restrict values, struct range *range)
-{
-    double low[GRID_LANES], high[GRID_LANES], odd[GRID_LANES];
-    for (int l = 0; l < GRID_LANES; l++) low[l] = high[l] = values[0], odd[l] = 0;
-    for (size_t i = 0; i + GRID_LANES <= n; i += GRID_LANES) SIMD_LANES
-    for (int l = 0; l < GRID_LANES; l++) {
-        low[l] = least(values[i + (size_t)l], low[l]);
-        high[l] = largest(values[i + (size_t)l], high[l]);
-        odd[l] += values[i + (size_t)l] - values[i + (size_t)l];
-    }
-    for (size_t i = n / GRID_LANES * GRID_LANES; i < n; i++) {
-        low[0] = least(values[i], low[0]);
-        high[0] = largest(values[i], high[0]);
-        odd[0] += values[i] - values[i];
-    }
-    *range = (struct range){low[0], high[0], odd[0] == 0};
-    for (int l = 1; l < GRID_LANES; l++) {
-        range->least = least(low[l], range->least);
-        range->most = largest(high[l], range->most);
-        range->finite &= odd[l] == 0;
-    }
+    const double usual = sample[count * 3 / 4];
+    for (size_t i = 0; i < n; i++) widest = radius[i] > widest ? radius[i] : widest;
+    return widest <= 1.2 * usual ? widest : usual;
 }
 
 static enum status find_extent(struct grid *grid, size_t n, const double *const x[],
                                const double *radius, struct error *error)
 {
     const struct grid_box *box = &grid->box;
-    struct range range;
-    find_range(n, radius, &range);
-    grid->furthest = range.most;
-    for (size_t i = 0; !(range.finite && range.least > 0) && i < n; i++)
+    for (size_t i = 0; i < n; i++)
         if (!(isfinite(radius[i]) && radius[i] > 0))
             return error_set(error, STATUS_BAD_INPUT, "search radius of particle %zu is %g", i,
                              radius[i]);
     for (int a = 0; a < box->dim; a++) {
-        find_range(n, x[a], &range);
-        for (size_t i = 0; !range.finite && i < n; i++)
+        double lo = x[a][0], hi = x[a][0];
+        bool sound = true;
+        for (size_t i = 0; i < n; i++) {
+            sound &= isfinite(x[a][i]);
+            lo = x[a][i] < lo ? x[a][i] : lo;
+            hi = x[a][i] > hi ? x[a][i] : hi;
+        }
+        for (size_t i = 0; !sound && i < n; i++)
             if (!isfinite(x[a][i]))
                 return error_set(error, STATUS_BAD_INPUT, "position of particle %zu is %g", i,
                                  x[a][i]);
-        grid->lo[a] = box->periodic[a] ? box->lo[a] : range.least;
-        grid->side[a] = box->periodic[a] ? box->hi[a] - box->lo[a] : range.most - range.least;
-        if (!box->periodic[a] || grid->furthest <= 0.5 * grid->side[a]) continue;
-        for (size_t i = 0; i < n; i++)
+        grid->lo[a] = box->periodic[a] ? box->lo[a] : lo;
+        grid->side[a] = box->periodic[a] ? box->hi[a] - box->lo[a] : hi - lo;
+        for (size_t i = 0; box->periodic[a] && i < n; i++)
             if (!(radius[i] <= 0.5 * grid->side[a]))
                 return error_set(error, STATUS_BAD_INPUT,
                                  "particle %zu reaches as far as %g, beyond half the box (%g): "
@@ -154,7 +123,7 @@ static enum status find_extent(struct grid *grid, size_t n, const double *const 
 static enum status lay_cells(struct grid *grid, size_t n, const double *radius, struct error *error)
 {
     const int dim = grid->box.dim;
-    double size = usual_radius(n, radius, grid->furthest) * (1 + 1e-5);
+    double size = usual_radius(n, radius) * (1 + 1e-5);
     grid->unit = size;
     for (;; size *= 1.3) {
         double count = 1;
@@ -213,6 +182,23 @@ static double wrapped(double x, double lo, double side)
     return y < lo + side ? y : lo;
 }
 
+/* Single precision is enough for the search where it starts at the middle of a cell. */
+static void place_in_cells(struct grid *grid)
+{
+    const double scale = 1 / grid->unit;
+    for (size_t cell = 0; cell < grid->cell_count; cell++) {
+        ptrdiff_t c[3];
+        if (grid->start[cell] == grid->start[cell + 1]) continue;
+        grid_cell_coordinates(grid, cell, c);
+        for (int a = 0; a < 3; a++) {
+            const double middle = grid->lo[a] + ((double)c[a] + 0.5) * grid->size[a];
+            for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++)
+                grid->place[a][s] =
+                    a < grid->box.dim ? (float)((grid->position[s][a] - middle) * scale) : 0;
+        }
+    }
+}
+
 /* How far off a distance may come out in single precision, in units: places are at most half a
  * cell, and moved by whole cells. Counts where cells are many radii large, as those of points that
  * are together in a small part of a periodic box: lists then hold more than they need, never less.
@@ -224,10 +210,11 @@ static double rounding_of(const struct grid *grid)
     return 4e-7 * largest / grid->unit;
 }
 
-static void find_cells(struct grid *grid, size_t n, const double *const x[])
+/* A counting sort: stable, so that points of a cell keep their order. */
+static void sort_points(struct grid *grid, size_t n, const double *const x[], const double *radius)
 {
     const int dim = grid->box.dim;
-#pragma omp parallel for num_threads(grid->team) schedule(dynamic, AT_ONCE) if (grid->team > 1)
+    memset(grid->start, 0, (grid->cell_count + 1) * sizeof *grid->start);
     for (size_t i = 0; i < n; i++) {
         ptrdiff_t c[3] = {0};
         for (int a = 0; a < dim; a++) {
@@ -237,60 +224,33 @@ static void find_cells(struct grid *grid, size_t n, const double *const x[])
             c[a] = k < grid->cells[a] ? k : grid->cells[a] - 1;
         }
         grid->cell_of[i] = (uint32_t)grid_cell_at(grid, c);
+        grid->start[grid->cell_of[i] + 1]++;
     }
-}
-
-/* A counting sort: stable, so that points of a cell keep their order. */
-static void sort_points(struct grid *grid, size_t n)
-{
-    memset(grid->start, 0, (grid->cell_count + 1) * sizeof *grid->start);
-    for (size_t i = 0; i < n; i++) grid->start[grid->cell_of[i] + 1]++;
     for (size_t c = 0; c < grid->cell_count; c++) grid->start[c + 1] += grid->start[c];
     for (size_t i = 0; i < n; i++) grid->order[grid->start[grid->cell_of[i]]++] = (uint32_t)i;
     memmove(grid->start + 1, grid->start, grid->cell_count * sizeof *grid->start);
     grid->start[0] = 0;
-}
-
-/* What the search reads of a cell's points, by slot. Single precision is enough where it starts at
- * the middle of the cell. */
-static void place_in_cell(struct grid *grid, size_t cell, const double *const x[],
-                          const double *radius, double rounding)
-{
-    const double scale = 1 / grid->unit;
-    ptrdiff_t c[3];
-    double middle[3];
-    float widest = 0;
-    if (grid->start[cell] < grid->start[cell + 1]) grid_cell_coordinates(grid, cell, c);
-    for (int a = 0; a < 3; a++) middle[a] = grid->lo[a] + ((double)c[a] + 0.5) * grid->size[a];
-    for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++) {
-        const size_t i = grid->order[s];
-        for (int a = 0; a < 3; a++) {
-            const bool there = a < grid->box.dim;
-            const double at = !there                  ? 0
-                              : grid->box.periodic[a] ? wrapped(x[a][i], grid->lo[a], grid->side[a])
-                                                      : x[a][i];
-            grid->position[s][a] = at;
-            grid->place[a][s] = there ? (float)((at - middle[a]) * scale) : 0;
-        }
-        const double units = radius[i] / grid->unit;
-        const float reach = (float)largest(units * (1 + 1e-5), units + rounding);
-        grid->radius2[s] = reach * reach;
-        widest = reach > widest ? reach : widest;
-    }
-    grid->widest[cell] = widest;
-}
-
-static void place_points(struct grid *grid, size_t n, const double *const x[], const double *radius)
-{
+    for (size_t c = 0; c < grid->cell_count; c++) grid->widest[c] = 0;
     const double rounding = rounding_of(grid);
-#pragma omp parallel for num_threads(grid->team) schedule(dynamic) if (grid->team > 1)
-    for (size_t p = 0; p < grid->parts; p++)
-        for (size_t cell = grid->part_cell[p]; cell < grid->part_cell[p + 1]; cell++)
-            place_in_cell(grid, cell, x, radius, rounding);
+    for (size_t s = 0; s < n; s++) {
+        const size_t i = grid->order[s];
+        for (int a = 0; a < 3; a++)
+            grid->position[s][a] = a >= dim ? 0
+                                   : grid->box.periodic[a]
+                                       ? wrapped(x[a][i], grid->lo[a], grid->side[a])
+                                       : x[a][i];
+        const double units = radius[i] / grid->unit;
+        const float reach = (float)fmax(units * (1 + 1e-5), units + rounding);
+        float *widest = &grid->widest[grid->cell_of[i]];
+        grid->radius2[s] = reach * reach;
+        *widest = reach > *widest ? reach : *widest;
+    }
+    place_in_cells(grid);
     /* the sentinel: far from everything, at any image */
     for (int a = 0; a < 3; a++) grid->position[n][a] = 0;
-    double far = grid->furthest;
-    for (int a = 0; a < grid->box.dim; a++) far = fmax(far, fabs(grid->lo[a]) + grid->side[a]);
+    double far = 0;
+    for (int a = 0; a < dim; a++) far = fmax(far, fabs(grid->lo[a]) + grid->side[a]);
+    for (size_t i = 0; i < n; i++) far = fmax(far, radius[i]);
     grid->position[n][0] = 64 * far;
 }
 
@@ -382,11 +342,9 @@ enum status grid_search(struct grid *grid, size_t n, size_t active, const double
     if (!status) status = lay_cells(grid, n, radius, error);
     if (status) return status;
     grid->n = n;
-    find_cells(grid, n, x);
-    sort_points(grid, n);
-    cut_parts(grid);
-    place_points(grid, n, x, radius);
+    sort_points(grid, n, x, radius);
     find_reaches(grid);
+    cut_parts(grid);
     grid->flags = flags;
     grid->active = active;
     return grid_make_lists(grid, error);

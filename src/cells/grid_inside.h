@@ -15,7 +15,6 @@ enum {
     CHUNK = 1 << 18,      /* words of lists that a thread asks for at once */
     CHUNK_NEXT = 1 << 19, /* words of each chunk after the first: a large page */
     CELLS_A_POINT = 2,    /* at most */
-    AT_ONCE = 1024,       /* points that a thread takes at once where each is little work */
     COPIED = 16,          /* points that are copied at once; arrays of slots are that much longer */
     AHEAD = 256,          /* words of lists that are fetched before they are written */
     BEYOND = 16           /* entries that a vector may write after the end of a list */
@@ -67,8 +66,7 @@ struct grid {
     int threads, team; /* there are; at work */
     size_t n, capacity;
     double lo[3], side[3], size[3], cell_inverse[3]; /* side: period or extent */
-    double unit;     /* what single precision is used in: the usual radius */
-    double furthest; /* the largest radius */
+    double unit; /* what single precision is used in: the usual radius */
     ptrdiff_t cells[3];
     size_t cell_count, cell_capacity, column_capacity;
     uint32_t *column;     /* y + cells[1] z -> rank of the column of cells along x */
