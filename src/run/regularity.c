@@ -92,8 +92,8 @@ static void add(struct sums *sums, const struct place *place)
 
 /* ---- neighbours in 2D and 3D ---- */
 
-static void add_slot(struct sums *sums, const struct grid *grid, struct grid_reader *reader,
-                     size_t slot, double widest)
+static struct place see_slot(const struct sums *sums, const struct grid *grid,
+                             struct grid_reader *reader, size_t slot, double widest)
 {
     const struct regularity_cloud *cloud = sums->cloud;
     const struct grid_list *lists = grid_lists(grid);
@@ -115,26 +115,46 @@ static void add_slot(struct sums *sums, const struct grid *grid, struct grid_rea
         }
         see(sums, &place, &part);
     }
-    add(sums, &place);
+    return place;
+}
+
+enum { BLOCK = 65536 };
+
+/* Threads see the points of a block that begins at first; they are added in the order of the slots.
+ */
+static bool walk_block(struct sums *sums, const struct grid *grid, size_t first,
+                       const unsigned char *asleep, double widest, int threads, struct place *seen)
+{
+    const size_t n = sums->cloud->n;
+    const uint32_t *order = grid_order(grid);
+    bool enough = true;
+#pragma omp parallel num_threads(threads) if (threads > 1) reduction(&& : enough)
+    {
+        struct grid_reader reader = {0};
+        const bool reads = enough = grid_reader_reserve(grid, &reader);
+#pragma omp for schedule(dynamic, 256)
+        for (size_t slot = 0; slot < n; slot++)
+            if (reads && !asleep[order[slot]])
+                seen[order[slot] - first] = see_slot(sums, grid, &reader, slot, widest);
+        grid_reader_free(&reader);
+    }
+    for (size_t slot = 0; enough && slot < n; slot++)
+        if (!asleep[order[slot]]) add(sums, &seen[order[slot] - first]);
+    return enough;
 }
 
 /* Points are awake a block at a time, so that there are never the lists of all. */
 static enum status walk_blocks(struct sums *sums, struct grid *grid, unsigned char *asleep,
-                               double widest, struct error *error)
+                               double widest, int threads, struct place *seen, struct error *error)
 {
-    enum { BLOCK = 65536 };
     const struct regularity_cloud *cloud = sums->cloud;
-    struct grid_reader reader = {0};
     enum status status = STATUS_OK;
     for (size_t first = 0; !status && first < cloud->n; first += BLOCK) {
         for (size_t i = 0; i < cloud->n; i++) asleep[i] = i < first || i - first >= BLOCK;
         status = grid_search(grid, cloud->n, cloud->n, cloud->x, cloud->h, asleep, error);
-        if (!status && !grid_reader_reserve(grid, &reader))
+        if (!status && !walk_block(sums, grid, first, asleep, widest, threads, seen))
             status = error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", cloud->n);
-        for (size_t slot = 0; !status && slot < cloud->n; slot++)
-            if (!asleep[grid_order(grid)[slot]]) add_slot(sums, grid, &reader, slot, widest);
     }
-    grid_reader_free(&reader);
     return status;
 }
 
@@ -142,16 +162,20 @@ static enum status walk_grid(struct sums *sums, double widest, struct error *err
 {
     const struct regularity_cloud *cloud = sums->cloud;
     struct grid_box box = {.dim = cloud->box.dim};
+    const int threads = cloud->threads > 1 ? cloud->threads : 1;
     for (int d = 0; d < box.dim; d++) {
         box.lo[d] = cloud->box.lo[d];
         box.hi[d] = cloud->box.hi[d];
         box.periodic[d] = cloud->periodic[d];
     }
-    struct grid *grid = grid_create(&box, cloud->n, 1);
+    struct grid *grid = grid_create(&box, cloud->n, threads);
     unsigned char *asleep = malloc(cloud->n);
+    struct place *seen = malloc((cloud->n < BLOCK ? cloud->n : BLOCK) * sizeof *seen);
     const enum status status =
-        grid && asleep ? walk_blocks(sums, grid, asleep, widest, error)
-                       : error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", cloud->n);
+        grid && asleep && seen
+            ? walk_blocks(sums, grid, asleep, widest, threads, seen, error)
+            : error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", cloud->n);
+    free(seen);
     free(asleep);
     grid_destroy(grid);
     return status;
@@ -232,14 +256,15 @@ enum status regularity_measure(const struct regularity_cloud *cloud, struct regu
 }
 
 struct regularity regularity_of(const struct prepared *p, const struct kernel *kernel,
-                                const struct snapshot *s)
+                                const struct snapshot *s, int threads)
 {
     struct regularity_cloud cloud = {.box = p->domain,
                                      .n = s->n,
                                      .x = {s->x[0], s->x[1], s->x[2]},
                                      .volume = s->volume,
                                      .h = s->h,
-                                     .kernel = kernel};
+                                     .kernel = kernel,
+                                     .threads = threads};
     struct regularity found;
     struct error error;
     for (int d = 0; d < p->domain.dim; d++) cloud.periodic[d] = p->boundary[d] == BOUNDARY_PERIODIC;

@@ -18,6 +18,7 @@ struct regularity_cloud {
     const double *x[3];
     const double *volume, *h;
     const struct kernel *kernel;
+    int threads; /* that share the work in 2D and 3D; 0: one. The result does not depend on it */
 };
 
 /* Distances are in spacings: of the nearest neighbour over volume^(1/d), a neighbour further away
@@ -40,6 +41,6 @@ enum status regularity_measure(const struct regularity_cloud *cloud, struct regu
 
 /* Of a state of a run, with the kernel that the run has. NaN where it cannot be said. */
 struct regularity regularity_of(const struct prepared *p, const struct kernel *kernel,
-                                const struct snapshot *s);
+                                const struct snapshot *s, int threads);
 
 #endif

@@ -189,7 +189,8 @@ enum status run_execute(const struct run *run, struct run_result *result, struct
         return status;
     }
     run_measure_functionals(result);
-    result->regularity = regularity_of(&result->problem, &result->scheme.kernel, &result->snapshot);
+    result->regularity = regularity_of(&result->problem, &result->scheme.kernel, &result->snapshot,
+                                       run->asked.threads);
     result->peak_rss = peak_rss();
     if (result->status == STATUS_BROKE_DOWN)
         error_set(error, STATUS_BROKE_DOWN, "%s", result->message);

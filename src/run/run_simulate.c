@@ -81,8 +81,8 @@ static void keep_look(const struct watch *watch, double time)
 {
     struct snapshot seen;
     simulation_snapshot(watch->simulation, &seen);
-    const struct regularity regularity =
-        regularity_of(&watch->run->problem, &watch->run->scheme.kernel, &seen);
+    const struct regularity regularity = regularity_of(
+        &watch->run->problem, &watch->run->scheme.kernel, &seen, watch->run->asked.threads);
     trace_see(watch->run->asked.trace, time, &regularity);
 }
 

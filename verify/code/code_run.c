@@ -253,7 +253,7 @@ static enum status complete(struct course *course, struct error *error)
     } else {
         result->regularity = regularity_of(
             &result->problem, found->known ? &found->candidate[0].kernel : &run->scheme.kernel,
-            &result->snapshot);
+            &result->snapshot, 1);
     }
     result->cost.wall_s = course->outcome.wall_s;
     result->cost.cpu_s = course->outcome.cpu_s;

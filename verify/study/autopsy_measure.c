@@ -443,7 +443,7 @@ enum status autopsy_measure_theirs(const struct run *run, const struct run_resul
     *level = (struct autopsy_level){0};
     for (int k = 0; k < 3; k++) level->error[k] = result->errors[FIELD_VELOCITY].l1;
     const struct regularity seen =
-        regularity_of(&run->problem, &run->scheme.kernel, &result->snapshot);
+        regularity_of(&run->problem, &run->scheme.kernel, &result->snapshot, run->asked.threads);
     const enum status status = look_at_result(&plain, result, &seen, level, error);
     if (!status) divide(level);
     return status;

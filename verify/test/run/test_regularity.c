@@ -180,16 +180,19 @@ TEST(blocks_of_points)
         volume[i] = 1;
         h[i] = 1.25;
     }
-    const struct regularity_cloud cloud = {.box = {2, {0, 0}, {SIDE, SIDE}},
-                                           .periodic = {true, true},
-                                           .n = N,
-                                           .x = {x, y},
-                                           .volume = volume,
-                                           .h = h,
-                                           .kernel = &kernel};
-    struct regularity found;
+    struct regularity_cloud cloud = {.box = {2, {0, 0}, {SIDE, SIDE}},
+                                     .periodic = {true, true},
+                                     .n = N,
+                                     .x = {x, y},
+                                     .volume = volume,
+                                     .h = h,
+                                     .kernel = &kernel};
+    struct regularity found, shared;
     struct error error;
     assert_int_equal(regularity_measure(&cloud, &found, &error), STATUS_OK);
+    cloud.threads = 3;
+    assert_int_equal(regularity_measure(&cloud, &shared, &error), STATUS_OK);
+    assert_memory_equal(&found, &shared, sizeof found);
     /* a pair is an eighth apart; the next of the lattice is nearer to the other one */
     near_relative(found.paired, 2. * EXTRA / N, 1e-14);
     near_relative(found.nearest, (N - 3. * EXTRA + EXTRA * (2 * 0.125 + 0.875)) / N, 1e-12);
@@ -213,7 +216,7 @@ TEST(of_a_run)
                                                .volume = volume,
                                                .h = h,
                                                .kernel = &kernel};
-        const struct regularity found = regularity_of(&p, &kernel, &s), want = directly(&cloud);
+        const struct regularity found = regularity_of(&p, &kernel, &s, 1), want = directly(&cloud);
         near_relative(found.nearest, want.nearest, 1e-15);
         near_relative(found.spread, want.spread, 1e-14);
         assert_true(found.paired == 0);
@@ -238,14 +241,15 @@ TEST(of_a_run)
                                              .kernel = &kernel};
             p.boundary[d] = BOUNDARY_PERIODIC;
             cloud.periodic[d] = true;
-            const struct regularity found = regularity_of(&p, &kernel, &s), want = directly(&cloud);
+            const struct regularity found = regularity_of(&p, &kernel, &s, 1),
+                                    want = directly(&cloud);
             near_relative(found.nearest, want.nearest, 1e-15);
             near_relative(found.spread, want.spread, 1e-14);
         }
     }
     s.n = 0;
     const struct prepared p = {.domain = {1, {0}, {2}}};
-    const struct regularity none = regularity_of(&p, &kernel, &s);
+    const struct regularity none = regularity_of(&p, &kernel, &s, 1);
     assert_true(isnan(none.nearest) && isnan(none.spread) && isnan(none.paired) &&
                 isnan(none.density) && isnan(none.gradient));
     json_t *json = trace_regularity_json(&(struct regularity){1, 2, 3, 4, NAN});
