@@ -80,11 +80,15 @@ static double usual_radius(size_t n, const double *radius)
 {
     double sample[SAMPLE], widest = 0;
     const size_t count = n < SAMPLE ? n : SAMPLE;
-    for (size_t k = 0; k < count; k++) sample[k] = radius[k * n / count];
-    qsort(sample, count, sizeof *sample, compare_doubles);
-    const double usual = sample[count * 3 / 4];
     for (size_t i = 0; i < n; i++) widest = radius[i] > widest ? radius[i] : widest;
-    return widest <= 1.2 * usual ? widest : usual;
+    size_t wide = 0;
+    for (size_t k = 0; k < count; k++) {
+        sample[k] = radius[k * n / count];
+        wide += widest <= 1.2 * sample[k];
+    }
+    if (wide >= count - count * 3 / 4) return widest; /* mostly: nothing is sorted */
+    qsort(sample, count, sizeof *sample, compare_doubles);
+    return sample[count * 3 / 4];
 }
 
 static enum status find_extent(struct grid *grid, size_t n, const double *const x[],
@@ -182,23 +186,6 @@ static double wrapped(double x, double lo, double side)
     return y < lo + side ? y : lo;
 }
 
-/* Single precision is enough for the search where it starts at the middle of a cell. */
-static void place_in_cells(struct grid *grid)
-{
-    const double scale = 1 / grid->unit;
-    for (size_t cell = 0; cell < grid->cell_count; cell++) {
-        ptrdiff_t c[3];
-        if (grid->start[cell] == grid->start[cell + 1]) continue;
-        grid_cell_coordinates(grid, cell, c);
-        for (int a = 0; a < 3; a++) {
-            const double middle = grid->lo[a] + ((double)c[a] + 0.5) * grid->size[a];
-            for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++)
-                grid->place[a][s] =
-                    a < grid->box.dim ? (float)((grid->position[s][a] - middle) * scale) : 0;
-        }
-    }
-}
-
 /* How far off a distance may come out in single precision, in units: places are at most half a
  * cell, and moved by whole cells. Counts where cells are many radii large, as those of points that
  * are together in a small part of a periodic box: lists then hold more than they need, never less.
@@ -211,10 +198,10 @@ static double rounding_of(const struct grid *grid)
 }
 
 /* A counting sort: stable, so that points of a cell keep their order. */
-static void sort_points(struct grid *grid, size_t n, const double *const x[], const double *radius)
+static void sort_points(struct grid *grid, size_t n, const double *const x[])
 {
     const int dim = grid->box.dim;
-    memset(grid->start, 0, (grid->cell_count + 1) * sizeof *grid->start);
+#pragma omp parallel for num_threads(grid->team) if (grid->team > 1)
     for (size_t i = 0; i < n; i++) {
         ptrdiff_t c[3] = {0};
         for (int a = 0; a < dim; a++) {
@@ -224,33 +211,55 @@ static void sort_points(struct grid *grid, size_t n, const double *const x[], co
             c[a] = k < grid->cells[a] ? k : grid->cells[a] - 1;
         }
         grid->cell_of[i] = (uint32_t)grid_cell_at(grid, c);
-        grid->start[grid->cell_of[i] + 1]++;
     }
+    memset(grid->start, 0, (grid->cell_count + 1) * sizeof *grid->start);
+    for (size_t i = 0; i < n; i++) grid->start[grid->cell_of[i] + 1]++;
     for (size_t c = 0; c < grid->cell_count; c++) grid->start[c + 1] += grid->start[c];
     for (size_t i = 0; i < n; i++) grid->order[grid->start[grid->cell_of[i]]++] = (uint32_t)i;
     memmove(grid->start + 1, grid->start, grid->cell_count * sizeof *grid->start);
     grid->start[0] = 0;
-    for (size_t c = 0; c < grid->cell_count; c++) grid->widest[c] = 0;
-    const double rounding = rounding_of(grid);
-    for (size_t s = 0; s < n; s++) {
-        const size_t i = grid->order[s];
-        for (int a = 0; a < 3; a++)
-            grid->position[s][a] = a >= dim ? 0
-                                   : grid->box.periodic[a]
-                                       ? wrapped(x[a][i], grid->lo[a], grid->side[a])
-                                       : x[a][i];
-        const double units = radius[i] / grid->unit;
-        const float reach = (float)fmax(units * (1 + 1e-5), units + rounding);
-        float *widest = &grid->widest[grid->cell_of[i]];
-        grid->radius2[s] = reach * reach;
-        *widest = reach > *widest ? reach : *widest;
+}
+
+/* Positions and radii of the points by slot, and the widest radius of each cell. Single precision
+ * is enough for the search where it starts at the middle of a cell. */
+static void place_in_cells(struct grid *grid, const double *const x[], const double *radius)
+{
+    const int dim = grid->box.dim;
+    const double scale = 1 / grid->unit, rounding = rounding_of(grid);
+#pragma omp parallel for num_threads(grid->team) if (grid->team > 1)
+    for (size_t cell = 0; cell < grid->cell_count; cell++) {
+        ptrdiff_t c[3];
+        double middle[3];
+        float widest = grid->widest[cell] = 0;
+        if (grid->start[cell] == grid->start[cell + 1]) continue;
+        grid_cell_coordinates(grid, cell, c);
+        for (int a = 0; a < 3; a++) middle[a] = grid->lo[a] + ((double)c[a] + 0.5) * grid->size[a];
+        for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++) {
+            const size_t i = grid->order[s];
+            for (int a = 0; a < 3; a++) {
+                grid->position[s][a] = a >= dim ? 0
+                                       : grid->box.periodic[a]
+                                           ? wrapped(x[a][i], grid->lo[a], grid->side[a])
+                                           : x[a][i];
+                grid->place[a][s] =
+                    a < dim ? (float)((grid->position[s][a] - middle[a]) * scale) : 0;
+            }
+            const double units = radius[i] / grid->unit;
+            const float reach = (float)fmax(units * (1 + 1e-5), units + rounding);
+            grid->radius2[s] = reach * reach;
+            widest = reach > widest ? reach : widest;
+        }
+        grid->widest[cell] = widest;
     }
-    place_in_cells(grid);
-    /* the sentinel: far from everything, at any image */
-    for (int a = 0; a < 3; a++) grid->position[n][a] = 0;
+}
+
+/* The sentinel: far from everything, at any image. */
+static void place_sentinel(struct grid *grid, size_t n, const double *radius)
+{
     double far = 0;
-    for (int a = 0; a < dim; a++) far = fmax(far, fabs(grid->lo[a]) + grid->side[a]);
-    for (size_t i = 0; i < n; i++) far = fmax(far, radius[i]);
+    for (int a = 0; a < 3; a++) grid->position[n][a] = 0;
+    for (int a = 0; a < grid->box.dim; a++) far = fmax(far, fabs(grid->lo[a]) + grid->side[a]);
+    for (size_t i = 0; i < n; i++) far = radius[i] > far ? radius[i] : far;
     grid->position[n][0] = 64 * far;
 }
 
@@ -342,7 +351,9 @@ enum status grid_search(struct grid *grid, size_t n, size_t active, const double
     if (!status) status = lay_cells(grid, n, radius, error);
     if (status) return status;
     grid->n = n;
-    sort_points(grid, n, x, radius);
+    sort_points(grid, n, x);
+    place_in_cells(grid, x, radius);
+    place_sentinel(grid, n, radius);
     find_reaches(grid);
     cut_parts(grid);
     grid->flags = flags;
