@@ -462,7 +462,7 @@ static void add_turning(const struct simulation *simulation, struct conservation
     sums->turning_scale = (double)sound;
 }
 
-void simulation_conservation(const struct simulation *simulation, struct conservation *sums)
+static void add_straight(const struct simulation *simulation, struct conservation *sums)
 {
     const struct particles *a = &simulation->particles;
     const bool total = simulation->scheme.energy == ENERGY_TOTAL;
@@ -481,15 +481,27 @@ void simulation_conservation(const struct simulation *simulation, struct conserv
             kinetic += 0.5L * p * p / a->m[i];
         }
     }
-    *sums = (struct conservation){
-        .mass = (double)mass,
-        .momentum = {(double)momentum[0], (double)momentum[1], (double)momentum[2]},
-        .momentum_scale = (double)momentum_scale,
-        .sound_scale = (double)sound,
-        .energy = (double)energy,
-        .kinetic = (double)kinetic,
-    };
-    if (a->dim > 1) add_turning(simulation, sums);
+    for (int k = 0; k < 3; k++) sums->momentum[k] = (double)momentum[k];
+    sums->mass = (double)mass;
+    sums->momentum_scale = (double)momentum_scale;
+    sums->sound_scale = (double)sound;
+    sums->energy = (double)energy;
+    sums->kinetic = (double)kinetic;
+}
+
+/* Two threads at most, each with sums of its own: in any other order they would come out otherwise.
+ */
+void simulation_conservation(const struct simulation *simulation, struct conservation *sums)
+{
+    const struct particles *a = &simulation->particles;
+    const bool shared = simulation->team.size > 1 && a->n >= WORTH_A_THREAD * BATCH_MAX;
+    *sums = (struct conservation){0};
+#pragma omp parallel sections num_threads(simulation->team.size) if (shared && a->dim > 1)
+    {
+        add_straight(simulation, sums);
+#pragma omp section
+        if (a->dim > 1) add_turning(simulation, sums);
+    }
 }
 
 void simulation_cost(const struct simulation *simulation, struct simulation_cost *cost)
