@@ -379,12 +379,11 @@ CLONES static void find_angles_3(int count, double h_inverse, const double *C,
 
 ALWAYS_INLINE void describe_neighbours(int dim, const struct cells *cells, size_t slot,
                                        double h_inverse, const double C[CELLS_SQUARE], bool used,
-                                       struct description *of)
+                                       struct grid_reader *reader, struct description *of)
 {
     const struct grid_list *list = &cells->lists[slot];
     const int32_t *slots = /* an inactive particle has no list */
-        list->kept ? grid_neighbours(cells->grid, &cells->lanes[0].reader, cells->lists, slot)
-                   : NULL;
+        list->kept ? grid_neighbours(cells->grid, reader, cells->lists, slot) : NULL;
     struct directions at;
     double least = HUGE_VAL;
     for (int32_t from = 0; from < list->count; from += AT_ONCE) {
@@ -407,25 +406,32 @@ ALWAYS_INLINE void describe_neighbours(int dim, const struct cells *cells, size_
 }
 
 static struct description describe(const struct cells *cells, const struct cells_fields *fields,
-                                   size_t slot, size_t i)
+                                   size_t slot, size_t i, struct grid_reader *reader)
 {
     double C[CELLS_SQUARE] = {0};
     struct description of = {.neighbours = 1, .condition = condition_of(cells, fields, i, C)};
     const bool used = of.condition <= cells->method.worst_condition;
     if (cells->method.box.dim == 2)
-        describe_neighbours(2, cells, slot, fields->h_inverse[i], C, used, &of);
+        describe_neighbours(2, cells, slot, fields->h_inverse[i], C, used, reader, &of);
     else
-        describe_neighbours(3, cells, slot, fields->h_inverse[i], C, used, &of);
+        describe_neighbours(3, cells, slot, fields->h_inverse[i], C, used, reader, &of);
     return of;
 }
 
 void cells_describe(const struct cells *cells, const struct cells_fields *fields,
                     description_visit *visit, void *context)
 {
-    for (size_t slot = 0; slot < cells->points; slot++) {
-        const size_t i = cells->order[slot];
-        if (i >= fields->n) continue;
-        const struct description of = describe(cells, fields, slot, i);
-        visit(context, i, &of);
+    enum { DESCRIBED = 1024 }; /* that threads share before they are visited */
+    struct description of[DESCRIBED];
+    for (size_t first = 0; first < cells->points; first += DESCRIBED) {
+        const size_t left = cells->points - first, count = left < DESCRIBED ? left : DESCRIBED;
+        const uint32_t *order = cells->order + first;
+#pragma omp parallel for num_threads(cells->team) schedule(dynamic, 64) if (cells->team > 1)
+        for (size_t k = 0; k < count; k++)
+            if (order[k] < fields->n)
+                of[k] = describe(cells, fields, first + k, order[k],
+                                 &cells->lanes[lanes_thread()].reader);
+        for (size_t k = 0; k < count; k++)
+            if (order[k] < fields->n) visit(context, order[k], &of[k]);
     }
 }

@@ -4,10 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include "specialise.h"
 
 int lanes_longest_record(const struct cells *cells)
@@ -199,11 +195,7 @@ void lanes_all(struct cells *cells, const struct cells_fields *fields, lanes_pas
     const size_t parts = grid_parts(cells->grid, &begin);
 #pragma omp parallel for num_threads(cells->team) schedule(dynamic) if (cells->team > 1)
     for (size_t p = 0; p < parts; p++) {
-#ifdef _OPENMP
-        struct lanes *lanes = &cells->lanes[omp_get_thread_num()];
-#else
-        struct lanes *lanes = &cells->lanes[0];
-#endif
+        struct lanes *lanes = &cells->lanes[lanes_thread()];
         for (size_t slot = begin[p]; slot < begin[p + 1]; slot++)
             if (cells->lists[slot].kept) pass(cells, fields, slot, lanes);
     }

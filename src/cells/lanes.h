@@ -4,6 +4,10 @@
 #ifndef SPHPROOF_LANES_H
 #define SPHPROOF_LANES_H
 
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
 #include "cells.h"
 #include "gather.h"
 #include "reactions.h"
@@ -141,6 +145,16 @@ struct cells {
     unsigned char *asleep;
     struct reactions reactions;
 };
+
+/* The number of the calling thread, whose lanes are its own. */
+static inline int lanes_thread(void)
+{
+#ifdef _OPENMP
+    return omp_get_thread_num();
+#else
+    return 0;
+#endif
+}
 
 /* Values of a reaction. */
 static inline int cells_reaction_values(const struct cells_method *method)

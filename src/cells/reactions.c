@@ -4,10 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include "lanes.h"
 #include "pages.h"
 #include "specialise.h"
@@ -91,11 +87,7 @@ void reactions_all(struct cells *cells, const struct cells_fields *fields, lanes
     }
 #pragma omp parallel for num_threads(cells->team) schedule(dynamic) if (cells->team > 1)
     for (size_t c = 0; c < reactions->chunks; c++) {
-#ifdef _OPENMP
-        struct lanes *lanes = &cells->lanes[omp_get_thread_num()];
-#else
-        struct lanes *lanes = &cells->lanes[0];
-#endif
+        struct lanes *lanes = &cells->lanes[lanes_thread()];
         work(cells, fields, c, lanes, pass);
     }
 }
