@@ -14,15 +14,15 @@
 static inline struct simulation *made_simulation(size_t n)
 {
     double *storage = malloc(4 * n * sizeof *storage);
-    double *x = storage, *v = x + n, *m = v + n, *u = m + n;
+    double *place = storage, *velocity = place + n, *mass = velocity + n, *energy = mass + n;
     struct settings settings;
     struct simulation *simulation = NULL;
     struct error error = {0};
     for (size_t i = 0; i < n; i++) {
-        x[i] = ((double)i + 0.5) / (double)n;
-        v[i] = 0.1 * sin(2 * M_PI * x[i]);
-        m[i] = (1 + 0.1 * cos(2 * M_PI * x[i])) / (double)n;
-        u[i] = 1 + 0.2 * sin(4 * M_PI * x[i]);
+        place[i] = ((double)i + 0.5) / (double)n;
+        velocity[i] = 0.1 * sin(2 * M_PI * place[i]);
+        mass[i] = (1 + 0.1 * cos(2 * M_PI * place[i])) / (double)n;
+        energy[i] = 1 + 0.2 * sin(4 * M_PI * place[i]);
     }
     struct setup setup = {.dim = 1,
                           .lo = {0},
@@ -30,10 +30,10 @@ static inline struct simulation *made_simulation(size_t n)
                           .gamma = 1.4,
                           .t_end = 1,
                           .n = n,
-                          .x = {x},
-                          .v = {v},
-                          .m = m,
-                          .u = u,
+                          .x = {place},
+                          .v = {velocity},
+                          .m = mass,
+                          .u = energy,
                           .threads = 1};
     settings_init(&settings);
     if (settings_scheme(&settings, 1, &setup.scheme, &error) ||
@@ -43,10 +43,13 @@ static inline struct simulation *made_simulation(size_t n)
     return simulation;
 }
 
-static inline void made_run(struct simulation *simulation, double t_end)
+/* progress: NULL, or called with the simulation itself. */
+static inline void made_run(struct simulation *simulation, double t_end,
+                            simulation_progress *progress)
 {
     struct error error;
-    if (simulation_run(simulation, t_end, NULL, NULL, &error)) fail_msg("%s", error.message);
+    if (simulation_run(simulation, t_end, progress, simulation, &error))
+        fail_msg("%s", error.message);
 }
 
 /* Are both in the same state, to the last bit? */
@@ -56,9 +59,12 @@ static inline bool made_alike(const struct simulation *a, const struct simulatio
     simulation_snapshot(a, &s);
     simulation_snapshot(b, &t);
     bool alike = s.n == t.n && s.time == t.time;
-    for (size_t i = 0; i < s.n && alike; i++)
-        alike = s.x[0][i] == t.x[0][i] && s.v[0][i] == t.v[0][i] && s.u[i] == t.u[i] &&
-                s.h[i] == t.h[i] && s.rho[i] == t.rho[i];
+    for (size_t i = 0; i < s.n && alike; i++) {
+        alike = s.id[i] == t.id[i] && s.m[i] == t.m[i] && s.u[i] == t.u[i] && s.h[i] == t.h[i] &&
+                s.rho[i] == t.rho[i];
+        for (int k = 0; k < 3 && s.x[k]; k++)
+            alike &= s.x[k][i] == t.x[k][i] && s.v[k][i] == t.v[k][i];
+    }
     return alike;
 }
 

@@ -6,41 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "made_scheme.h"
+#include "made_lattice.h"
 #include "near.h"
 #include "solver.h"
 
 #include "cells/cells.h"
-
-enum { N = 1024 };
-
-static double x[3][N], v[3][N], m[N], u[N];
-
-/* A lattice of so many particles each way in a box of side 1, displaced by so much of its spacing;
- * at rest. */
-static struct setup setup_of(int dim, size_t side, double displaced, const struct scheme *scheme)
-{
-    struct setup setup = {.dim = dim,
-                          .hi = {1, 1, 1},
-                          .gamma = 1.4,
-                          .t_end = 1,
-                          .n = dim == 2 ? side * side : side * side * side,
-                          .m = m,
-                          .u = u,
-                          .scheme = *scheme,
-                          .threads = 1};
-    assert_true(setup.n <= N);
-    for (size_t i = 0, at = 0; i < setup.n; at = ++i) {
-        m[i] = 1. / (double)setup.n, u[i] = 1;
-        for (int a = 0; a < dim; a++, at /= side) {
-            x[a][i] =
-                ((double)(at % side) + 0.5 + displaced * sin(7. * (double)i + a)) / (double)side;
-            v[a][i] = 0;
-        }
-    }
-    for (int a = 0; a < dim; a++) setup.x[a] = x[a], setup.v[a] = v[a];
-    return setup;
-}
 
 static void find_forces(struct simulation *simulation)
 {
@@ -58,7 +28,7 @@ TEST(test_beta)
             struct scheme scheme = made_scheme();
             scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
             scheme.alpha = numbers[k][0], scheme.beta = numbers[k][1];
-            struct setup setup = setup_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
+            struct setup setup = lattice_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
             for (size_t i = 0; i < setup.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
             struct simulation *simulation = made_of(&setup);
             const struct particles *p = &simulation->particles;
@@ -87,7 +57,7 @@ TEST(test_balsara)
                 scheme.balsara = friction == 2 ? BALSARA_ON : BALSARA_OFF;
                 scheme.balsara_floor = floors[k];
                 const size_t side = dim == 2 ? 15 : 9;
-                struct setup setup = setup_of(dim, side, 0, &scheme);
+                struct setup setup = lattice_of(dim, side, 0, &scheme);
                 for (int a = 0; a < dim; a++) setup.boundary[a] = BOUNDARY_OPEN;
                 for (size_t i = 0; i < setup.n; i++)
                     for (int a = 0; a < dim; a++)
@@ -137,7 +107,7 @@ TEST(test_signals)
         const int dim = 2 + k % 2;
         const double unit = k < 2 ? 1 : 1e-10; /* of speeds: cold gas */
         const struct scheme scheme = made_scheme();
-        struct setup setup = setup_of(dim, dim == 2 ? 14 : 6, 0.2, &scheme);
+        struct setup setup = lattice_of(dim, dim == 2 ? 14 : 6, 0.2, &scheme);
         for (size_t i = 0; i < setup.n; i++) {
             u[i] = unit * unit * exp(2 * sin(5. * (double)i));
             for (int a = 0; a < dim; a++) v[a][i] = unit * 3 * sin(2 * M_PI * x[a][i] + a);
@@ -183,7 +153,7 @@ TEST(test_lagrangian)
             scheme.formulation = FORMULATION_LAGRANGIAN;
             scheme.volume_element = (enum volume_element)e;
             scheme.energy = ENERGY_INTERNAL;
-            struct setup setup = setup_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
+            struct setup setup = lattice_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
             for (size_t i = 0; i < setup.n; i++) {
                 m[i] *= 1 + 0.2 * sin(3. * (double)i), u[i] = 1 + 0.3 * sin(5. * (double)i);
                 for (int a = 0; a < dim; a++) v[a][i] = sin(11. * (double)i + a);
@@ -265,7 +235,7 @@ TEST(test_equal_masses)
             struct scheme scheme = made_scheme();
             scheme.formulation = FORMULATION_LAGRANGIAN;
             scheme.volume_element = number ? VOLUME_NUMBER : VOLUME_MASS;
-            const struct setup setup = setup_of(dim, dim == 2 ? 16 : 8, 0.2, &scheme);
+            const struct setup setup = lattice_of(dim, dim == 2 ? 16 : 8, 0.2, &scheme);
             struct simulation *simulation = made_of(&setup);
             const struct particles *p = &simulation->particles;
             const double *const found[] = {p->F[0], p->F[1], p->de, p->h, p->grad_h};
@@ -291,7 +261,7 @@ TEST(test_axes_are_alike)
             scheme.viscosity = g % 2 ? VISCOSITY_PROJECTED : VISCOSITY_CONSTANT;
             scheme.noise = 0.4;
             for (int turned = 0; turned < 2; turned++) {
-                struct setup setup = setup_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
+                struct setup setup = lattice_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
                 for (int a = 0; a < dim; a++) {
                     setup.boundary[a] = BOUNDARY_REFLECTING;
                     for (size_t i = 0; i < setup.n; i++) v[a][i] = sin((2. + a) * x[0][i] + a);
@@ -322,7 +292,7 @@ TEST(test_fallen_back)
     struct scheme scheme = made_scheme();
     scheme.gradient = GRADIENT_IA;
     for (int dim = 2; dim <= 3; dim++) {
-        struct setup setup = setup_of(dim, 6, 0, &scheme);
+        struct setup setup = lattice_of(dim, 6, 0, &scheme);
         for (int a = 0; a < dim; a++) setup.boundary[a] = BOUNDARY_OPEN;
         setup.n = 20;
         for (size_t i = 0; i < setup.n; i++)
@@ -337,18 +307,6 @@ TEST(test_fallen_back)
         }
         simulation_destroy(simulation);
     }
-}
-
-/* A periodic box 8 particles wide and 128 long. */
-static struct setup long_box(const struct scheme *scheme)
-{
-    struct setup setup = setup_of(2, 8, 0, scheme);
-    setup.n = 1024, setup.hi[1] = 16, setup.skip = true;
-    for (size_t i = 0; i < setup.n; i++) {
-        x[0][i] = ((double)(i % 8) + 0.5) / 8, x[1][i] = ((double)(i / 8) + 0.5) / 8;
-        m[i] = 1. / 64, u[i] = 1, v[0][i] = v[1][i] = 0;
-    }
-    return setup;
 }
 
 /* Adds whoever has a neighbour in the set. Returns how many are in it. */
@@ -374,7 +332,7 @@ TEST(test_awake)
     const struct scheme scheme = made_scheme();
     for (size_t row = 0; row < 30; row += 3) {
         bool pushed[1024], near[1024];
-        const struct setup setup = long_box(&scheme);
+        const struct setup setup = long_box_of(&scheme);
         u[8 * row] = 3;
         struct simulation *simulation = made_of(&setup);
         const struct particles *p = &simulation->particles;
@@ -393,7 +351,7 @@ TEST(test_shared_out)
 {
     const struct scheme scheme = made_scheme();
     for (int size = 0; size < 2; size++) {
-        const struct setup setup = long_box(&scheme);
+        const struct setup setup = long_box_of(&scheme);
         u[8 * 20] = 3;
         struct simulation *simulation = made_of(&setup);
         const struct particles *p = &simulation->particles;
@@ -422,7 +380,7 @@ TEST(test_awake_in_flow)
 {
     const struct scheme scheme = made_scheme();
     for (int boosted = 0; boosted < 2; boosted++) {
-        const struct setup setup = long_box(&scheme);
+        const struct setup setup = long_box_of(&scheme);
         for (size_t i = 0; i < setup.n; i++)
             v[0][i] = boosted + (i < setup.n / 2 ? 1e-8 : 0), v[1][i] = 2 * boosted;
         struct simulation *simulation = made_of(&setup);
@@ -454,13 +412,11 @@ TEST(test_asleep_again)
     double ends[2][256];
     for (int skip = 0; skip < 2; skip++) {
         const struct scheme scheme = made_scheme();
-        struct setup setup = setup_of(2, 16, 0, &scheme);
+        struct setup setup = lattice_of(2, 16, 0, &scheme);
         struct seen seen = {0};
         struct snapshot s;
         setup.skip = skip;
         for (size_t i = 0; i < 256; i++) {
-            x[0][i] = ((double)(i % 16) + 0.5) / 16, x[1][i] = ((double)(i / 16) + 0.5) / 16;
-            m[i] = 1. / 256, u[i] = 1, v[1][i] = 0;
             v[0][i] = (i + i / 16) % 2 ? 1e-9 : -1e-9;
         }
         seen.simulation = made_of(&setup);

@@ -9,38 +9,20 @@
 #include <string.h>
 
 #include "made_bytes.h"
-#include "made_scheme.h"
+#include "made_lattice.h"
 #include "near.h"
 #include "solver.h"
 #include "width.h"
 
 #include "grid.h"
 
-enum { N = 1024 };
+static double guess[N];
 
-static double x[3][N], v[3][N], m[N], u[N], guess[N];
-
-/* A displaced lattice of so many particles each way in a periodic box of side 1, at rest. */
+/* The displaced lattice, with masses that differ. */
 static struct setup setup_of(int dim, size_t side, const struct scheme *scheme)
 {
-    struct setup setup = {.dim = dim,
-                          .hi = {1, 1, 1},
-                          .gamma = 1.4,
-                          .t_end = 1,
-                          .n = dim == 2 ? side * side : side * side * side,
-                          .m = m,
-                          .u = u,
-                          .scheme = *scheme,
-                          .threads = 1};
-    assert_true(setup.n <= N);
-    for (size_t i = 0, at = 0; i < setup.n; at = ++i) {
-        m[i] = (1 + 0.1 * sin(2. * (double)i)) / (double)setup.n, u[i] = 1;
-        for (int a = 0; a < dim; a++, at /= side) {
-            x[a][i] = ((double)(at % side) + 0.5 + 0.2 * sin(7. * (double)i + a)) / (double)side;
-            v[a][i] = 0;
-        }
-    }
-    for (int a = 0; a < dim; a++) setup.x[a] = x[a], setup.v[a] = v[a];
+    const struct setup setup = lattice_of(dim, side, 0.2, scheme);
+    for (size_t i = 0; i < setup.n; i++) m[i] *= 1 + 0.1 * sin(2. * (double)i);
     return setup;
 }
 
@@ -97,13 +79,9 @@ TEST(test_carried)
                 (const struct integrator *)family_find(&integrator_family, "predicted_midpoint");
             scheme.h_method = H_PREDICTED;
         }
-        struct setup setup = setup_of(2, 8, &scheme);
-        setup.n = 1024, setup.hi[1] = 16, setup.skip = true;
-        for (size_t i = 0; i < setup.n; i++) {
-            x[0][i] = ((double)(i % 8) + 0.5) / 8, x[1][i] = ((double)(i / 8) + 0.5) / 8;
-            m[i] = 1. / 64, u[i] = i == 0 ? 3 : 1;
-            v[0][i] = moving ? 1.5 : 0, v[1][i] = moving ? 0.7 : 0;
-        }
+        const struct setup setup = long_box_of(&scheme);
+        u[0] = 3;
+        for (size_t i = 0; moving && i < setup.n; i++) v[0][i] = 1.5, v[1][i] = 0.7;
         struct simulation *first = made_of(&setup), *second = made_of(&setup);
         uint64_t from = moving ? 30 : 0; /* sorted once more */
         assert_int_equal(simulation_run(first, 1, ten_steps, &from, NULL), STATUS_OK);

@@ -10,14 +10,12 @@
 #include <string.h>
 
 #include "made_bytes.h"
-#include "made_scheme.h"
+#include "made_lattice.h"
+#include "made_simulation.h"
 #include "near.h"
 #include "settings.h"
 #include "solver.h"
 
-enum { N = 1024 };
-
-static double x[3][N], v[3][N], m[N], u[N];
 static uint64_t seed;
 
 static double draw(double low, double high)
@@ -53,27 +51,17 @@ static struct scheme scheme_with(int dim, const char *keys)
 static struct setup setup_of(int dim, size_t side, double jitter, double heat, bool smooth,
                              const struct scheme *scheme)
 {
-    struct setup setup = {.dim = dim,
-                          .hi = {1, 1, 1},
-                          .gamma = 1.4,
-                          .t_end = 1,
-                          .m = m,
-                          .u = u,
-                          .scheme = *scheme,
-                          .threads = 1};
-    setup.n = dim == 2 ? side * side : side * side * side;
-    assert_true(setup.n <= N);
-    for (size_t i = 0, at = 0; i < setup.n; at = ++i) {
+    const struct setup setup = lattice_of(dim, side, 0, scheme);
+    for (size_t i = 0; i < setup.n; i++) {
         double r2 = 0;
-        for (int a = 0; a < dim; a++, at /= side) {
-            x[a][i] = ((double)(at % side) + 0.5 + draw(-jitter, jitter)) / (double)side;
+        for (int a = 0; a < dim; a++) {
+            x[a][i] += draw(-jitter, jitter) / (double)side;
             v[a][i] = jitter * draw(-1, 1);
             r2 += (x[a][i] - 0.5) * (x[a][i] - 0.5);
         }
-        m[i] = (1 + jitter * draw(-1, 1)) / (double)setup.n;
+        m[i] *= 1 + jitter * draw(-1, 1);
         u[i] = smooth ? 1 + heat * exp(-r2 / 0.03) : sqrt(r2) < 0.15 ? 1 + heat : 1;
     }
-    for (int a = 0; a < dim; a++) setup.x[a] = x[a], setup.v[a] = v[a];
     return setup;
 }
 
@@ -83,27 +71,6 @@ static struct simulation *blocks_of(const struct setup *setup)
     struct simulation *simulation = made_of(setup);
     simulation->steps.worth = 0.9;
     return simulation;
-}
-
-static void run_to(struct simulation *simulation, double t_end, simulation_progress *progress)
-{
-    struct error error = {0};
-    if (simulation_run(simulation, t_end, progress, simulation, &error))
-        fail_msg("%s", error.message);
-}
-
-static bool alike(const struct simulation *a, const struct simulation *b)
-{
-    struct snapshot s, t;
-    simulation_snapshot(a, &s);
-    simulation_snapshot(b, &t);
-    bool same = s.n == t.n && s.time == t.time;
-    for (size_t i = 0; same && i < s.n; i++) {
-        same = s.id[i] == t.id[i] && s.u[i] == t.u[i] && s.rho[i] == t.rho[i] && s.h[i] == t.h[i];
-        for (int k = 0; k < a->plan.dim; k++)
-            same &= s.x[k][i] == t.x[k][i] && s.v[k][i] == t.v[k][i];
-    }
-    return same;
 }
 
 static const char *const schemes[] = {
@@ -130,7 +97,7 @@ TEST(keeps_momentum_and_energy)
         struct conservation before, after;
         struct simulation_cost cost;
         simulation_conservation(simulation, &before);
-        run_to(simulation, 1 / sqrt(heat[k / 2]), NULL);
+        made_run(simulation, 1 / sqrt(heat[k / 2]), NULL);
         simulation_conservation(simulation, &after);
         simulation_cost(simulation, &cost);
         for (int a = 0; a < dim; a++)
@@ -154,12 +121,12 @@ TEST(threads_do_not_matter)
     seed = 7;
     struct setup setup = setup_of(2, 32, 0.2, 300, false, &scheme);
     struct simulation *one = blocks_of(&setup);
-    run_to(one, 0.016, NULL);
+    made_run(one, 0.016, NULL);
     for (int threads = 2; threads <= 3; threads++) {
         setup.threads = threads;
         struct simulation *more = blocks_of(&setup);
-        run_to(more, 0.016, NULL);
-        assert_true(alike(one, more));
+        made_run(more, 0.016, NULL);
+        assert_true(made_alike(one, more));
         simulation_destroy(more);
     }
     simulation_destroy(one);
@@ -177,12 +144,12 @@ TEST(one_level_is_global)
             seed = 5;
             const struct setup setup = setup_of(2, 16, 0.02, 0, true, &scheme);
             both[local] = blocks_of(&setup);
-            run_to(both[local], 0.2, NULL);
+            made_run(both[local], 0.2, NULL);
         }
         assert_int_equal(both[0]->cost.steps, both[1]->cost.steps);
         assert_true(both[0]->cost.steps > 4);
         assert_int_equal(both[1]->cost.skipped_particle_updates, 0);
-        assert_true(alike(both[0], both[1]));
+        assert_true(made_alike(both[0], both[1]));
         for (int local = 0; local < 2; local++) simulation_destroy(both[local]);
     }
 }
@@ -206,12 +173,12 @@ TEST(goes_on_to_the_last_bit)
     const struct setup setup = setup_of(2, 24, 0.2, 300, false, &scheme);
     struct simulation *kept = blocks_of(&setup), *restored = blocks_of(&setup);
     struct serialiser back = {.bytes = made_take, .context = &bag, .back = true};
-    run_to(kept, 0.06, keep_the_fifth);
+    made_run(kept, 0.06, keep_the_fifth);
     assert_true(blocks > 6);
     simulation_serialise(restored, &back);
     assert_true(!back.failed && restored->time > 0 && restored->steps.depth > 0);
-    run_to(restored, 0.06, NULL);
-    assert_true(alike(kept, restored));
+    made_run(restored, 0.06, NULL);
+    assert_true(made_alike(kept, restored));
     simulation_destroy(kept);
     simulation_destroy(restored);
 }
@@ -245,7 +212,7 @@ static struct simulation *smooth_run(int dim, double cfl, enum time_steps steps)
     seed = 3;
     const struct setup setup = setup_of(dim, dim == 2 ? 28 : 9, 0, 100, true, &scheme);
     struct simulation *simulation = blocks_of(&setup);
-    run_to(simulation, 0.06, NULL);
+    made_run(simulation, 0.06, NULL);
     return simulation;
 }
 
@@ -303,7 +270,7 @@ TEST(neighbours_are_no_further_apart)
         looking.forces = look_at_levels;
         simulation->plan.sums = &looking;
         too_coarse = looked = 0;
-        run_to(simulation, 8e-3, NULL);
+        made_run(simulation, 8e-3, NULL);
         assert_true(looked > (dim == 2 ? 1000 : 0));
         woken += simulation->steps.woken;
         assert_int_equal(too_coarse, 0);

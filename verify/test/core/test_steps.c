@@ -321,7 +321,7 @@ TEST(clocks_go_on)
     struct simulation *kept = made_simulation(40), *restored = made_simulation(40);
     struct serialiser out = {.bytes = made_put, .context = &bag},
                       back = {.bytes = made_take, .context = &bag, .back = true};
-    made_run(kept, 0.02);
+    made_run(kept, 0.02, NULL);
     kept->wall_start -= 1e6, kept->cpu_start -= 2e6;
     const double wall = kept->wall_start, cpu = kept->cpu_start;
     simulation_serialise(kept, &out);
@@ -333,8 +333,8 @@ TEST(clocks_go_on)
     assert_false(back.failed);
     assert_int_equal(bag.read, bag.used);
     assert_true(restored->cost.wall_s == kept->cost.wall_s);
-    made_run(kept, 0.04);
-    made_run(restored, 0.04);
+    made_run(kept, 0.04, NULL);
+    made_run(restored, 0.04, NULL);
     assert_true(made_alike(kept, restored));
     near_inside(restored->cost.wall_s, 1e6, 1e6 + 100);
     near_inside(restored->cost.cpu_s, 2e6, 2e6 + 100);

@@ -90,13 +90,13 @@ TEST(goes_on)
     struct error error = {0};
     unlink(path); /* no file: nothing happens */
     assert_int_equal(loaded(&checkpoint, other, &error), STATUS_OK);
-    made_run(self, 0.05);
+    made_run(self, 0.05, NULL);
     saved(self);
     checkpoint.snapshot = -1;
     assert_int_equal(loaded(&checkpoint, other, &error), STATUS_OK);
     assert_true(made_alike(self, other));
-    made_run(self, 0.2);
-    made_run(other, 0.2);
+    made_run(self, 0.2, NULL);
+    made_run(other, 0.2, NULL);
     assert_true(made_alike(self, other));
     simulation_destroy(self);
     simulation_destroy(other);
@@ -215,7 +215,7 @@ TEST(large_ones)
     struct simulation *self = made_simulation(8000);
     struct checkpoint checkpoint = usual();
     struct error error = {0};
-    made_run(self, 1e-6);
+    made_run(self, 1e-6, NULL);
     saved(self);
     const size_t n = read_all(bytes, sizeof bytes);
     assert_true(n > (1 << 20) + 1000);

@@ -115,8 +115,8 @@ TEST(aside_and_back)
 {
     struct simulation *self = made_simulation(40), *other = made_simulation(40);
     struct snapshots snapshots = {.path = "a.csv", .every = 1};
-    made_run(self, 0.05);
-    made_run(other, 0.05);
+    made_run(self, 0.05, NULL);
+    made_run(other, 0.05, NULL);
     const double reach = 0.05 + 4 * step_of(self);
     snapshots_begin(&snapshots, 0.05, -1, 10);
     assert_int_equal(snapshots.next, 1);
@@ -132,15 +132,15 @@ TEST(aside_and_back)
     assert_true(snapshots.reach == reach && snapshots.state && snapshots.size > 0);
     assert_int_equal(snapshots.next, 1);
     for (int k = 0; k < 2; k++) {
-        made_run(self, 0.08 + 0.01 * k);
+        made_run(self, 0.08 + 0.01 * k, NULL);
         assert_false(made_alike(self, other));
         snapshots_return(&snapshots, self);
         assert_true(made_alike(self, other));
     }
     snapshots_go_on(&snapshots);
     assert_null(snapshots.state);
-    made_run(self, 0.2);
-    made_run(other, 0.2);
+    made_run(self, 0.2, NULL);
+    made_run(other, 0.2, NULL);
     assert_true(made_alike(self, other));
     simulation_destroy(self);
     simulation_destroy(other);

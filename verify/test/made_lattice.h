@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Gas on a lattice in 2D and 3D, of which each test changes what it likes before it makes a
+ * simulation of it. Include after test.h. */
+#ifndef MADE_LATTICE_H
+#define MADE_LATTICE_H
+
+#include <math.h>
+
+#include "made_scheme.h"
+
+enum { N = 1024 };
+
+static double x[3][N], v[3][N], m[N], u[N];
+
+/* side^dim particles in a periodic box of side 1, at rest, of equal masses, u = 1; particle i is
+ * displaced by `displaced` sin(7 i + a) spacings along axis a. */
+static inline struct setup lattice_of(int dim, size_t side, double displaced,
+                                      const struct scheme *scheme)
+{
+    struct setup setup = {.dim = dim,
+                          .hi = {1, 1, 1},
+                          .gamma = 1.4,
+                          .t_end = 1,
+                          .n = dim == 2 ? side * side : side * side * side,
+                          .m = m,
+                          .u = u,
+                          .scheme = *scheme,
+                          .threads = 1};
+    assert_true(setup.n <= N);
+    for (size_t i = 0, at = 0; i < setup.n; at = ++i) {
+        m[i] = 1. / (double)setup.n, u[i] = 1;
+        for (int a = 0; a < dim; a++, at /= side) {
+            x[a][i] =
+                ((double)(at % side) + 0.5 + displaced * sin(7. * (double)i + a)) / (double)side;
+            v[a][i] = 0;
+        }
+    }
+    for (int a = 0; a < dim; a++) setup.x[a] = x[a], setup.v[a] = v[a];
+    return setup;
+}
+
+/* In 2D, 8 particles wide and 128 long; whoever is at rest may sleep. */
+static inline struct setup long_box_of(const struct scheme *scheme)
+{
+    struct setup setup = lattice_of(2, 8, 0, scheme);
+    setup.n = 1024, setup.hi[1] = 16, setup.skip = true;
+    for (size_t i = 0; i < setup.n; i++) {
+        x[0][i] = ((double)(i % 8) + 0.5) / 8, x[1][i] = ((double)(i / 8) + 0.5) / 8;
+        m[i] = 1. / 64, u[i] = 1, v[0][i] = v[1][i] = 0;
+    }
+    return setup;
+}
+
+#endif
