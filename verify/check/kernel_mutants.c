@@ -378,184 +378,73 @@ static const struct kernel unity_width_seed = {CUBIC_SHAPE, CUBIC, .unity_width 
 
 /* ---- what each property must reject ---- */
 
-#define OUTER_SIGN                                                                                 \
+#define MUTANT(name, fault, kernel)                                                                \
     {                                                                                              \
-        "seed_1_outer_branch", "cubic dW/dr, outer branch +6(1-q)^2", &outer_sign                  \
+        name, fault, &kernel                                                                       \
     }
-#define PRINTED                                                                                    \
-    {                                                                                              \
-        "seed_2_wendland_dr", "Wendland C2 1D dW/dr -4q(1-q)^2", &printed_wendland                 \
-    }
-#define DH_POWER                                                                                   \
-    {                                                                                              \
-        "seed_8_dh_power", "cubic dW/dh with h^-d for h^-(d+1)", &seed_dh_power                    \
-    }
-#define DH_OUTER                                                                                   \
-    {                                                                                              \
-        "seed_8_dh_outer", "cubic dW/dh with (1+q) for (1-4q)", &seed_dh_outer                     \
-    }
-#define DH_DIMENSION                                                                               \
-    {                                                                                              \
-        "dh_dimension", "dW/dh with w for d w", &dh_dimension                                      \
-    }
-#define GRADIENT_SIGN                                                                              \
-    {                                                                                              \
-        "kernel_gradient_sign", "dW/dr with the wrong sign", &gradient_sign                        \
-    }
-#define NINTH                                                                                      \
-    {                                                                                              \
-        "kernel_gradient_1e-9", "dW/dr off by 1e-9", &gradient_ninth_digit                         \
-    }
-#define BALANCED                                                                                   \
-    {                                                                                              \
-        "kernel_gradient_wave", "dW/dr off by a wave of 1e-8", &gradient_balanced                  \
-    }
-#define C_359                                                                                      \
-    {                                                                                              \
-        "constant_359", "359 for 360 in a constant", &constant_359                                 \
-    }
-#define C_1D                                                                                       \
-    {                                                                                              \
-        "constant_1d_only", "constants of 2D and 3D exchanged", &constant_1d_only                  \
-    }
+
+#define OUTER_SIGN    MUTANT("seed_1_outer_branch", "cubic dW/dr, outer branch +6(1-q)^2", outer_sign)
+#define PRINTED       MUTANT("seed_2_wendland_dr", "Wendland C2 1D dW/dr -4q(1-q)^2", printed_wendland)
+#define DH_POWER      MUTANT("seed_8_dh_power", "cubic dW/dh with h^-d for h^-(d+1)", seed_dh_power)
+#define DH_OUTER      MUTANT("seed_8_dh_outer", "cubic dW/dh with (1+q) for (1-4q)", seed_dh_outer)
+#define DH_DIMENSION  MUTANT("dh_dimension", "dW/dh with w for d w", dh_dimension)
+#define GRADIENT_SIGN MUTANT("kernel_gradient_sign", "dW/dr with the wrong sign", gradient_sign)
+#define NINTH         MUTANT("kernel_gradient_1e-9", "dW/dr off by 1e-9", gradient_ninth_digit)
+#define BALANCED      MUTANT("kernel_gradient_wave", "dW/dr off by a wave of 1e-8", gradient_balanced)
+#define C_359         MUTANT("constant_359", "359 for 360 in a constant", constant_359)
+#define C_1D          MUTANT("constant_1d_only", "constants of 2D and 3D exchanged", constant_1d_only)
 #define C_SEVENTH                                                                                  \
-    {                                                                                              \
-        "constant_seventh_digit", "3D constant off by 6e-8", &constant_seventh_digit               \
-    }
-#define C_FLOAT                                                                                    \
-    {                                                                                              \
-        "constant_float", "constants in single precision", &constant_float                         \
-    }
-#define C_PI                                                                                       \
-    {                                                                                              \
-        "constant_pi_11", "pi to 11 digits in the constants", &constant_pi_11                      \
-    }
-#define C_SINC                                                                                     \
-    {                                                                                              \
-        "sinc_other_order", "constants of sinc 5 with order 6", &sinc_other_order                  \
-    }
-#define COEFFICIENT                                                                                \
-    {                                                                                              \
-        "quartic_coefficient", "5.01 for 5 in the quartic", &quartic_coefficient                   \
-    }
-#define WENDLAND_1D                                                                                \
-    {                                                                                              \
-        "wendland_shape_1d", "2D shape with the 1D constant", &wendland_shape                      \
-    }
-#define SUPPORT_0999                                                                               \
-    {                                                                                              \
-        "support_0.999", "support 0.999 h, normalised", &support_0999                              \
-    }
-#define UNCLAMPED                                                                                  \
-    {                                                                                              \
-        "support_unclamped", "polynomial goes on for q > 1", &support_unclamped                    \
-    }
-#define UNSHIFTED                                                                                  \
-    {                                                                                              \
-        "gaussian_unshifted", "truncated Gaussian, W(h) > 0", &gaussian_unshifted                  \
-    }
-#define KNOT_HOLE                                                                                  \
-    {                                                                                              \
-        "knot_hole", "dw = 0 at the knot itself", &knot_hole                                       \
-    }
-#define DH_NARROW                                                                                  \
-    {                                                                                              \
-        "dh_narrow", "dW/dh off by 1e-3 in a narrow range", &dh_narrow                             \
-    }
-#define TAIL                                                                                       \
-    {                                                                                              \
-        "support_tail", "W = 1e-9 again around r = 2 h", &support_tail                             \
-    }
-#define KNOT_049                                                                                   \
-    {                                                                                              \
-        "knot_0.49", "inner branch ends at q = 0.49", &knot_049                                    \
-    }
-#define KNOT_DECLARED                                                                              \
-    {                                                                                              \
-        "knot_declared_0.49", "knot 0.5 declared at 0.49", &knot_declared_049                      \
-    }
+    MUTANT("constant_seventh_digit", "3D constant off by 6e-8", constant_seventh_digit)
+#define C_FLOAT       MUTANT("constant_float", "constants in single precision", constant_float)
+#define C_PI          MUTANT("constant_pi_11", "pi to 11 digits in the constants", constant_pi_11)
+#define C_SINC        MUTANT("sinc_other_order", "constants of sinc 5 with order 6", sinc_other_order)
+#define COEFFICIENT   MUTANT("quartic_coefficient", "5.01 for 5 in the quartic", quartic_coefficient)
+#define WENDLAND_1D   MUTANT("wendland_shape_1d", "2D shape with the 1D constant", wendland_shape)
+#define SUPPORT_0999  MUTANT("support_0.999", "support 0.999 h, normalised", support_0999)
+#define UNCLAMPED     MUTANT("support_unclamped", "polynomial goes on for q > 1", support_unclamped)
+#define UNSHIFTED     MUTANT("gaussian_unshifted", "truncated Gaussian, W(h) > 0", gaussian_unshifted)
+#define KNOT_HOLE     MUTANT("knot_hole", "dw = 0 at the knot itself", knot_hole)
+#define DH_NARROW     MUTANT("dh_narrow", "dW/dh off by 1e-3 in a narrow range", dh_narrow)
+#define TAIL          MUTANT("support_tail", "W = 1e-9 again around r = 2 h", support_tail)
+#define KNOT_049      MUTANT("knot_0.49", "inner branch ends at q = 0.49", knot_049)
+#define KNOT_DECLARED MUTANT("knot_declared_0.49", "knot 0.5 declared at 0.49", knot_declared_049)
 #define KNOT_SECOND                                                                                \
-    {                                                                                              \
-        "knot_second_derivative", "w'' jumps by 1e-6 at the knot", &knot_second_derivative         \
-    }
-#define KNOT_VALUE                                                                                 \
-    {                                                                                              \
-        "knot_value", "w jumps by 1e-11 at the knot", &knot_value                                  \
-    }
-#define CLASS                                                                                      \
-    {                                                                                              \
-        "class_overstated", "quadratic spline declared C2", &class_overstated                      \
-    }
-#define ORIGIN                                                                                     \
-    {                                                                                              \
-        "origin_kink", "(1-q)^3: kink at the origin", &origin_kink                                 \
-    }
-#define LOBE                                                                                       \
-    {                                                                                              \
-        "negative_lobe", "W < 0 beyond q = 1/3", &negative_lobe                                    \
-    }
-#define FLOAT                                                                                      \
-    {                                                                                              \
-        "shape_float", "w and dw in single precision", &shape_float                                \
-    }
-#define EXPANDED                                                                                   \
-    {                                                                                              \
-        "shape_expanded", "polynomial expanded about the origin", &shape_expanded                  \
-    }
-#define UNITY                                                                                      \
-    {                                                                                              \
-        "unity_width_2.4", "exact lattice sums claimed at eta 2.4", &unity_width_seed              \
-    }
-#define DH_SMALL                                                                                   \
-    {                                                                                              \
-        "dh_small_h", "dW/dh off by 1 % for h < 1e-3", &dh_small                                   \
-    }
-#define SIGN_NARROW                                                                                \
-    {                                                                                              \
-        "sign_narrow", "dW/dr with the wrong sign on 3e-4 of q", &sign_narrow                      \
-    }
-#define HOLE_NARROW                                                                                \
-    {                                                                                              \
-        "hole_narrow", "w = 0 on 1e-8 of q beyond 0.37", &hole_narrow                              \
-    }
-#define BUMP_NARROW                                                                                \
-    {                                                                                              \
-        "bump_narrow", "a bump of 1e-9 in w, 1e-3 wide", &bump_narrow                              \
-    }
-#define SLIP                                                                                       \
-    {                                                                                              \
-        "kink_undeclared", "w' jumps by 1e-7 where nobody declares a knot", &slip                  \
-    }
-#define MOODY                                                                                      \
-    {                                                                                              \
-        "not_a_function", "w changes by 1e-15 in every 1000th call", &moody                        \
-    }
-#define END                                                                                        \
-    {                                                                                              \
-        NULL, NULL, NULL                                                                           \
-    }
+    MUTANT("knot_second_derivative", "w'' jumps by 1e-6 at the knot", knot_second_derivative)
+#define KNOT_VALUE  MUTANT("knot_value", "w jumps by 1e-11 at the knot", knot_value)
+#define CLASS       MUTANT("class_overstated", "quadratic spline declared C2", class_overstated)
+#define ORIGIN      MUTANT("origin_kink", "(1-q)^3: kink at the origin", origin_kink)
+#define LOBE        MUTANT("negative_lobe", "W < 0 beyond q = 1/3", negative_lobe)
+#define FLOAT       MUTANT("shape_float", "w and dw in single precision", shape_float)
+#define EXPANDED    MUTANT("shape_expanded", "polynomial expanded about the origin", shape_expanded)
+#define UNITY       MUTANT("unity_width_2.4", "exact lattice sums claimed at eta 2.4", unity_width_seed)
+#define DH_SMALL    MUTANT("dh_small_h", "dW/dh off by 1 % for h < 1e-3", dh_small)
+#define SIGN_NARROW MUTANT("sign_narrow", "dW/dr with the wrong sign on 3e-4 of q", sign_narrow)
+#define HOLE_NARROW MUTANT("hole_narrow", "w = 0 on 1e-8 of q beyond 0.37", hole_narrow)
+#define BUMP_NARROW MUTANT("bump_narrow", "a bump of 1e-9 in w, 1e-3 wide", bump_narrow)
+#define SLIP        MUTANT("kink_undeclared", "w' jumps by 1e-7 where nobody declares a knot", slip)
+#define MOODY       MUTANT("not_a_function", "w changes by 1e-15 in every 1000th call", moody)
 
 typedef const struct check_mutant mutant_list[];
 mutant_list kernel_mutants_normalisation = {C_359,  C_1D,        C_SEVENTH,   C_FLOAT, C_PI,
-                                            C_SINC, COEFFICIENT, WENDLAND_1D, END};
-mutant_list kernel_mutants_gradient_moment = {OUTER_SIGN, PRINTED, GRADIENT_SIGN, C_359, C_PI, END};
-mutant_list kernel_mutants_width_integral = {DH_OUTER, DH_DIMENSION, UNSHIFTED, END};
+                                            C_SINC, COEFFICIENT, WENDLAND_1D, {0}};
+mutant_list kernel_mutants_gradient_moment = {OUTER_SIGN, PRINTED, GRADIENT_SIGN, C_359, C_PI, {0}};
+mutant_list kernel_mutants_width_integral = {DH_OUTER, DH_DIMENSION, UNSHIFTED, {0}};
 mutant_list kernel_mutants_fundamental = {OUTER_SIGN, PRINTED,    NINTH,     BALANCED,
-                                          KNOT_049,   KNOT_VALUE, UNSHIFTED, END};
+                                          KNOT_049,   KNOT_VALUE, UNSHIFTED, {0}};
 mutant_list kernel_mutants_radial_derivative = {OUTER_SIGN, PRINTED,  GRADIENT_SIGN,
-                                                NINTH,      BALANCED, END};
+                                                NINTH,      BALANCED, {0}};
 mutant_list kernel_mutants_width_derivative = {DH_NARROW,    DH_POWER, DH_OUTER, DH_SMALL,
-                                               DH_DIMENSION, BALANCED, END};
-mutant_list kernel_mutants_support = {UNSHIFTED, SUPPORT_0999, UNCLAMPED, TAIL, END};
-mutant_list kernel_mutants_sign = {OUTER_SIGN, GRADIENT_SIGN, LOBE, END};
+                                               DH_DIMENSION, BALANCED, {0}};
+mutant_list kernel_mutants_support = {UNSHIFTED, SUPPORT_0999, UNCLAMPED, TAIL, {0}};
+mutant_list kernel_mutants_sign = {OUTER_SIGN, GRADIENT_SIGN, LOBE, {0}};
 mutant_list kernel_mutants_continuity = {KNOT_HOLE,  KNOT_049, KNOT_DECLARED, KNOT_SECOND,
                                          KNOT_VALUE, CLASS,    ORIGIN,        UNSHIFTED,
-                                         SLIP,       END};
-mutant_list kernel_mutants_moments = {OUTER_SIGN, PRINTED, NINTH, UNSHIFTED, END};
-mutant_list kernel_mutants_delta_limit = {C_359, C_FLOAT, COEFFICIENT, WENDLAND_1D, END};
-mutant_list kernel_mutants_transform = {OUTER_SIGN, NINTH, C_SEVENTH, UNSHIFTED, END};
-mutant_list kernel_mutants_lattice = {UNITY, COEFFICIENT, C_359, GRADIENT_SIGN, END};
-mutant_list kernel_mutants_self_term = {DH_DIMENSION, DH_POWER, ORIGIN, END};
-mutant_list kernel_mutants_round_off = {FLOAT, EXPANDED, END};
-mutant_list kernel_mutants_between = {SIGN_NARROW, HOLE_NARROW, BUMP_NARROW, END};
-mutant_list kernel_mutants_runs = {MOODY, END};
+                                         SLIP,       {0}};
+mutant_list kernel_mutants_moments = {OUTER_SIGN, PRINTED, NINTH, UNSHIFTED, {0}};
+mutant_list kernel_mutants_delta_limit = {C_359, C_FLOAT, COEFFICIENT, WENDLAND_1D, {0}};
+mutant_list kernel_mutants_transform = {OUTER_SIGN, NINTH, C_SEVENTH, UNSHIFTED, {0}};
+mutant_list kernel_mutants_lattice = {UNITY, COEFFICIENT, C_359, GRADIENT_SIGN, {0}};
+mutant_list kernel_mutants_self_term = {DH_DIMENSION, DH_POWER, ORIGIN, {0}};
+mutant_list kernel_mutants_round_off = {FLOAT, EXPANDED, {0}};
+mutant_list kernel_mutants_between = {SIGN_NARROW, HOLE_NARROW, BUMP_NARROW, {0}};
+mutant_list kernel_mutants_runs = {MOODY, {0}};
