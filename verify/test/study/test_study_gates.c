@@ -17,203 +17,81 @@ static void times_factor(json_t *run, size_t c, size_t l, size_t r)
     json_object_set_new(norms_of, "l1", json_real(factor * pow(spacing_of(l, r), 0.5)));
 }
 
+static struct study study;
+static struct pool pool;
+static struct error error;
+static struct case_file *const file = &study.settings.file;
+
+/* A study without gates, which the test sets; its result is as before it was judged. */
+static void begin(const char *name, const char *keys, size_t replicates, tamper *tampering)
+{
+    make(&study, &pool, name, keys, replicates, tampering, &error);
+    struct study_result *result = study.results;
+    *result = (struct study_result){.settings = result->settings, .scheme = result->scheme};
+    study.status = STATUS_OK;
+    file->gate_count = 1;
+}
+
+static const struct study_result *judged(void)
+{
+    assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
+    return study.results;
+}
+
+static void end(void)
+{
+    study_free(&study);
+    pool_free(&pool);
+}
+
 /* A field's gate on order and error; one of the finest error alone; what lattice sums explain. */
 TEST(gates_are_judged)
 {
-    static const struct {
-        const char *name;
-        struct case_gate gate; /* a bound of 0: the finest error itself */
+    const double open = (double)INFINITY;
+    const struct {
+        const char *name, *functional;
+        struct order_gate gate; /* a bound of 0: the finest error itself */
         double factor;
         size_t coarse; /* the case's own finest n */
         enum finding_status outcome;
-        double bound;
+        double raised; /* the bound, by this factor */
         bool explains;
     } rows[] = {
-        {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 1}, {0, ""}, {0, ""}, 0, 0},
-         0.01,
-         0,
-         FINDING_PASS,
-         1,
-         false},
-        {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.8, 1}, {0, ""}, {0, ""}, 0, 0},
-         0.01,
-         0,
-         FINDING_FAIL,
-         1,
-         false},
-        {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.8, 1}, {(double)INFINITY, "why"}, {0, ""}, 0, 0},
-         0.01,
-         0,
-         FINDING_KNOWN,
-         1,
-         false},
-        {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}, 0, 0},
-         0.01,
-         0,
-         FINDING_FAIL,
-         7e-4,
-         false},
-        {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}, 0, 0},
-         0.01,
-         640,
-         FINDING_PASS,
-         7e-4 * 1.3195079107728942,
-         false},
-        {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}, 0, 0},
-         0.01,
-         160,
-         FINDING_FAIL,
-         7e-4,
-         false},
-        {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 8e-4}, {0, ""}, {0, ""}, 0, 0},
-         0.01,
-         0,
-         FINDING_PASS,
-         8e-4,
-         false},
-        {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 0}, {0, ""}, {0, ""}, 0, 0},
-         0.01,
-         0,
-         FINDING_PASS,
-         0,
-         false},
-        {"sod",
-         {"mean_pressure",
-          FIELD_DENSITY,
-          NORM_L1,
-          {1, (double)INFINITY, 1},
-          {0, ""},
-          {0, ""},
-          0,
-          0},
-         0.01,
-         0,
-         FINDING_NONE,
-         0,
-         false},
-        {"gresho",
-         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1e-12}, {0, ""}, {0, ""}, 0, 0},
-         1e-9,
-         0,
-         FINDING_FAIL,
-         1e-12,
-         false},
-        {"gresho",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 1e-12}, {0, ""}, {0, ""}, 0, 0},
-         1e-9,
-         0,
-         FINDING_FAIL,
-         1e-12,
-         false},
-        {"gresho",
-         {"disc_error",
-          FIELD_DENSITY,
-          NORM_L1,
-          {1, (double)INFINITY, 1.2e-5},
-          {0, ""},
-          {0, ""},
-          0,
-          0},
-         0.01,
-         0,
-         FINDING_PASS,
-         1.2e-5,
-         false},
-        {"gresho",
-         {"disc_error",
-          FIELD_DENSITY,
-          NORM_L1,
-          {1, (double)INFINITY, 1.1e-5},
-          {0, ""},
-          {0, ""},
-          0,
-          0},
-         0.01,
-         0,
-         FINDING_FAIL,
-         1.1e-5,
-         false},
-        {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 7.9e-4}, {0, ""}, {0, ""}, 0, 0},
-         0.01,
-         0,
-         FINDING_FAIL,
-         7.9e-4,
-         false},
-        {"gresho",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}, 0, 0},
-         0.01,
-         640,
-         FINDING_PASS,
-         7e-4 * 1.1486983549970351,
-         false},
-        {"gresho",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.8, 1}, {0, ""}, {0, ""}, 0, 0},
-         1e-9,
-         0,
-         FINDING_FAIL,
-         1,
-         true},
-        {"gresho",
-         {"peak_velocity",
-          FIELD_DENSITY,
-          NORM_L1,
-          {1, (double)INFINITY, 1.2e-5},
-          {0, ""},
-          {0, ""},
-          0,
-          0},
-         0.01,
-         0,
-         FINDING_PASS,
-         1.2e-5,
-         false},
-        {"gresho",
-         {"peak_velocity",
-          FIELD_DENSITY,
-          NORM_L1,
-          {1, (double)INFINITY, 1.1e-5},
-          {0, ""},
-          {0, ""},
-          0,
-          0},
-         0.01,
-         0,
-         FINDING_FAIL,
-         1.1e-5,
-         false},
+        {"sod", NULL, {0.4, 0.6, 1}, 0.01, 0, FINDING_PASS, 1, false},
+        {"sod", NULL, {0.6, 0.8, 1}, 0.01, 0, FINDING_FAIL, 1, false},
+        {"sod", NULL, {0.6, 0.8, 1}, 0.01, 0, FINDING_KNOWN, 1, false},
+        {"sod", NULL, {0.4, 0.6, 7e-4}, 0.01, 0, FINDING_FAIL, 1, false},
+        {"sod", NULL, {0.4, 0.6, 7e-4}, 0.01, 640, FINDING_PASS, 1.3195079107728942, false},
+        {"sod", NULL, {0.4, 0.6, 7e-4}, 0.01, 160, FINDING_FAIL, 1, false},
+        {"sod", NULL, {1, open, 8e-4}, 0.01, 0, FINDING_PASS, 1, false},
+        {"sod", NULL, {1, open, 7.9e-4}, 0.01, 0, FINDING_FAIL, 1, false},
+        {"sod", NULL, {1, open, 0}, 0.01, 0, FINDING_PASS, 1, false},
+        {"sod", "mean_pressure", {1, open, 1}, 0.01, 0, FINDING_NONE, 1, false},
+        {"gresho", NULL, {1, open, 1e-12}, 1e-9, 0, FINDING_FAIL, 1, false},
+        {"gresho", NULL, {0.4, 0.6, 1e-12}, 1e-9, 0, FINDING_FAIL, 1, false},
+        {"gresho", NULL, {0.4, 0.6, 7e-4}, 0.01, 640, FINDING_PASS, 1.1486983549970351, false},
+        {"gresho", NULL, {0.6, 0.8, 1}, 1e-9, 0, FINDING_FAIL, 1, true},
+        {"gresho", "disc_error", {1, open, 1.2e-5}, 0.01, 0, FINDING_PASS, 1, false},
+        {"gresho", "disc_error", {1, open, 1.1e-5}, 0.01, 0, FINDING_FAIL, 1, false},
+        {"gresho", "peak_velocity", {1, open, 1.2e-5}, 0.01, 0, FINDING_PASS, 1, false},
+        {"gresho", "peak_velocity", {1, open, 1.1e-5}, 0.01, 0, FINDING_FAIL, 1, false},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        struct study study;
-        struct pool pool;
-        struct error error;
+        const char *functional = rows[k].functional;
         factor = rows[k].factor;
-        make(&study, &pool, rows[k].name, NULL, 1, times_factor, &error);
-        struct study_result *result = &study.results[0];
-        struct case_file *file = &study.settings.file;
-        const struct settings settings = result->settings;
-        const struct scheme scheme = result->scheme;
-        *result = (struct study_result){.settings = settings, .scheme = scheme};
-        study.status = STATUS_OK;
-        file->gates[0] = rows[k].gate;
+        begin(rows[k].name, NULL, 1, times_factor);
         const double finest = factor * pow(spacing_of(3, 0), 0.5);
-        if (rows[k].gate.gate.bound == 0) file->gates[0].gate.bound = finest;
+        const double bound = rows[k].gate.bound > 0 ? rows[k].gate.bound : finest;
+        file->gates[0] = (struct case_gate){.functional = functional, .gate = rows[k].gate};
+        file->gates[0].gate.bound = bound;
+        if (rows[k].outcome == FINDING_KNOWN)
+            file->gates[0].known = (struct case_weakness){open, "why"};
         file->gates[1] = (struct case_gate){
-            NULL,    FIELD_VELOCITY, NORM_L2, {.low = -9, .high = 9, .bound = 1e9},
-            {0, ""}, {0, ""},        0,       0};
+            .field = FIELD_VELOCITY, .norm = NORM_L2, .gate = {.low = -9, .high = 9, .bound = 1e9}};
         file->gate_count = 2;
         file->ladder[0] = 5, file->ladder[1] = rows[k].coarse;
         file->ladder_count = rows[k].coarse ? 2 : 0;
-        assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
-        const char *functional = rows[k].gate.functional;
+        const struct study_result *result = judged();
         const struct study_order *order =
             functional ? &result->functional_errors[strcmp(functional, "disc_error") != 0]
                        : &result->orders[0][0];
@@ -221,21 +99,17 @@ TEST(gates_are_judged)
             fail_msg("row %zu: outcome %d, %s, bound %g, finest %g", k, order->status, order->why,
                      order->gate.bound, order->fit.finest);
         assert_int_equal(result->orders[FIELD_VELOCITY][NORM_L2].status, FINDING_PASS);
-        if (rows[k].outcome == FINDING_NONE) {
-            study_free(&study);
-            pool_free(&pool);
-            continue;
+        if (rows[k].outcome != FINDING_NONE) {
+            near_relative(order->gate.bound, bound * rows[k].raised, 1e-9);
+            assert_true(!isfinite(rows[k].gate.high) == !(order->gate.low > -1e300));
+            assert_string_equal(order->known, rows[k].outcome == FINDING_KNOWN ? "why" : "");
+            assert_true(result->floor_explains == rows[k].explains);
+            assert_int_equal(result->status,
+                             rows[k].outcome == FINDING_FAIL ? STATUS_CHECK_FAILED : STATUS_OK);
+            assert_int_equal(study.status, result->status);
+            assert_true(!order->why[0] == (rows[k].outcome == FINDING_PASS));
         }
-        near_relative(order->gate.bound, rows[k].bound > 0 ? rows[k].bound : finest, 1e-9);
-        assert_true(!isfinite(rows[k].gate.gate.high) == !(order->gate.low > -1e300));
-        assert_string_equal(order->known, rows[k].gate.known.why);
-        assert_true(result->floor_explains == rows[k].explains);
-        assert_int_equal(result->status,
-                         rows[k].outcome == FINDING_FAIL ? STATUS_CHECK_FAILED : STATUS_OK);
-        assert_int_equal(study.status, result->status);
-        assert_true(!order->why[0] == (rows[k].outcome == FINDING_PASS));
-        study_free(&study);
-        pool_free(&pool);
+        end();
     }
 }
 
@@ -243,30 +117,19 @@ TEST(gates_are_judged)
  * beyond: it says up to which. */
 TEST(beyond_what_is_known)
 {
-    struct study study;
-    struct pool pool;
-    struct error error;
     char text[200];
     factor = 0.01;
-    make(&study, &pool, "sod", NULL, 1, times_factor, &error);
-    struct case_file *file = &study.settings.file;
-    file->gates[0] = (struct case_gate){.gate = {.low = 0.6, .high = 0.8, .bound = 1},
-                                        .field = FIELD_DENSITY,
-                                        .norm = NORM_L1,
-                                        .known = {.bound = 1e-4, .why = "why"}};
-    file->gate_count = file->ladder_count = 1;
+    begin("sod", NULL, 1, times_factor);
+    file->gates[0] =
+        (struct case_gate){.gate = {0.6, 0.8, 1}, .known = {.bound = 1e-4, .why = "why"}};
+    file->ladder_count = 1;
     file->ladder[0] = 640;
-    const struct settings settings = study.results[0].settings;
-    const struct scheme scheme = study.results[0].scheme;
-    study.results[0] = (struct study_result){.settings = settings, .scheme = scheme};
-    assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
-    const struct study_order *order = &study.results[0].orders[FIELD_DENSITY][NORM_L1];
+    const struct study_order *order = &judged()->orders[FIELD_DENSITY][NORM_L1];
     snprintf(text, sizeof text, "finest error %.3g exceeds 0.000152, up to which it is known",
              factor * pow(spacing_of(3, 0), 0.5)); /* 1e-4 times 2^0.6 */
     assert_int_equal(order->status, FINDING_FAIL);
     assert_string_equal(order->why, text);
-    study_free(&study);
-    pool_free(&pool);
+    end();
 }
 
 /* An error that is too small to be believed is one of the case's own ladder and settings. */
@@ -287,40 +150,24 @@ TEST(small_errors_are_strange)
                 {1.01, 320, (enum setting)0, false, FINDING_PASS},
                 {1.01, 320, (enum setting)(SETTINGS - 1), false, FINDING_PASS}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        struct study study;
-        struct pool pool;
-        struct error error;
         factor = 0.01;
-        make(&study, &pool, "sod", NULL, 1, times_factor, &error);
-        struct study_result *result = &study.results[0];
-        struct case_file *file = &study.settings.file;
-        const struct settings settings = result->settings;
-        const struct scheme scheme = result->scheme;
+        begin("sod", NULL, 1, times_factor);
         const double finest = factor * pow(spacing_of(3, 0), 0.5);
-        *result = (struct study_result){.settings = settings, .scheme = scheme};
-        for (int i = 0; i < SETTINGS; i++) result->settings.value[i].source = SOURCE_CASE;
-        result->settings.value[SETTING_n].source = SOURCE_USER;
-        result->settings.value[rows[k].key].source = SOURCE_USER;
-        file->gates[0] = (struct case_gate){
-            .gate = {.low = 1, .high = (double)INFINITY, .bound = 2 * finest},
-            .field = FIELD_DENSITY,
-            .norm = NORM_L1,
-            .known = {.bound = (double)INFINITY},
-            .least = rows[k].least * finest,
-        };
+        for (int i = 0; i < SETTINGS; i++) study.results[0].settings.value[i].source = SOURCE_CASE;
+        study.results[0].settings.value[SETTING_n].source = SOURCE_USER;
+        study.results[0].settings.value[rows[k].key].source = SOURCE_USER;
+        file->gates[0] = (struct case_gate){.gate = {1, (double)INFINITY, 2 * finest},
+                                            .known = {.bound = (double)INFINITY},
+                                            .least = rows[k].least * finest};
         if (rows[k].known) strcpy(file->gates[0].known.why, "too good");
-        file->gate_count = 1;
         file->ladder[0] = 5, file->ladder[1] = rows[k].coarse;
         file->ladder_count = 2;
-        study.status = STATUS_OK;
-        assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
-        const struct study_order *order = &result->orders[0][0];
+        const struct study_order *order = &judged()->orders[0][0];
         assert_int_equal(order->status, rows[k].outcome);
         const bool own = rows[k].coarse == 320 && rows[k].key == SETTING_n;
         assert_true(order->least == (own ? rows[k].least * finest : 0));
         assert_true(!strstr(order->why, "strangely below") == (rows[k].outcome == FINDING_PASS));
-        study_free(&study);
-        pool_free(&pool);
+        end();
     }
 }
 
@@ -332,32 +179,17 @@ TEST(ordered_gates_have_two_sides)
         enum finding_status outcome;
     } rows[] = {{0.99, 1.01, FINDING_PASS}, {1.01, 1.02, FINDING_FAIL}, {0.98, 0.99, FINDING_FAIL}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        struct study study;
-        struct pool pool;
-        struct error error;
         factor = 0.01;
-        make(&study, &pool, "sod", NULL, 1, times_factor, &error);
-        struct study_result *result = &study.results[0];
-        struct case_file *file = &study.settings.file;
-        const struct settings settings = result->settings;
-        const struct scheme scheme = result->scheme;
+        begin("sod", NULL, 1, times_factor);
         const double finest = factor * pow(spacing_of(3, 0), 0.5);
-        *result = (struct study_result){.settings = settings, .scheme = scheme};
-        for (int i = 0; i < SETTINGS; i++) result->settings.value[i].source = SOURCE_CASE;
-        file->gates[0] = (struct case_gate){
-            .gate = {.low = 0.4, .high = 0.6, .bound = rows[k].bound * finest},
-            .norm = NORM_L1,
-            .known = {.bound = (double)INFINITY},
-            .least = rows[k].least * finest,
-        };
-        file->gate_count = 1;
+        for (int i = 0; i < SETTINGS; i++) study.results[0].settings.value[i].source = SOURCE_CASE;
+        file->gates[0] = (struct case_gate){.gate = {0.4, 0.6, rows[k].bound * finest},
+                                            .known = {.bound = (double)INFINITY},
+                                            .least = rows[k].least * finest};
         file->ladder[0] = 5, file->ladder[1] = study.ladder[study.level_count - 1];
         file->ladder_count = 2;
-        study.status = STATUS_OK;
-        assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
-        assert_int_equal(result->orders[0][0].status, rows[k].outcome);
-        study_free(&study);
-        pool_free(&pool);
+        assert_int_equal(judged()->orders[0][0].status, rows[k].outcome);
+        end();
     }
 }
 
@@ -382,26 +214,15 @@ TEST(what_is_conserved_has_gates)
                 {(double)NAN, 1e-9, 3e-9, FINDING_FAIL},
                 {0, 0, 3e-9, FINDING_PASS}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        struct study study;
-        struct pool pool;
-        struct error error;
         const bool nothing = isnan(rows[k].first);
         drifts[LEVELS - 1][0] = rows[k].first, drifts[LEVELS - 1][1] = rows[k].second;
-        make(&study, &pool, "sod", NULL, 2, nothing ? NULL : set_drifts, &error);
-        struct study_result *result = &study.results[0];
-        struct case_file *file = &study.settings.file;
-        const struct settings settings = result->settings;
-        const struct scheme scheme = result->scheme;
-        *result = (struct study_result){.settings = settings, .scheme = scheme};
-        file->gates[0] = (struct case_gate){
-            .functional = trace_figures[1],
-            .gate = {.low = 0, .high = (double)INFINITY, .bound = rows[k].bound}};
+        begin("sod", NULL, 2, nothing ? NULL : set_drifts);
+        file->gates[0] = (struct case_gate){.functional = trace_figures[1],
+                                            .gate = {0, (double)INFINITY, rows[k].bound}};
         file->gates[1] =
-            (struct case_gate){.functional = trace_figures[2],
-                               .gate = {.low = 0, .high = (double)INFINITY, .bound = 1}};
+            (struct case_gate){.functional = trace_figures[2], .gate = {0, (double)INFINITY, 1}};
         file->gate_count = 2;
-        study.status = STATUS_OK;
-        assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
+        const struct study_result *result = judged();
         assert_int_equal(result->kept[1].status, rows[k].outcome);
         assert_int_equal(result->kept[2].status, FINDING_FAIL); /* null is no number */
         assert_int_equal(result->kept[0].status, FINDING_NONE);
@@ -412,8 +233,7 @@ TEST(what_is_conserved_has_gates)
                             finding_words[nothing ? FINDING_PASS : rows[k].outcome]);
         json_decref(gate);
         json_decref(run);
-        study_free(&study);
-        pool_free(&pool);
+        end();
     }
 }
 
@@ -434,9 +254,6 @@ TEST(floors_explain_up_to_a_point)
         for (int side = -1; side <= 2; side++) {
             const char *keys = standard ? "kernel=cubic_spline,eta=4.8,gradient=standard"
                                         : "kernel=cubic_spline,eta=4.8,gradient=ia";
-            struct study study;
-            struct pool pool;
-            struct error error;
             struct kernel kernel;
             double density, gradient;
             assert_int_equal(kernel_select(&kernel, "cubic_spline", 0, &error), STATUS_OK);
@@ -446,48 +263,31 @@ TEST(floors_explain_up_to_a_point)
             /* side 2: an order that is met by its last bit, and an error that is too large */
             for (size_t l = 0; l < LEVELS; l++)
                 exact_errors[l] = most * (1 + 1e-9 * (side % 2)) * pow(2, 0.5 * (double)(3 - l));
-            make(&study, &pool, "sod", keys, 1, set_errors, &error);
-            struct study_result *result = &study.results[0];
-            const double order = result->orders[0][0].fit.order;
-            const struct settings settings = result->settings;
-            const struct scheme scheme = result->scheme;
-            *result = (struct study_result){.settings = settings, .scheme = scheme};
-            study.settings.file.gates[0] = (struct case_gate){
-                NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.7, 1}, {0, ""}, {0, ""}, 0, 0};
+            begin("sod", keys, 1, set_errors);
+            const double order = judged()->orders[0][0].fit.order;
+            end();
+            begin("sod", keys, 1, set_errors);
+            file->gates[0] = (struct case_gate){.gate = {0.6, 0.7, 1}};
             if (side == 2)
-                study.settings.file.gates[0].gate =
-                    (struct order_gate){order, order + 0.1, exact_errors[3] / 2};
-            study.settings.file.gate_count = 1;
-            assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
+                file->gates[0].gate = (struct order_gate){order, order + 0.1, exact_errors[3] / 2};
+            const struct study_result *result = judged();
             assert_int_equal(result->orders[0][0].status, FINDING_FAIL);
             assert_true(result->floor_explains == (side < 1));
-            study_free(&study);
-            pool_free(&pool);
+            end();
         }
 }
 
 /* A floor that is nothing explains nothing, however small the error. */
 TEST(no_floor)
 {
-    struct study study;
-    struct pool pool;
-    struct error error;
     for (size_t l = 0; l < LEVELS; l++) exact_errors[l] = 1e-8 * pow(2, 0.5 * (double)(3 - l));
-    make(&study, &pool, "sod", "kernel=quadratic_spline,eta=1.5,gradient=ia", 1, set_errors,
-         &error);
-    struct study_result *result = &study.results[0];
+    begin("sod", "kernel=quadratic_spline,eta=1.5,gradient=ia", 1, set_errors);
+    file->gates[0] = (struct case_gate){.gate = {0.6, 0.7, 1}};
+    const struct study_result *result = judged();
     assert_true(fabs(result->floor_density) < 1e-10);
-    const struct settings settings = result->settings;
-    const struct scheme scheme = result->scheme;
-    *result = (struct study_result){.settings = settings, .scheme = scheme};
-    study.settings.file.gates[0] =
-        (struct case_gate){.field = FIELD_DENSITY, .norm = NORM_L1, .gate = {0.6, 0.7, 1}};
-    study.settings.file.gate_count = 1;
-    assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
     assert_int_equal(result->orders[0][0].status, FINDING_FAIL);
     assert_false(result->floor_explains);
-    study_free(&study);
-    pool_free(&pool);
+    end();
 }
 
 /* What passes is a pass only where the run is fine enough and the order known well enough: at the
@@ -525,14 +325,14 @@ TEST(what_passes_is_weighed)
         {1, open, 1, 0, 0.1, 101, FINDING_PASS},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        const struct case_file file = {.ladder = {100, 200}, .ladder_count = 2};
+        const struct case_file usual = {.ladder = {100, 200}, .ladder_count = 2};
         const struct case_file alone = {.dimension = 1};
         const struct case_gate gate = {.gate = {rows[k].low, rows[k].high, 0}};
         const struct order_fit fit = {.low = 1 - rows[k].half, .high = 1 + rows[k].half};
         const struct order_fit *of = rows[k].half < 0 ? NULL : &fit;
         char why[GATE_WHY] = "?";
         const enum finding_status outcome =
-            gates_weigh(&file, &gate, rows[k].n, rows[k].bound, rows[k].exact, of, why);
+            gates_weigh(&usual, &gate, rows[k].n, rows[k].bound, rows[k].exact, of, why);
         if (outcome != rows[k].outcome) fail_msg("row %zu: outcome %d, %s", k, outcome, why);
         assert_int_equal(!why[0], outcome == FINDING_PASS);
         if (outcome == FINDING_SMOKE) assert_non_null(strstr(why, "too coarse to say"));
@@ -549,23 +349,12 @@ TEST(what_passes_is_weighed)
 TEST(coarse_runs_are_smoke)
 {
     for (int beyond = 0; beyond < 2; beyond++) {
-        struct study study;
-        struct pool pool;
-        struct error error;
         factor = 0.01;
-        make(&study, &pool, "sod", NULL, 1, times_factor, &error);
-        struct study_result *result = &study.results[0];
-        struct case_file *file = &study.settings.file;
-        const struct settings settings = result->settings;
-        const struct scheme scheme = result->scheme;
-        *result = (struct study_result){.settings = settings, .scheme = scheme};
-        study.status = STATUS_OK;
-        file->gates[0] = (struct case_gate){.field = FIELD_DENSITY,
-                                            .gate = {1, (double)INFINITY, beyond ? 1e-9 : 1}};
-        file->gate_count = file->ladder_count = 1;
+        begin("sod", NULL, 1, times_factor);
+        file->gates[0] = (struct case_gate){.gate = {1, (double)INFINITY, beyond ? 1e-9 : 1}};
+        file->ladder_count = 1;
         file->ladder[0] = 320; /* the finest of this study */
-        assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
-        const struct study_order *order = &result->orders[0][0];
+        const struct study_order *order = &judged()->orders[0][0];
         assert_int_equal(order->status, beyond ? FINDING_FAIL : FINDING_SMOKE);
         assert_int_equal(study.status, beyond ? STATUS_CHECK_FAILED : STATUS_OK);
         json_t *run = json_pack("{s:i, s:{s:{s:f}}}", "n", 320, "errors", "density", "l1", 0.5);
@@ -584,7 +373,6 @@ TEST(coarse_runs_are_smoke)
                             beyond ? "fail" : "pass");
         json_decref(list);
         json_decref(run);
-        study_free(&study);
-        pool_free(&pool);
+        end();
     }
 }
