@@ -10,6 +10,7 @@
 #include "pages.h"
 #include "plan.h"
 #include "specialise.h"
+#include "team.h"
 
 struct cells_method cells_method_of(const struct scheme *scheme, const struct plan *plan)
 {
@@ -430,7 +431,7 @@ void cells_describe(const struct cells *cells, const struct cells_fields *fields
         for (size_t k = 0; k < count; k++)
             if (order[k] < fields->n)
                 of[k] = describe(cells, fields, first + k, order[k],
-                                 &cells->lanes[lanes_thread()].reader);
+                                 &cells->lanes[team_thread()].reader);
         for (size_t k = 0; k < count; k++)
             if (order[k] < fields->n) visit(context, order[k], &of[k]);
     }

@@ -80,8 +80,8 @@ static void expect_pass(struct cells *cells, const struct cells_fields *fields, 
     }
 }
 
-/* What is expected of particles that are awake stands in the same array as what arrives at
- * sleepers; sums at these are in the order of the slots. */
+/* The array has, for particles that are awake, what their sleeping neighbours have to expect, and
+ * for sleepers what arrives, added up in the order of the slots by one thread. */
 void cells_wake(struct cells *cells, const struct cells_fields *fields,
                 const struct cells_quiet *quiet, unsigned char *asleep)
 {

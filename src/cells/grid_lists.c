@@ -8,10 +8,7 @@
 #include "grid_inside.h"
 #include "pages.h"
 #include "specialise.h"
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
+#include "team.h"
 
 static int32_t *pool_take(struct grid_pool *pool, size_t most)
 {
@@ -342,15 +339,6 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
     return longest;
 }
 
-static int thread_number(void)
-{
-#ifdef _OPENMP
-    return omp_get_thread_num();
-#else
-    return 0;
-#endif
-}
-
 enum status grid_make_lists(struct grid *grid, struct error *error)
 {
     for (int t = 0; t < grid->threads; t++) {
@@ -365,7 +353,7 @@ enum status grid_make_lists(struct grid *grid, struct error *error)
 #pragma omp parallel for num_threads(grid->team) schedule(dynamic) reduction(max : longest) \
     reduction(&& : enough) if (grid->team > 1)
     for (size_t p = 0; p < grid->parts; p++) {
-        const int t = thread_number();
+        const int t = team_thread();
         for (size_t cell = grid->part_cell[p]; cell < grid->part_cell[p + 1]; cell++) {
             ptrdiff_t c[3];
             grid_cell_coordinates(grid, cell, c);

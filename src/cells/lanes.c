@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "specialise.h"
+#include "team.h"
 
 int lanes_longest_record(const struct cells *cells)
 {
@@ -195,7 +196,7 @@ void lanes_all(struct cells *cells, const struct cells_fields *fields, lanes_pas
     const size_t parts = grid_parts(cells->grid, &begin);
 #pragma omp parallel for num_threads(cells->team) schedule(dynamic) if (cells->team > 1)
     for (size_t p = 0; p < parts; p++) {
-        struct lanes *lanes = &cells->lanes[lanes_thread()];
+        struct lanes *lanes = &cells->lanes[team_thread()];
         for (size_t slot = begin[p]; slot < begin[p + 1]; slot++)
             if (cells->lists[slot].kept) pass(cells, fields, slot, lanes);
     }

@@ -4,10 +4,6 @@
 #ifndef SPHPROOF_LANES_H
 #define SPHPROOF_LANES_H
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include "cells.h"
 #include "gather.h"
 #include "reactions.h"
@@ -83,8 +79,9 @@ enum lanes_array {
     LANE_GX_J,
     LANE_GY_J,
     LANE_GZ_J,
-    LANE_LAST, /* of a reaction in 3D, with the one before the end */
-    LANES_OWN = LANE_LAST + 2,
+    LANE_REACTION_END, /* the longest reaction, closed in 3D, has two values more than lanes so far
+                        */
+    LANES_OWN = LANE_REACTION_END + 2,
     LANE_REACTION = LANE_SLOPE_I /* what neighbours get: force, energy, signal speed; once slopes, q
                                     and what is spare are not needed any more. Behind them what
                                     shifting gives: momentum, energy, mass, what gradients make of
@@ -141,20 +138,10 @@ struct cells {
     struct lanes_layout density, matrix, force, shift; /* shift: of the switch */
     struct lanes *lanes;                               /* of each thread */
     struct lanes_newton newton;
-    const struct cells_quiet *quiet; /* while it is found who wakes and who falls asleep */
+    const struct cells_quiet *quiet; /* arguments of cells_wake and cells_lull, for their passes */
     unsigned char *asleep;
     struct reactions reactions;
 };
-
-/* The number of the calling thread, whose lanes are its own. */
-static inline int lanes_thread(void)
-{
-#ifdef _OPENMP
-    return omp_get_thread_num();
-#else
-    return 0;
-#endif
-}
 
 /* Values of a reaction. */
 static inline int cells_reaction_values(const struct cells_method *method)

@@ -7,6 +7,7 @@
 #include "lanes.h"
 #include "pages.h"
 #include "specialise.h"
+#include "team.h"
 
 #if SPHPROOF_CLONES && defined __x86_64__
 #include <immintrin.h>
@@ -87,7 +88,7 @@ void reactions_all(struct cells *cells, const struct cells_fields *fields, lanes
     }
 #pragma omp parallel for num_threads(cells->team) schedule(dynamic) if (cells->team > 1)
     for (size_t c = 0; c < reactions->chunks; c++) {
-        struct lanes *lanes = &cells->lanes[lanes_thread()];
+        struct lanes *lanes = &cells->lanes[team_thread()];
         work(cells, fields, c, lanes, pass);
     }
 }

@@ -68,7 +68,7 @@ static void limit_time_step(struct simulation *simulation, double rate)
     simulation->time_step = simulation->scheme.cfl / largest(rate, simulation->sleep.rate);
 }
 
-/* Is there a constant of which closed gradients make something? On a lattice there is none. */
+/* Do closed gradients still make something of a constant? On a lattice they never do. */
 static bool unsettled(const struct particles *a)
 {
     for (int k = 0; k < a->dim; k++)
@@ -77,17 +77,26 @@ static bool unsettled(const struct particles *a)
     return false;
 }
 
+/* Forces; those of a first state with closed gradients once it has potentials. */
+static enum status find_forces(struct simulation *simulation, double *rate, struct error *error)
+{
+    const struct plan *plan = &simulation->plan;
+    const bool first = simulation->dt <= 0;
+    enum status status = plan->sums->forces(simulation, rate, error);
+    for (int k = 1; first && plan->closed && k < SHIFTING_START && !status; k++) {
+        if (!unsettled(&simulation->particles)) break;
+        status = plan->sums->forces(simulation, rate, error);
+    }
+    return status;
+}
+
 /* Rates of a state whose neighbours, widths and densities are known. */
 static enum status find_rates(struct simulation *simulation, struct error *error)
 {
     const struct plan *plan = &simulation->plan;
     double rate;
     if (plan->matrix || plan->slope) plan->sums->matrix(simulation);
-    enum status status = plan->sums->forces(simulation, &rate, error);
-    for (int k = 1; status == STATUS_OK && plan->closed && simulation->dt <= 0 &&
-                    k < SHIFTING_START && unsettled(&simulation->particles);
-         k++)
-        status = plan->sums->forces(simulation, &rate, error);
+    const enum status status = find_forces(simulation, &rate, error);
     if (status == STATUS_OK && plan->gravity) fall(simulation);
     if (status == STATUS_OK) fixed_rates(simulation);
     if (status == STATUS_OK && plan->jump) plan->sums->find_switch(simulation);

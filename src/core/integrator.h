@@ -15,10 +15,11 @@ extern const struct family integrator_family;
 struct integrator {
     struct member member;
     int order;
-    int evaluations;   /* of the rates, a step */
-    double cfl;        /* default of the key cfl, in support radii; see the member's comment */
-    double cloud_cfl;  /* the same in 2D and 3D, unless viscosity takes the form mu; 0: cfl */
-    double closed_cfl; /* the same with shifting=closed, for which longer steps are less accurate */
+    int evaluations;  /* of the rates, a step */
+    double cfl;       /* default of the key cfl, in support radii; see the member's comment */
+    double cloud_cfl; /* the same in 2D and 3D, unless viscosity takes the form mu; 0: cfl */
+    double
+        closed_cfl; /* in its place with shifting=closed: vortices then gain from shorter steps */
     bool cfl_per_width; /* the default is cfl / eta: in particle spacings */
     /* Density is summed at even distances in time, and energy is not conserved to a high order: h
      * may be predicted, and total energy should be integrated (see scheme_default). */

@@ -66,9 +66,10 @@ void scheme_default(struct scheme *scheme, const struct scheme_open *open, int d
     /* mu grows as h/r where particles close: in a strong shock (sedov_2d) longer steps would leave
      * cold gas ahead of it without internal energy */
     const bool bounded = viscosity->none || scheme->viscosity_form == VISCOSITY_FORM_SIGNAL;
+    const double cloud_cfl =
+        scheme->shifting == SHIFTING_CLOSED ? integrator->closed_cfl : integrator->cloud_cfl;
     scheme->cfl = long_steps                                        ? kernel->predicted.cfl
-                  : scheme->shifting == SHIFTING_CLOSED             ? integrator->closed_cfl
-                  : dim > 1 && bounded && integrator->cloud_cfl > 0 ? integrator->cloud_cfl
+                  : dim > 1 && bounded && integrator->cloud_cfl > 0 ? cloud_cfl
                                                                     : integrator->cfl;
     if (integrator->cfl_per_width) scheme->cfl /= scheme->eta;
 }

@@ -17,8 +17,8 @@
 
 #include "specialise.h"
 
-/* The longest potential, over h. In shocks and where spacings jump the sum of gradients is no
- * disorder, and closing it there would carry it far into the gas around. */
+/* The longest potential, times h. In shocks and where spacings jump, gradients add up to something
+ * that is no disorder, and to close them would change the forces far into the gas around. */
 #define SHIFTING_POTENTIAL 0.05
 /* Evaluations of the first state, which has no potentials yet. */
 #define SHIFTING_START 8
@@ -33,10 +33,10 @@ ALWAYS_INLINE void shifting_limit(int dim, double most, double *vector)
 }
 
 /* The velocity relative to the flow, 0.7 s - 0.12 eta h c E, at most c/10, in place of the last
- * evaluation's s; E is what the particle's gradient makes of 1. With a memory of the last shift
- * (the heavy-ball method of iterations) particles settle three times as fast as the longest stable
- * shift would let them without. The factor eta makes that limit, a number of spacings in a step,
- * the same for all widths. */
+ * evaluation's s; E is what the particle's gradient makes of 1. A shift that
+ * remembers the last one (the heavy-ball method of iterations) may be stronger before it becomes
+ * unstable. The factor eta makes that limit, a number of spacings in a step, the same for all
+ * widths. */
 ALWAYS_INLINE void shifting_velocity(int dim, const double *of_one, double eta, double h, double c,
                                      double *shift)
 {

@@ -489,14 +489,13 @@ static void add_straight(const struct simulation *simulation, struct conservatio
     sums->kinetic = (double)kinetic;
 }
 
-/* Two threads at most, each with sums of its own: in any other order they would come out otherwise.
- */
+/* Two threads, each with whole sums, so that these are added in the same order as by one. */
 void simulation_conservation(const struct simulation *simulation, struct conservation *sums)
 {
     const struct particles *a = &simulation->particles;
     const bool shared = simulation->team.size > 1 && a->n >= WORTH_A_THREAD * BATCH_MAX;
     *sums = (struct conservation){0};
-#pragma omp parallel sections num_threads(simulation->team.size) if (shared && a->dim > 1)
+#pragma omp parallel sections num_threads(2) if (shared && a->dim > 1)
     {
         add_straight(simulation, sums);
 #pragma omp section

@@ -10,6 +10,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
 struct team {
     int most;       /* threads there are, >= 1 */
     int size;       /* at work: most or 1 */
@@ -29,5 +33,15 @@ void team_step(struct team *team, double now);
 
 /* Excludes the time from here to the next step from the measurement. */
 void team_pause(struct team *team);
+
+/* The number of the calling thread among those of a parallel region, from 0. */
+static inline int team_thread(void)
+{
+#ifdef _OPENMP
+    return omp_get_thread_num();
+#else
+    return 0;
+#endif
+}
 
 #endif

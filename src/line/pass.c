@@ -3,19 +3,7 @@
 
 #include "line.h"
 #include "specialise.h"
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
-static int thread_number(void)
-{
-#ifdef _OPENMP
-    return omp_get_thread_num();
-#else
-    return 0;
-#endif
-}
+#include "team.h"
 
 static void tally_add(struct tally *all, const struct tally *own)
 {
@@ -40,7 +28,7 @@ struct tally pass_all(struct simulation *simulation, range_pass *pass)
     }
 #pragma omp parallel num_threads(simulation->team.size)
     {
-        struct tally own = {.thread = thread_number(), .without_root = PTRDIFF_MAX};
+        struct tally own = {.thread = team_thread(), .without_root = PTRDIFF_MAX};
 #pragma omp for schedule(static) nowait
         for (ptrdiff_t b = 0; b < count; b++) pass(simulation, &line->ranges[b], &own);
 #pragma omp critical(tally)

@@ -188,6 +188,27 @@ TEST(spreads_particles)
     }
 }
 
+/* A second evaluation of the same state adds its shift to 0.7 of the first one. */
+TEST(remembers_its_last_shift)
+{
+    for (int dim = 2; dim <= 3; dim++) {
+        draw_state = 31;
+        const struct setup setup = setup_of(dim, dim == 2 ? 24 : 9, 0.02, 0);
+        struct simulation *simulation = made_of(&setup);
+        const struct particles *a = &simulation->particles;
+        double first[3][N], most = 0;
+        for (int b = 0; b < dim; b++) memcpy(first[b], a->shift[b], (size_t)a->n * sizeof(double));
+        simulation->plan.sums->matrix(simulation);
+        for (ptrdiff_t i = 0; i < a->n; i++)
+            for (int b = 0; b < dim; b++) {
+                near_below(fabs(a->shift[b][i] - 1.7 * first[b][i]), 1e-13 * a->c[i]);
+                most = fmax(most, fabs(first[b][i]) / a->c[i]);
+            }
+        assert_true(most > 1e-3 && most < 0.1 / 1.7 / sqrt(dim)); /* none is at its limit */
+        simulation_destroy(simulation);
+    }
+}
+
 /* rms force for each volume of gas at rest at a pressure of 1: what gradients make of a constant.
  * Both kinds of gas have the same volumes, which have to be known for uniform pressure. */
 static double of_constant(int dim, const char *kind)
