@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """rates.py SPHPROOF: `sphproof rates` against rates that independent code computed (data:
-rates_2d.csv and rates_3d.csv: one evaluation on rates_*_particles.csv, h to 1e-14), in any order of
-columns, in 1D, and what --check says of rates that are wrong."""
+rates_2d.csv and rates_3d.csv: one evaluation on rates_*_particles.csv, h to 1e-14, of which every
+ninth particle stands there), in any order of columns, in 1D, and what --check says of rates that
+are wrong."""
 import csv
 import json
 import math
@@ -47,7 +48,7 @@ def against_data(dim):
     for name in SETS:
         got = rates(particles(dim), *scheme(name, dim))["particles"]
         mine = [r for r in rows if r["set"] == name]
-        assert len(mine) > 50
+        assert len(mine) > 20
         for column in ["h", "rho", "P", "dU"] + ["F" + a for a in axes]:
             scale = max(abs(float(r[column])) for r in mine)
             for r in mine:
