@@ -130,8 +130,7 @@ enum status output_close(struct output *output, struct error *error)
                                          : STATUS_OK;
     }
     /* part of a long write failed without a reason: the next write fails again and gives it */
-    if (reason == EIO && output->temporary && write(fileno(output->stream), "", 1) < 0)
-        reason = errno;
+    if (reason == EIO && write(fileno(output->stream), "", 1) < 0) reason = errno;
     if (fclose(output->stream) && !reason) reason = errno;
     if (!reason && output->temporary && rename(output->temporary, output->path)) reason = errno;
     if (reason && output->temporary) unlink(output->temporary);

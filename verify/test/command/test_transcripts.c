@@ -5,12 +5,16 @@
  *
  * A transcript: "$ WORDS" runs a command, its output follows, and "exit N" unless N is 0; of a long
  * output the number of its lines and a digest. "< FILE" writes what follows up to a line "." into
- * FILE. "$ show FILE" prints a file; of rows of numbers their sums. There is a gnuplot that keeps
- * its script as drawn.gp. With SPHPROOF_KEEP=FOLDER the transcripts are written there as they
- * should be, and NAME.whole with the outputs whole, to be compared with those of another build. */
+ * FILE. "$ show FILE" prints a file, of rows of numbers their sums, or the names in a folder. There
+ * is a gnuplot that keeps its script as drawn.gp. "$ WORDS > FILE" sends standard output there, and
+ * not into the transcript. "$ compute report FOLDER" puts results drawn at random for all that a
+ * quick report computes (made_pieces.h) into that cache. With SPHPROOF_KEEP=FOLDER the transcripts
+ * are written there as they should be, and NAME.whole with the outputs whole, to be compared with
+ * those of another build. */
 #include "test.h"
 
 #include <ctype.h>
+#include <dirent.h>
 #include <errno.h>
 #include <math.h>
 #include <stdbool.h>
@@ -23,6 +27,8 @@
 #include "buffer.h"
 #include "command.h"
 #include "made_document.h"
+#include "made_pieces.h"
+#include "report.h"
 
 enum { SHORT = 6, WORDS = 48, COLUMNS = 12, LINE_MAX = 1 << 16 };
 
@@ -63,11 +69,27 @@ static size_t numbers_of(const char *line, double values[COLUMNS])
     return n;
 }
 
+static void show_folder(struct buffer *to, const char *path)
+{
+    struct dirent **entries;
+    const int n = scandir(path, &entries, NULL, alphasort);
+    for (int i = 0; i < n; i++) {
+        if (entries[i]->d_name[0] != '.') buffer_format(to, "%s\n", entries[i]->d_name);
+        free(entries[i]);
+    }
+    free(entries);
+}
+
 /* Sums of the columns, and of the columns times the row's number, so that order matters. */
 static void show(struct buffer *to, const char *path)
 {
     double sum[2 * COLUMNS] = {0}, values[COLUMNS];
     size_t rows = 0, width = 0, missing = 0;
+    struct stat is;
+    if (stat(path, &is) == 0 && S_ISDIR(is.st_mode)) {
+        show_folder(to, path);
+        return;
+    }
     char *text = read_all(path);
     if (!text) {
         buffer_format(to, "no file %s\n", path);
@@ -121,17 +143,39 @@ static int split(char *line, char *words[WORDS])
 
 /* What depends on the machine, the day, the build: what follows these words on a line is left out.
  */
-static const char *const left_out[] = {
-    "\"version\": ",      "\"git\": ",     "\"compiler\": ",
-    "\"flags\": ",        "\"system\": ",  "\"architecture\": ",
-    "\"processor\": ",    "\"cores\": ",   "\"date\": ",
-    "\"wall_s\": ",       "\"cpu_s\": ",   "\"peak_rss_bytes\": ",
-    "\"memory_bytes\": ", "\ncost ",       "pair interactions, ",
-    "\nit would take ",   "\"old_git\": ", "\"new_git\": ",
-    "sphproof 0",         "\"subject\": ", "\"floor\": ",
-    "\"seconds\": ",      "\"bytes\": ",   " results, ",
-    " skipped; ",         "\nold  ",       "\nnew  ",
-    "\"git_before\": ",   " time=\"",      "\n\033[1mcost"};
+static const char *const left_out[] = {"\"version\": ",
+                                       "\"git\": ",
+                                       "\"compiler\": ",
+                                       "\"flags\": ",
+                                       "\"system\": ",
+                                       "\"architecture\": ",
+                                       "\"processor\": ",
+                                       "\"cores\": ",
+                                       "\"date\": ",
+                                       "\"wall_s\": ",
+                                       "\"cpu_s\": ",
+                                       "\"peak_rss_bytes\": ",
+                                       "\"memory_bytes\": ",
+                                       "\ncost ",
+                                       "pair interactions, ",
+                                       "\nit would take ",
+                                       "\"old_git\": ",
+                                       "\"new_git\": ",
+                                       "sphproof 0",
+                                       "\"subject\": ",
+                                       "\"floor\": ",
+                                       "\"seconds\": ",
+                                       "\"bytes\": ",
+                                       " results, ",
+                                       " skipped; ",
+                                       "\nold  ",
+                                       "\nnew  ",
+                                       "\ngit ",
+                                       "/cache; ",
+                                       "\nreport: ",
+                                       "\"git_before\": ",
+                                       " time=\"",
+                                       "\n\033[1mcost"};
 
 /* Where the blanks before the last word begin. */
 static char *last_column(char *line)
@@ -226,13 +270,42 @@ static void add_output(struct buffer *to, FILE *whole, const char *text)
     free(same);
 }
 
-/* In this process; both streams go to one file. */
+static void compute_report(const char *into)
+{
+    char drawn[2048];
+    struct error error = {0};
+    struct report *report;
+    struct cache cache;
+    snprintf(drawn, sizeof drawn, "%.2000s/../drawn", folder);
+    json_t *template = made_template(drawn, "pieces.json");
+    struct made_draw draw = {0, template};
+    assert_int_equal(report_create(REPORT_QUICK, &report, &error), STATUS_OK);
+    assert_int_equal(cache_open(&cache, into, false, &error), STATUS_OK);
+    made_pieces(&draw, report_pool(report), 20);
+    for (size_t i = 0; i < report_pool(report)->count; i++) {
+        const struct pool_job *job = &report_pool(report)->jobs[i];
+        json_t *reply = json_pack("{s:i, s:s, s:o?}", "status", (int)job->error.status, "message",
+                                  job->error.message, "document", json_incref(job->document));
+        assert_int_equal(cache_store(&cache, job->key, reply, &error), STATUS_OK);
+        json_decref(reply);
+    }
+    report_destroy(report);
+    json_decref(template);
+}
+
+/* In this process; both streams go to one file, but for standard output that is sent elsewhere. */
 static void run(struct buffer *result, FILE *whole, char *line)
 {
     struct buffer output = {0}, shown = {0}, *to = &output;
     char *text;
     char program[] = "sphproof", *words[WORDS + 1] = {program};
-    const int n = 1 + split(line, words + 1);
+    int n = 1 + split(line, words + 1);
+    const char *elsewhere = n > 3 && !strcmp(words[n - 2], ">") ? words[n - 1] : NULL;
+    if (elsewhere) n -= 2;
+    if (n == 4 && !strcmp(words[1], "compute")) {
+        compute_report(words[3]);
+        return;
+    }
     if (n > 2 && !strcmp(words[1], "show")) {
         show(&shown, words[2]);
         text = buffer_take(&shown);
@@ -245,6 +318,7 @@ static void run(struct buffer *result, FILE *whole, char *line)
     const int out = dup(1), err = dup(2);
     assert_non_null(freopen("output", "w", stdout));
     dup2(1, 2);
+    if (elsewhere) assert_non_null(freopen(elsewhere, "w", stdout));
     const int status = command_main(n, words);
     fflush(NULL);
     dup2(out, 1), dup2(err, 2);

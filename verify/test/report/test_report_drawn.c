@@ -11,6 +11,7 @@
 
 #include "buffer.h"
 #include "made_document.h"
+#include "made_pieces.h"
 #include "made_place.h"
 #include "report.h"
 #include "report_piece.h"
@@ -18,11 +19,6 @@
 #include "value.h"
 
 static const char *folder;
-
-static bool begins(const char *text, const char *with)
-{
-    return !strncmp(text, with, strlen(with));
-}
 
 static void compare(struct made_kept *kept, const char *what, size_t number, struct buffer *text)
 {
@@ -52,47 +48,6 @@ static void add_document(struct buffer *to, json_t *document)
     for (char *at = text; (at = strstr(at, place)); at++) memset(at, '~', strlen(place));
     buffer_add(to, text);
     free(text);
-}
-
-static const json_t *template_of(const json_t *template, const char *job)
-{
-    const char *const kinds[][2] = {{"checks of", "verify"},
-                                    {"kernel ", "kernel"},
-                                    {"league", "league"},
-                                    {"work-precision", "bench"},
-                                    {"profile", "profiled"}};
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-        if (begins(job, kinds[i][0])) return json_object_get(template, kinds[i][1]);
-    return json_object_get(template, "run");
-}
-
-/* The number of particles of a run as its name says, or its piece. */
-static void set_size(struct pool_job *job)
-{
-    const char *named = strstr(job->name, ", n = ");
-    const struct report_piece *piece = job->context;
-    if (!named && !begins(job->name, "profile")) return;
-    const double n = named ? atof(named + 6) : settings_real(&piece->run.settings, SETTING_n);
-    json_object_set_new(job->document, "n", json_integer((json_int_t)n));
-    json_object_set_new(job->document, "spacing", json_real(1 / n));
-}
-
-static void invent(struct made_draw *draw, struct pool *pool, size_t sound)
-{
-    pool->found = 3;
-    for (size_t i = 0; i < pool->count; i++) {
-        struct pool_job *job = &pool->jobs[i];
-        const json_t *kind = template_of(draw->template, job->name);
-        const bool checks = kind == json_object_get(draw->template, "verify");
-        job->done = true;
-        if (!made_below(draw, sound) && !checks) {
-            error_set(&job->error, STATUS_BROKE_DOWN, "job %zu broke down", i);
-            job->crashed = true;
-        } else {
-            job->document = made_document(draw, kind);
-            set_size(job);
-        }
-    }
 }
 
 static void write_text(const char *name, const char *text)
@@ -164,7 +119,7 @@ TEST(reports)
     struct report *report = planned(&kept, REPORT_QUICK);
     struct pool *pool = report_pool(report);
     compute_some(pool);
-    invent(&draw, pool, 150);
+    made_pieces(&draw, pool, 150);
     if (report_judge(report, place, &results, &error)) fail_msg("%s", error.message);
     add_document(&text, results);
     compare(&kept, "report", 0, &text);
