@@ -9,7 +9,7 @@
 static size_t count_crossed(const struct snapshot *snapshot)
 {
     size_t crossed = 0;
-    for (size_t i = 0; i < snapshot->n; i++)
+    for (size_t i = 0; snapshot->id && i < snapshot->n; i++)
         crossed += snapshot->id[(i + 1) % snapshot->n] != (snapshot->id[i] + 1) % snapshot->n;
     return crossed;
 }
