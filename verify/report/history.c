@@ -278,7 +278,7 @@ static void add_changes(const struct metric *metric, const json_t *nights, json_
     size_t night[HISTORY_NIGHTS_MAX], n = 0;
     struct trend_change found[HISTORY_NIGHTS_MAX]; /* no more than nights */
     const bool order = metric->kind == READING_ORDER;
-    for (size_t i = 0; i < json_array_size(nights) && i < HISTORY_NIGHTS_MAX; i++) {
+    for (size_t i = 0; i < json_array_size(nights); i++) {
         const json_t *figures = json_object_get(json_array_get(nights, i), "figures");
         const double now = value_member(figures, metric->path);
         if (!isfinite(now)) continue;

@@ -8,9 +8,11 @@
  * FILE. "$ show FILE" prints a file, of rows of numbers their sums, or the names in a folder. There
  * is a gnuplot that keeps its script as drawn.gp. "$ WORDS > FILE" sends standard output there, and
  * not into the transcript. "$ compute report FOLDER" puts results drawn at random for all that a
- * quick report computes (made_pieces.h) into that cache. With SPHPROOF_KEEP=FOLDER the transcripts
- * are written there as they should be, and NAME.whole with the outputs whole, to be compared with
- * those of another build. */
+ * quick report computes (made_pieces.h) into that cache. "$ damage FROM TO vx=vy 1 2 9" exchanges
+ * two columns of the snapshot FROM in every second row from the first to the ninth (all of them
+ * unless that is said); "u*2" doubles one, "x+1" adds to it. With SPHPROOF_KEEP=FOLDER the
+ * transcripts are written there as they should be, and NAME.whole with the outputs whole, to be
+ * compared with those of another build. */
 #include "test.h"
 
 #include <ctype.h>
@@ -293,6 +295,49 @@ static void compute_report(const char *into)
     json_decref(template);
 }
 
+static int column_of(const char *names, const char *name, size_t length)
+{
+    int column = 0;
+    for (; *names && *names != '\n'; names += strcspn(names, ",\n") + 1, column++)
+        if (strcspn(names, ",\n") == length && !strncmp(names, name, length)) return column;
+    fail_msg("no column %s", name);
+    return -1;
+}
+
+/* words: FROM TO CHANGE [FIRST STRIDE LAST] */
+static void damage(char **words, int n)
+{
+    const long first = n > 3 ? atol(words[3]) : 1, stride = n > 4 ? atol(words[4]) : 1,
+               last = n > 5 ? atol(words[5]) : 1L << 30;
+    const size_t length = strcspn(words[2], "=*+");
+    const char how = words[2][length], *by = words[2] + length + 1;
+    char *text = read_all(words[0]);
+    struct buffer to = {0};
+    assert_non_null(text);
+    const int column = column_of(text, words[2], length),
+              other = how == '=' ? column_of(text, by, strlen(by)) : column;
+    long row = 0;
+    for (char *line = text, *next; *line; line = next) {
+        double values[COLUMNS];
+        next = line + strcspn(line, "\n") + 1;
+        const size_t columns = numbers_of(line, values);
+        row += columns > 0;
+        if (!columns || row < first || row > last || (row - first) % stride) {
+            buffer_add_bytes(&to, line, (size_t)(next - line));
+            continue;
+        }
+        const double old = values[column];
+        values[column] = how == '=' ? values[other] : how == '*' ? old * atof(by) : old + atof(by);
+        if (how == '=') values[other] = old;
+        for (size_t k = 0; k < columns; k++)
+            buffer_format(&to, "%.17g%s", values[k], k + 1 < columns ? "," : "\n");
+    }
+    free(text);
+    text = buffer_take(&to);
+    write_all(words[1], text);
+    free(text);
+}
+
 /* In this process; both streams go to one file, but for standard output that is sent elsewhere. */
 static void run(struct buffer *result, FILE *whole, char *line)
 {
@@ -304,6 +349,10 @@ static void run(struct buffer *result, FILE *whole, char *line)
     if (elsewhere) n -= 2;
     if (n == 4 && !strcmp(words[1], "compute")) {
         compute_report(words[3]);
+        return;
+    }
+    if (n > 4 && !strcmp(words[1], "damage")) {
+        damage(words + 2, n - 2);
         return;
     }
     if (n > 2 && !strcmp(words[1], "show")) {
