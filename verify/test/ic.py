@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """ic.py SPHPROOF: `sphproof ic` writes the particles that `run` starts from, to the last bit, on scenes drawn at
-random; judge reads every format with the errors that its precision allows; SWIFT's h is twice the standard deviation;
-a damaged file is found wrong."""
+random; judge reads every format with the errors that its precision allows; SWIFT's h is twice the standard deviation.
+(Damaged files: damages.py; other refusals: the transcripts.)"""
 import csv
 import json
 import os
@@ -16,13 +16,10 @@ program = os.path.abspath(sys.argv[1])
 SCENES = (("sod", "%d", (40, 200), ("uniform", "clustered")), ("sound_wave", "%d", (16, 64), ("uniform", "clustered")),
           ("gresho", "%d^2", (12, 20), ("square", "hexagonal", "jittered")),
           ("yee", "%d^2", (12, 20), ("square", "jittered")), ("noh_3d", "%d^3", (7, 10), ("cubic", "jittered")))
-BAD = (("ic", "case"), ("ic sod --out a.csv", "--format"), ("ic sod --format csv", "--out"),
-       ("ic sod --format nothing --out a.csv", "gadget_hdf5"), ("ic nothing --format csv --out a.csv", "nothing"),
-       ("ic square boundary=reflecting --format swift --out a.csv", "no walls"),
-       ("ic gresho --format sph_exa --out a.csv", "for 3D"), ("ic sod kernel=none --format csv --out a.csv", "none"),
-       ("ic sod --format csv --out a --json a", "same file"),
-       ("ic sod --as-3d 8 --format csv --out a.csv", "cases in 2D"), ("ic gresho --as-3d 0 --format csv --out a.csv", "1 to"),
-       ("ic gresho --as-3d 7 --format csv --out a.csv", "at least 8 layers"), ("ic square --as-3d 8 --format csv --out a.csv", "at least 9 layers"),
+BAD = (("ic square boundary=reflecting --format swift --out a.csv", "no walls"),
+       ("ic sod kernel=none --format csv --out a.csv", "none"), ("ic sod --format csv --out a --json a", "same file"),
+       ("ic gresho --as-3d 0 --format csv --out a.csv", "1 to"),
+       ("ic square --as-3d 8 --format csv --out a.csv", "at least 9 layers"),
        ("ic gresho n=16^2 eta=4 --as-3d 8 --format csv --out a.csv", "at least 9 layers"),
        ("ic gresho n=19^2 eta=4 --as-3d 8 --format csv --out a.csv", "at least 9 layers"))
 
@@ -55,22 +52,6 @@ def test_bits(draw):
                  "--quiet")
             call("ic", case, *keys, "t_end=1e-9", "--format", name, "--out", "ic." + ending)
             assert content("ic." + ending) == content("run_0000." + ending), (case, keys, name)
-
-
-def test_judge():
-    said = call("ic", "gresho", "n=16^2", "--format", "csv", "--out", "right.csv")
-    assert "256 particles" in said, said
-    status, right = judged("right.csv", "gresho")
-    assert status == 0 and right["errors"]["velocity"]["l1"] < 1e-15, right
-    with open("right.csv", encoding="ascii") as file:
-        lines = [line for line in file if line[0] != "#"]
-        remarks = [line for line in content("right.csv").decode().splitlines(True) if line[0] == "#"]
-    rows = list(csv.DictReader(lines))
-    for row in rows[::4]:
-        row["vx"] = repr(float(row["vx"]) + 1)
-    with open("wrong.csv", "w", encoding="ascii") as file:
-        file.writelines([lines[0], *remarks, *(",".join(row.values()) + "\n" for row in rows)])
-    assert judged("wrong.csv", "gresho")[1]["errors"]["velocity"]["l1"] > 0.01
 
 
 def test_every_format(draw):
@@ -173,7 +154,6 @@ print("seed", seed)
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)
     test_bits(random.Random(seed))
-    test_judge()
     test_every_format(random.Random(seed))
     test_last_place()
     test_swift()
