@@ -9,8 +9,9 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
+
+#include "clock.h"
 
 extern char **environ;
 
@@ -81,13 +82,6 @@ static int start(struct child *child, char *const argv[], const sigset_t *mask)
     return code;
 }
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* Reads what is there; closes the descriptor at its end. */
 static void drain(int *descriptor, struct buffer *into)
 {
@@ -109,7 +103,7 @@ static bool converse(struct child *child, const char *input, size_t size, double
     while (child->in >= 0 || child->out >= 0 || child->err >= 0) {
         struct pollfd polled[3] = {
             {child->in, POLLOUT, 0}, {child->out, POLLIN, 0}, {child->err, POLLIN, 0}};
-        double left = end - now();
+        double left = end - clock_wall();
         if (left <= 0) return false;
         if (poll(polled, 3, (int)(1000 * left) + 1) < 0 && errno != EINTR) return false;
         if (polled[0].revents) {
@@ -172,7 +166,7 @@ enum process_status process_filter(char *const argv[], const char *input, size_t
         snprintf(message, n, "%s cannot be run: %s", argv[0], strerror(code));
         status = code == ENOENT || code == EACCES ? PROCESS_NOT_FOUND : PROCESS_FAILED;
     } else {
-        bool timely = converse(&child, input, size, now() + seconds, output, &errors);
+        bool timely = converse(&child, input, size, clock_wall() + seconds, output, &errors);
         status = finish(&child, argv[0], timely, seconds, &errors, message, n);
         if (status == PROCESS_OK && output->failed) {
             snprintf(message, n, "no memory for what %s wrote", argv[0]);

@@ -399,8 +399,9 @@ class Walker:
             self.compared = self.compared and cursor.spelling in PURE
         elif cursor.kind == k.BINARY_OPERATOR:
             self.compared = self.compared or self.operator(cursor)[0] in ("<", ">", "<=", ">=")
+        handle = self.compared and children and children[0].type.spelling == "hid_t"  # of which only the sign is asked
         for child in children:
-            if child.kind.is_expression():
+            if child.kind.is_expression() and not (handle and self.code(child) == "0"):
                 self.expression(child)
         self.in_room, self.compared = outer
 

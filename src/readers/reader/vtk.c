@@ -209,7 +209,7 @@ static bool take_attribute(struct vtk *vtk, bool vectors, struct snapshot_file *
 /* CELLS, VERTICES ...: count and size; since version 5.1 two arrays with names of their own. */
 static bool skip_cells(struct vtk *vtk, bool types)
 {
-    struct array array = {.components = 1, .type = "int"};
+    struct array array = {.name = "cells", .components = 1, .type = "int"};
     size_t count;
     if (!next_count(vtk, "cells", &count)) return false;
     array.tuples = count;
