@@ -6,6 +6,7 @@
 #   out    the report's folder, after setup_report
 set -eu
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd -P)
+targets= # what setup_build builds: all
 
 # setup_help: prints the head of the script that runs, without its first two lines.
 setup_help() { sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0"; }
@@ -163,14 +164,16 @@ setup_build() {
         meson setup "$@" "$directory" "$root" >"$directory/setup.log" 2>&1 ||
             { cat "$directory/setup.log"; return 1; }
     fi
-    steps=$(ninja -n -C "$directory" 2>/dev/null | grep -c '^\[' || true)
+    # shellcheck disable=SC2086 # words on purpose
+    steps=$(ninja -n -C "$directory" $targets 2>/dev/null | grep -c '^\[' || true)
     [ "$steps" -lt 10 ] ||
         echo "compiling, $steps steps; a first build takes about a minute on two cores"
     began=$(date +%s)
     setup_watch "$directory/build.log" &
     watch=$!
     well=0
-    ninja -C "$directory" >"$directory/build.log" 2>&1 || well=1
+    # shellcheck disable=SC2086 # words on purpose
+    ninja -C "$directory" $targets >"$directory/build.log" 2>&1 || well=1
     kill "$watch" 2>/dev/null || true
     wait "$watch" 2>/dev/null || true
     if [ "$steps" -ge 10 ] && [ -t 1 ]; then printf '\r\033[K'; fi
