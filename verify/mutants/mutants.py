@@ -22,6 +22,7 @@ import time
 
 LIST = os.path.join(os.path.dirname(os.path.abspath(__file__)), "mutants.txt")
 OPTIONS = ["-Dclones=false", "-Doptimization=1", "-Dwerror=false", "-Dslow=false"]
+OWN = ("meson-info", "meson-logs", "meson-private", "build.ninja", "compile_commands.json")  # name the build's folder
 WORKERS = 2
 SOME, STEP = "--some", 3  # every third one: what a run of CI has time for
 PATIENCE = 240  # seconds that one verification may take
@@ -31,6 +32,10 @@ class Mutant:
     def __init__(self, name):
         self.name, self.fault, self.group, self.test, self.file, self.also = name, "", "", "", "", ""
         self.old, self.new = [], []
+
+    def targets(self):
+        """What must be built for its judge beside the program."""
+        return (["verify/test/" + self.test] if self.test.startswith("test_") else []) + self.also.split()
 
     def apply(self, tree):
         """Puts the fault into tree; returns the original text."""
@@ -109,30 +114,45 @@ def demand(command):
 class Worker:
     """A copy of the tree with its build, into which one fault after the other is put."""
 
-    def __init__(self, source, folder):
+    def __init__(self, folder):
         folder = os.path.abspath(folder)
         self.tree, self.build = os.path.join(folder, "tree"), os.path.join(folder, "build")
+        self.clean = os.path.join(folder, "clean")
         self.program = os.path.join(self.build, "sphproof")
-        copy_tree(source, self.tree)
 
-    def prepare(self):
+    def prepare(self, first=None):
+        """Configures; takes over what the first worker has built, whose copy of the tree is of the same moment."""
         shutil.rmtree(self.build, ignore_errors=True)
         demand(["meson", "setup", self.build, self.tree] + OPTIONS)
-        demand(["ninja", "-C", self.build, "sphproof"])
+        if first:
+            self.clean = first.clean
+            self.restore()
+
+    def keep(self, targets):
+        """Builds, and keeps a copy of what was built without a fault."""
+        demand(["ninja", "-C", self.build, "sphproof"] + targets)
+        shutil.rmtree(self.clean, ignore_errors=True)
+        shutil.copytree(self.build, self.clean, symlinks=True, ignore=shutil.ignore_patterns(*OWN))
+
+    def restore(self):
+        """Puts back what a fault has changed in the build, with its dates: ninja then has nothing to do."""
+        for folder, _, names in os.walk(self.clean):
+            here = os.path.join(self.build, os.path.relpath(folder, self.clean))
+            os.makedirs(here, exist_ok=True)
+            for name in names:
+                kept, now = os.path.join(folder, name), os.path.join(here, name)
+                if not (os.path.islink(kept) or os.path.exists(now) and os.stat(now).st_mtime_ns == os.stat(kept).st_mtime_ns):
+                    shutil.copy2(kept, now)
 
     def verify(self, mutant):
         """The exit status of what must notice it: a group of checks, a script, a test in C."""
-        if mutant.also:
-            demand(["ninja", "-C", self.build, mutant.also])
         if mutant.group:
             command = [self.program, "verify", *mutant.group.split(), "--first", "--quiet", "--failures",
                        os.path.join(self.build, "failures")]
         elif mutant.test.endswith(".py"):
             command = [sys.executable, os.path.join(self.tree, "verify/test", mutant.test), self.program]
         else:
-            target = "verify/test/" + mutant.test
-            demand(["ninja", "-C", self.build, target])
-            command = self.command_of(os.path.join(self.build, target))
+            command = self.command_of(os.path.join(self.build, mutant.targets()[0]))
         try:
             # there, since what a faulty test leaves behind must not lie in anybody's tree
             result = quietly(command, timeout=PATIENCE, cwd=self.build)
@@ -148,14 +168,15 @@ class Worker:
         return next(t["cmd"] for t in tests if t["cmd"][0] == program)
 
     def judge(self, mutant):
-        """'caught', or why it was not."""
+        """'caught', or why it was not. Leaves the build as it is then."""
         path = os.path.join(self.tree, mutant.file)
         try:
+            date = os.stat(path)
             original = mutant.apply(self.tree)
         except (ValueError, OSError) as error:
             return str(error)
         try:
-            built = quietly(["ninja", "-C", self.build, "sphproof"])
+            built = quietly(["ninja", "-C", self.build, "sphproof"] + mutant.targets())
             if built.returncode:
                 return "does not compile:\n" + built.stdout[-2000:]
             code = self.verify(mutant)
@@ -163,40 +184,59 @@ class Worker:
         finally:
             with open(path, "w") as f:
                 f.write(original)
+            os.utime(path, ns=(date.st_atime_ns, date.st_mtime_ns))
 
 
-def run(source, work, names):
-    mutants = [m for m in read_list() if names in ([], [SOME]) or {m.name, m.group, m.test} & set(names)]
-    if names == [SOME]:
-        mutants = mutants[::STEP]
-    began, outcomes, waiting = time.time(), {}, queue.Queue()
-    # those of one file follow each other: taking one back and putting the next in is one compilation
-    for m in sorted(mutants, key=lambda m: m.file):
-        waiting.put(m)
-    workers = [Worker(source, os.path.join(work, "worker%d" % i))
-               for i in range(min(WORKERS, len(mutants)))]
-    for worker in workers:  # after the copies: all of them are of the same moment
-        worker.prepare()
-    judges = {m.group or m.test: m for m in mutants}
-    failing = {name: workers[0].said for name, m in sorted(judges.items()) if workers[0].verify(m) != 0}
-    if failing:
-        sys.exit("without any fault these fail already: " + "".join("\n%s: %s" % (name, said[-2000:]) for name, said in failing.items()))
+def share(workers, tasks, do):
+    """do(worker, task) for each task, by whichever worker is free."""
+    waiting = queue.Queue()
+    for task in tasks:
+        waiting.put(task)
 
     def work_off(worker):
         while True:
             try:
-                mutant = waiting.get_nowait()
+                task = waiting.get_nowait()
             except queue.Empty:
                 return
-            outcomes[mutant.name] = worker.judge(mutant)
-            print("%3d/%d  %-34s %-14s %s" % (len(outcomes), len(mutants), mutant.name,
-                                              mutant.group or mutant.test, outcomes[mutant.name]), flush=True)
+            do(worker, task)
 
     threads = [threading.Thread(target=work_off, args=(w,)) for w in workers]
     for t in threads:
         t.start()
     for t in threads:
         t.join()
+
+
+def run(source, work, names):
+    mutants = [m for m in read_list() if names in ([], [SOME]) or {m.name, m.group, m.test} & set(names)]
+    if names == [SOME]:
+        mutants = mutants[::STEP]
+    began, outcomes, failing = time.time(), {}, {}
+    workers = [Worker(os.path.join(work, "worker%d" % i)) for i in range(min(WORKERS, len(mutants)))]
+    for worker in workers:
+        copy_tree(source, worker.tree)
+    workers[0].prepare()
+    workers[0].keep(sorted({target for m in mutants for target in m.targets()}))
+    for worker in workers[1:]:
+        worker.prepare(workers[0])
+
+    def without_fault(worker, mutant):
+        if worker.verify(mutant) != 0:
+            failing[mutant.group or mutant.test] = worker.said
+
+    share(workers, {m.group or m.test: m for m in mutants}.values(), without_fault)
+    if failing:
+        sys.exit("without any fault these fail already: " + "".join("\n%s: %s" % (name, said[-2000:]) for name, said in failing.items()))
+
+    def with_fault(worker, mutant):
+        start = time.time()
+        outcomes[mutant.name] = worker.judge(mutant)
+        worker.restore()
+        print("%3d/%d  %-34s %-14s %5.1f s  %s" % (len(outcomes), len(mutants), mutant.name, mutant.group or mutant.test,
+                                                  time.time() - start, outcomes[mutant.name]), flush=True)
+
+    share(workers, mutants, with_fault)
     missed = [m for m in mutants if outcomes[m.name] != "caught"]
     with open(os.path.join(work, "mutants.json"), "w") as f:
         json.dump([{"mutant": m.name, "group": m.group or m.test, "file": m.file, "fault": m.fault,
