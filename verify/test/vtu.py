@@ -151,19 +151,6 @@ def packed(path, to, raw, single_blocks):
         file.write(text + data + b"</AppendedData></VTKFile>")
 
 
-def turned(path, to):
-    """As a machine of the other byte order leaves it."""
-    root = tree.parse(path).getroot()
-    root.set("byte_order", "BigEndian" if sys.byteorder == "little" else "LittleEndian")
-    for element in root.iter("DataArray"):
-        if element.get("format") == "binary":
-            data = base64.b64decode(element.text.strip())
-            width = struct.calcsize(KINDS[element.get("type")])
-            element.text = base64.b64encode(data[:8][::-1] + b"".join(
-                data[k:k + width][::-1] for k in range(8, len(data), width))).decode()
-    tree.ElementTree(root).write(to)
-
-
 def judged(path):
     document = json.loads(run("judge", path, "--allow-far", "--json", "-", "--quiet"))
     return {key: document[key] for key in ("case", "time", "errors", "gamma", "settings") if key in document}
@@ -180,8 +167,7 @@ def random_setups(draw):
         result = judged("s.csv")
         packed("s.vtu", "raw.vtu", True, draw.random() < 0.5)
         packed("s.vtu", "base.vtu", False, draw.random() < 0.5)
-        turned("s.vtu", "turned.vtu")
-        for name in ("s.vtu", draw.choice(["raw.vtu", "base.vtu", "turned.vtu"])):
+        for name in ("s.vtu", draw.choice(["raw.vtu", "base.vtu"])):
             assert judged(name) == result and result["errors"], (words, name)
         if TESTERS and number < 4:
             for python, word in TESTERS:
@@ -218,13 +204,6 @@ def series():
 
 
 def refused():
-    run("run", "sod", "n=64", "t_end=0", "--quiet", "--snapshot", "s.vtu")
-    with open("s.vtu", encoding="ascii") as file:
-        whole = file.read()
-    for part in (0.01, 0.3, 0.9, 0.999):
-        with open("bad.vtu", "w", encoding="ascii") as file:
-            file.write(whole[:int(part * len(whole))])
-        assert "is cut off" in run("judge", "bad.vtu", status=2), part
     said = run("run", "sod", "--snapshot", "s.vtk", status=2)
     assert "'.vtk'; allowed: .csv" in said and ".vtu" in said, said
 
