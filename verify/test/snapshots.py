@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """snapshots.py SPHPROOF: snapshots on the way (`run --snapshot-every`). The run knows nothing of them: its results
 are those of a run without, to the last bit; and each is, to the last bit, what a run leaves that ends there. What
-cannot be is refused, what cannot be written is said and takes nothing else with it."""
+cannot be written is said and takes nothing else with it. (Intervals and refusals: test_snapshots, the transcripts.)"""
 import csv
 import glob
 import json
@@ -75,24 +75,6 @@ def test_bits():
                                      other.stdout), other.stdout)
 
 
-def test_interval():
-    """One that divides t_end leaves none but the usual one there; a name without ending; HDF5 says its time."""
-    for every, count in (("0.05", 4), ("0.2", 1), ("0.1", 2), ("0.19", 2), ("0.0666666666666666666", 3)):
-        for path in glob.glob("folder.d/*"):
-            os.remove(path)
-        os.makedirs("folder.d", exist_ok=True)
-        done = run(["sod", "n=64"], "--snapshot", "folder.d/end", "--snapshot-every", every)
-        names = sorted(os.listdir("folder.d"))
-        expect("every %s" % every, done.returncode == 0 and names == ["end"] + ["end_%04d" % k for k in range(count)],
-               names or done.stderr)
-    done = run(["sod", "n=64"], "--snapshot", "end.hdf5", "--snapshot-every", "0.06")
-    if "without HDF5" in done.stderr:
-        return
-    judged = subprocess.run([program, "judge", "end_0002.hdf5", "--case", "sod", "--json", "-"], capture_output=True,
-                            text=True)
-    expect("HDF5", judged.returncode == 0 and json.loads(judged.stdout)["time"] == 0.12, judged.stdout + judged.stderr)
-
-
 def rows(path):
     with open(path, encoding="utf-8", errors="surrogateescape") as file:
         return [[float(value) for value in line] for line in list(csv.reader(file))[1:]
@@ -112,18 +94,6 @@ def test_late():
     expect("late: what is over", not os.path.exists("late_0000.csv"))
 
 
-def test_refused():
-    for every in ("0", "-0.1", "nan", "inf", "0.21", "1e-9", "x", "", "0.1x"):
-        done = run(["sod", "n=64"], "--snapshot", "bad.csv", "--snapshot-every", every)
-        expect("every '%s'" % every, done.returncode == 2 and "from t_end/10000 to t_end = 0.2" in done.stderr and
-               not glob.glob("bad*"), (done.returncode, done.stderr))
-    for words in ([], ["--snapshot", "-"]):
-        done = run(["sod", "n=64"], "--snapshot-every", "0.1", *words)
-        expect("no name", done.returncode == 2 and "needs --snapshot FILE" in done.stderr and not done.stdout, done.stderr)
-    done = run(["sod", "n=64"], "--snapshot-every", "0.1", "--snapshot", "nowhere/s.csv")
-    expect("no folder", done.returncode == 4 and "nowhere" in done.stderr, done.stderr)
-
-
 def test_trouble():
     """One file cannot be written: the others and all results are there, and it is said."""
     os.makedirs("lost_0002.csv/full")
@@ -141,9 +111,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         test_bits()
-        test_interval()
         test_late()
-        test_refused()
         test_trouble()
         os.chdir("/")
     print("\n".join(faults) or "a run knows nothing of its snapshots")
