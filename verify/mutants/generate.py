@@ -230,9 +230,17 @@ class Walker:
 
     # --- statements ---
 
+    def only_frees(self, cursor):
+        k, children = self.kind, list(cursor.get_children())
+        if cursor.kind == k.COMPOUND_STMT:
+            return bool(children) and all(self.only_frees(c) for c in children)
+        if cursor.kind == k.FOR_STMT or cursor.kind == k.IF_STMT and len(children) == 2:
+            return self.only_frees(children[-1])
+        return cursor.kind.is_expression() and DROPPED_BY_NOBODY.match(self.code(cursor)) is not None
+
     def statement(self, cursor):
         k = self.kind
-        if not self.here(cursor) or self.in_macro(cursor):
+        if not self.here(cursor) or self.in_macro(cursor) or self.only_frees(cursor):
             return
         if cursor.kind == k.COMPOUND_STMT:
             for child in cursor.get_children():
