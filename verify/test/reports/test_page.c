@@ -212,6 +212,12 @@ TEST(skips)
                   "skipped_fraction", 0.25, "possible_fraction", 0.5, "possible_by",
                   "coarse threshold", "saves", 1.25, "spread", 0.03, "difference", 1e-12, "bound",
                   1e-8, "status", "pass", "asleep", 0., 0.5, 1.));
+    struct page made;
+    assert_true(page_make(&made, results));
+    size_t map = 0;
+    while (strcmp(made.plots.files[map].name, "sod-asleep-1.dat") != 0) map++;
+    assert_non_null(strstr(made.plots.files[map].bytes, "\n 0 0.5\n 1 NaN\n"));
+    page_free(&made);
     char *page = page_of(results);
     for (size_t k = 0; k < sizeof contents / sizeof *contents; k++)
         if (!strstr(page, contents[k])) fail_msg("the page lacks %s", contents[k]);
