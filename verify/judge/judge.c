@@ -148,8 +148,6 @@ static enum status gas_make(struct gas *gas, const struct judged *judged, const 
     }
     for (size_t k = 0; k < n; k++) column[11][k] = column[6][k] / column[7][k];
     *s = (struct snapshot){.n = n,
-                           .x = {column[0], column[1], column[2]},
-                           .v = {column[3], column[4], column[5]},
                            .m = column[6],
                            .rho = column[7],
                            .u = column[8],
@@ -158,6 +156,7 @@ static enum status gas_make(struct gas *gas, const struct judged *judged, const 
                            .volume = column[11],
                            .id = gas->id,
                            .time = file->time.value};
+    for (int d = 0; d < file->dim; d++) s->x[d] = column[d], s->v[d] = column[3 + d];
     return STATUS_OK;
 }
 
