@@ -6,7 +6,7 @@
 #   out    the report's folder, after setup_report
 set -eu
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd -P)
-targets= # what setup_build builds: all
+targets= # what setup_build builds; empty: everything
 
 # setup_help: prints the head of the script that runs, without its first two lines.
 setup_help() { sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0"; }

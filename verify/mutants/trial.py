@@ -221,7 +221,7 @@ class Table:
                 with open(marks, "wb") as f:
                     f.truncate(self.count)
                 failed, seconds = run_unit(unit, place, scratch, {"SPHPROOF_REACH": marks}, 200)
-                if failed:  # which marks can be the reason of
+                if failed:  # perhaps because of the marks
                     failed, seconds = run_unit(unit, place, scratch, {}, 200)
                 with open(marks, "rb") as f:
                     seen = f.read()

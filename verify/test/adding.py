@@ -102,7 +102,7 @@ class Tree:
                 raise Failed("verify %s fails: %s" % (name, self.seen("", name, "fail")))
 
     def rejected(self, subject, name, other=""):
-        """This check fails for subject, also where what is called other, which has a fault of its own, is not meant."""
+        """This check fails for subject. Failures that name other, which has a fault of its own in this build, do not count."""
         if all(other in c["subject"].split() for c in self.seen(subject, name, "fail")):
             raise Failed("the fault of %s passed %s" % (subject, name))
 
