@@ -33,7 +33,7 @@ struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool spec
         .local = scheme->steps == STEPS_LOCAL,
         .shift = scheme->shifting != SHIFTING_NONE,
         .closed = scheme->shifting == SHIFTING_CLOSED,
-        .sleep = skip && scheme->shifting == SHIFTING_NONE, /* gas at rest shifts, too */
+        .sleep = skip,
         .quiet = skip,
         .signal_pass = scheme->integrator->signal_pass,
     };
@@ -176,9 +176,8 @@ size_t plan_explain(const struct setup *setup, struct plan_line *lines, size_t m
     line(&writer, "sleep", plan.sleep,
          "skip=auto: no sums where no signal has been; acts as a start changed by 1e-11, in 2D and "
          "3D by up to 1e-8",
-         plan.shift     ? "particle shifting: no particle is at rest"
-         : plan.gravity ? "gravity: no particle is at rest"
-                        : "skip=none: every particle at every step");
+         plan.gravity ? "gravity: no particle is at rest"
+                      : "skip=none: every particle at every step");
     line(&writer, "final state", !scheme->integrator->ends_evaluated,
          "density and equation of state once more at t_end", "the last evaluation was at t_end");
     if (warnings && warnings_size) find_warnings(scheme, setup->dim, warnings, warnings_size);

@@ -61,12 +61,13 @@ double sleep_disturbance(const struct simulation *simulation, ptrdiff_t first, p
     for (ptrdiff_t i = first; i < first + len; i++) {
         const double c = a->c[i] < sound ? sound : a->c[i]; /* NaN stays */
         const double rate = c / a->h[i], force = a->m[i] * c * rate;
-        const double rates[3] = {
+        const double rates[4] = {
             particles_norm(a, a->F, i) / force,
             fabs(a->de[i]) / (force * (c + particles_norm(a, a->v, i))),
             simulation->plan.alpha ? fabs(a->dalpha[i]) / rate : 0,
+            simulation->plan.shift ? particles_norm(a, a->shift, i) / c : 0,
         };
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; k < 4; k++)
             if (!(rates[k] <= worst || isnan(worst))) worst = rates[k];
     }
     return worst * in_tolerances;
@@ -76,51 +77,59 @@ void sleep_begin(struct simulation *simulation, ptrdiff_t first, ptrdiff_t len)
 {
     const struct particles *a = &simulation->particles;
     for (ptrdiff_t i = first; i < first + len; i++) {
+        const bool shifts = simulation->plan.shift;
         a->de[i] = a->dalpha[i] = 0;
+        if (shifts) a->dm[i] = a->de_shift[i] = 0;
         for (int k = 0; k < a->dim; k++) {
             a->F[k][i] = 0;
+            if (shifts) a->shift[k][i] = a->dp_shift[k][i] = 0;
             simulation->sleep.at_rest &= a->p[k][i] == 0;
         }
     }
 }
 
-/* Sums over all awake particles: the rates of momentum and total energy whose opposite would go to
- * sleepers, and the masses and energies by which they are shared out. In long double, so that
- * rounding is not shared out. Over sleepers: the most that they would get, the tolerance of each.
- */
+/* Sums over all awake particles: the rates of mass, momentum and total energy whose opposite would
+ * go to sleepers, and what they are shared out by. In long double, so that rounding is not shared
+ * out. Over sleepers: the most that they would get, the tolerance of each. */
 struct leak {
-    long double force[3], power, mass, momentum[3], heat;
-    double most_force, most_power;
+    long double flow, force[3], power, mass, momentum[3], kinetic, heat;
+    double most_flow, most_force, most_power;
 };
 
 static void add_sleeper(const struct simulation *simulation, ptrdiff_t i, struct leak *leak)
 {
     const struct particles *a = &simulation->particles;
-    const double c = fmax(a->c[i], simulation->sleep.sound);
-    const double force = simulation->sleep.tolerance * a->m[i] * c * c / a->h[i];
-    leak->most_force += force;
-    leak->most_power += force * (c + particles_norm(a, a->v, i));
+    const double c = fmax(a->c[i], simulation->sleep.sound), speed = c + particles_norm(a, a->v, i);
+    const double flow = simulation->sleep.tolerance * a->m[i] * c / a->h[i];
+    leak->most_flow += flow;
+    leak->most_force += flow * (simulation->plan.shift ? c + speed : c);
+    leak->most_power += flow * (simulation->plan.shift ? c + speed : c) * speed;
+}
+
+static void add_awake(const struct simulation *simulation, ptrdiff_t i, struct leak *leak)
+{
+    const struct particles *a = &simulation->particles;
+    const bool total = simulation->scheme.energy == ENERGY_TOTAL, shifts = simulation->plan.shift;
+    leak->mass += a->m[i];
+    leak->heat += a->U[i];
+    leak->power += a->de[i];
+    if (shifts) leak->flow += a->dm[i], leak->power += a->de_shift[i];
+    for (int k = 0; k < a->dim; k++) {
+        const long double momentum = (long double)a->m[i] * a->v[k][i];
+        leak->force[k] += a->F[k][i];
+        if (shifts) leak->force[k] += a->dp_shift[k][i];
+        leak->momentum[k] += momentum;
+        leak->kinetic += 0.5L * momentum * a->v[k][i];
+        if (!total) leak->power += (long double)a->v[k][i] * a->F[k][i];
+    }
 }
 
 static struct leak find_leak(const struct simulation *simulation)
 {
-    const struct particles *a = &simulation->particles;
-    const bool total = simulation->scheme.energy == ENERGY_TOTAL;
     struct leak leak = {0};
-    for (ptrdiff_t i = 0; i < a->n; i++) {
-        if (simulation->plan.sums->sleeps(simulation, i)) {
-            add_sleeper(simulation, i, &leak);
-            continue;
-        }
-        leak.mass += a->m[i];
-        leak.heat += a->U[i];
-        leak.power += a->de[i];
-        for (int k = 0; k < a->dim; k++) {
-            leak.force[k] += a->F[k][i];
-            leak.momentum[k] += (long double)a->m[i] * a->v[k][i];
-            if (!total) leak.power += (long double)a->v[k][i] * a->F[k][i];
-        }
-    }
+    for (ptrdiff_t i = 0; i < simulation->particles.n; i++)
+        (simulation->plan.sums->sleeps(simulation, i) ? add_sleeper : add_awake)(simulation, i,
+                                                                                 &leak);
     return leak;
 }
 
@@ -131,6 +140,7 @@ static long double within(long double leak, double most)
     return leak > most ? most : leak < -most ? -most : leak;
 }
 
+/* Uniform velocity stays uniform: who gives mass gives its momentum and kinetic energy, too. */
 void sleep_balance(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
@@ -138,7 +148,8 @@ void sleep_balance(struct simulation *simulation)
     const ptrdiff_t awake = simulation->sleep.awake_count;
     if (awake == a->n || awake == 0) return;
     const struct leak leak = find_leak(simulation);
-    long double power = within(leak.power, leak.most_power);
+    const double flow = (double)(within(leak.flow, leak.most_flow) / leak.mass);
+    long double power = within(leak.power, leak.most_power) + flow * leak.kinetic;
     double g[3] = {0};
     for (int k = 0; k < a->dim; k++) {
         if (simulation->boundary[k] == BOUNDARY_FIXED) return; /* layers take what they get */
@@ -150,9 +161,10 @@ void sleep_balance(struct simulation *simulation)
     for (ptrdiff_t i = 0; i < a->n; i++) {
         if (simulation->plan.sums->sleeps(simulation, i)) continue;
         a->de[i] -= part * a->U[i];
+        if (flow != 0) a->dm[i] -= flow * a->m[i];
         for (int k = 0; k < a->dim; k++) {
             a->F[k][i] += a->m[i] * g[k];
-            if (total) a->de[i] += a->m[i] * g[k] * a->v[k][i];
+            if (total) a->de[i] += a->m[i] * (g[k] + 0.5 * flow * a->v[k][i]) * a->v[k][i];
         }
     }
 }

@@ -4,8 +4,9 @@
  *
  * A particle is disturbed by |dp/dt| / (tol m c^2/h) or |de/dt| / (tol m c^2 (c + |v|)/h), where c
  * is its sound speed or the setup's mean one, whichever is more (c_s: all energy but that of the
- * common motion taken for heat). In 2D and 3D a sleeper wakes when what neighbours disturbed by
- * more than 1 make of its rates in a step comes to more than 1: the sum of K V h |dW/dr| times
+ * common motion taken for heat); with particle shifting by |shift| / (tol c) as well, as cold gas
+ * in disorder feels hardly any force. In 2D and 3D a sleeper wakes when what neighbours disturbed
+ * by more than 1 make of its rates in a step comes to more than 1: the sum of K V h |dW/dr| times
  * their disturbance, as pressure acts in the equation of motion. K = 4 stands for viscosity,
  * matrices and growth within the step as well. In 1D whole ranges wake around a particle disturbed
  * by more than 1. Everywhere a sleeper wakes for a neighbour that moves against it at more than
@@ -23,9 +24,9 @@
  * with those of a cold gas that a blast will run over. A flow that amplifies round-off amplifies
  * this as well: skips act as a change of the start by the tolerance does.
  *
- * Momentum and energy that sleepers do not get are shared out among those awake (sleep_balance), so
- * that sums stay to round-off, but no more than the tolerance of each sleeper: a force that is not
- * antisymmetric still shows in the sums.
+ * Mass, momentum and energy that sleepers do not get are shared out among those awake
+ * (sleep_balance), so that sums stay to round-off, but no more than the tolerance of each sleeper:
+ * a force that is not antisymmetric still shows in the sums.
  *
  * Of particles that are awake, what vanishes of their pairs is left out, too (plan.quiet):
  * - in 2D and 3D viscosity, where all neighbours move with the particle to a hundredth of tol c and
