@@ -2,6 +2,7 @@
 #include "hydro_against.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "integrator.h"
 #include "oracle.h"
@@ -140,9 +141,25 @@ static void judge_steps(struct check_run *run, const struct simulation *simulati
 
 /* --- both ------------------------------------------------------------------------------------- */
 
+void hydro_put_fault(const struct hydro_fault *fault, struct setup *setup)
+{
+    char *member = (char *)setup + fault->at;
+    int choice = (int)fault->plus;
+    double number;
+    if (fault->size == sizeof number) {
+        memcpy(&number, member, sizeof number);
+        number = fault->times * number + fault->plus;
+        memcpy(member, &number, sizeof number);
+    } else if (fault->size == sizeof choice) {
+        memcpy(member, &choice, sizeof choice);
+    }
+    if (fault->spoil) fault->spoil(setup);
+}
+
 /* steps: 0 for one evaluation. */
-static enum status run_both(struct check_run *run, struct setup *setup, hydro_spoil *spoil,
-                            double steps, const char *where, struct error *error)
+static enum status run_both(struct check_run *run, struct setup *setup,
+                            const struct hydro_fault *fault, double steps, const char *where,
+                            struct error *error)
 {
     struct oracle oracle;
     struct simulation *simulation = NULL;
@@ -151,7 +168,7 @@ static enum status run_both(struct check_run *run, struct setup *setup, hydro_sp
     status = oracle_evaluate(&oracle, error);
     const double t_end = (double)oracle_time_step(&oracle) * steps;
     if (!status && steps > 0) status = oracle_run(&oracle, t_end, error);
-    if (spoil) spoil(setup);
+    if (fault) hydro_put_fault(fault, setup);
     if (!status) status = simulation_create(setup, &simulation, error);
     if (!status && steps > 0) status = simulation_run(simulation, t_end, NULL, NULL, error);
     if (!status) (steps > 0 ? judge_steps : judge_rates)(run, simulation, &oracle, where);
@@ -160,8 +177,8 @@ static enum status run_both(struct check_run *run, struct setup *setup, hydro_sp
     return status;
 }
 
-static void against(struct check_run *run, struct setup *setup, hydro_spoil *spoil, double steps,
-                    const char *where)
+static void against(struct check_run *run, struct setup *setup, const struct hydro_fault *fault,
+                    double steps, const char *where)
 {
     struct error error = {0};
     const struct scheme *scheme = &setup->scheme;
@@ -169,18 +186,18 @@ static void against(struct check_run *run, struct setup *setup, hydro_spoil *spo
         check_skip(run, "%s: %s", where, error.message);
     else if (!oracle_covers(scheme) || (steps > 0 && !oracle_covers_step(scheme->integrator)))
         check_skip(run, "%s: the oracle lacks one of these choices", where);
-    else if (run_both(run, setup, spoil, steps, where, &error))
+    else if (run_both(run, setup, fault, steps, where, &error))
         check_measure(run, 1, 0, 0, "%s: %s", where, error.message);
 }
 
-void hydro_against_rates(struct check_run *run, struct setup setup, hydro_spoil *spoil,
+void hydro_against_rates(struct check_run *run, struct setup setup, const struct hydro_fault *fault,
                          const char *where)
 {
-    against(run, &setup, spoil, 0, where);
+    against(run, &setup, fault, 0, where);
 }
 
-void hydro_against_steps(struct check_run *run, struct setup setup, hydro_spoil *spoil,
+void hydro_against_steps(struct check_run *run, struct setup setup, const struct hydro_fault *fault,
                          double steps, const char *where)
 {
-    against(run, &setup, spoil, steps, where);
+    against(run, &setup, fault, steps, where);
 }

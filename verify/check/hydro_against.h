@@ -4,19 +4,36 @@
 #ifndef SPHPROOF_HYDRO_AGAINST_H
 #define SPHPROOF_HYDRO_AGAINST_H
 
+#include <stddef.h>
+
 #include "check.h"
 #include "simulation.h"
 
-/* What a mutant does to the setup that the solver gets, and only the solver; or NULL. */
-typedef void hydro_spoil(struct setup *setup);
+/* A fault in the setup that the solver gets, and only the solver: one double, or one choice, of it
+ * becomes `times` the right one plus `plus`. Or a function spoils the setup. {0}: no fault. */
+struct hydro_fault {
+    size_t at, size; /* of the member within struct setup */
+    double times, plus;
+    void (*spoil)(struct setup *setup);
+};
+#define HYDRO_TIMES(member, factor)                                                                \
+    {                                                                                              \
+        offsetof(struct setup, member), sizeof(((struct setup *)0)->member), factor, 0, NULL       \
+    }
+#define HYDRO_SET(member, value)                                                                   \
+    {                                                                                              \
+        offsetof(struct setup, member), sizeof(((struct setup *)0)->member), 0, value, NULL        \
+    }
+
+void hydro_put_fault(const struct hydro_fault *fault, struct setup *setup);
 
 /* Density, smoothing length, pressure, volume, force, rates of energy and alpha, and the time step.
  * A scheme that the solver refuses, or of which the oracle lacks a choice, is skipped. */
-void hydro_against_rates(struct check_run *run, struct setup setup, hydro_spoil *spoil,
+void hydro_against_rates(struct check_run *run, struct setup setup, const struct hydro_fault *fault,
                          const char *where);
 
 /* The state and the number of steps after this many of the first time step. */
-void hydro_against_steps(struct check_run *run, struct setup setup, hydro_spoil *spoil,
+void hydro_against_steps(struct check_run *run, struct setup setup, const struct hydro_fault *fault,
                          double steps, const char *where);
 
 #endif

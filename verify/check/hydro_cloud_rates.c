@@ -17,14 +17,14 @@ static size_t side_of(int dim)
 /* A scheme in a dimension; or what a mutant does to the solver's setup, where the scheme is
  * hydro_cloud_scheme() with a geometry and physics of its own. */
 struct cloud_subject {
-    hydro_spoil *spoil;
+    struct hydro_fault fault;
     int dim;
     struct scheme scheme;
 };
 
 static void add(struct check_run *run, int dim, struct scheme scheme)
 {
-    const struct cloud_subject subject = {NULL, dim, scheme};
+    const struct cloud_subject subject = {{0}, dim, scheme};
     check_subject(run, &subject, sizeof subject);
 }
 
@@ -106,118 +106,53 @@ static struct cloud_subject of_mutant(const struct cloud_subject *mutant);
 static void measure(struct check_run *run, const void *subject)
 {
     const struct cloud_subject *given = subject;
-    const struct cloud_subject s = given->spoil ? of_mutant(given) : *given;
+    const struct cloud_subject s = given->fault.size ? of_mutant(given) : *given;
     static struct hydro_cloud cloud;
     hydro_cloud_sheared(&cloud, s.dim, side_of(s.dim));
     char where[CLOUD_TEXT];
     hydro_cloud_describe(&s.scheme, s.dim, where);
-    hydro_against_rates(run, hydro_cloud_setup(&cloud, &s.scheme), s.spoil, where);
+    hydro_against_rates(run, hydro_cloud_setup(&cloud, &s.scheme), &s.fault, where);
 }
 
 /* --- mutants ---------------------------------------------------------------------------------- */
 
-static void wrong_constant(struct setup *setup)
-{
-    setup->scheme.kernel.constant[setup->dim] *= 1 + 1e-9;
-}
-
-static void other_eta(struct setup *setup)
-{
-    setup->scheme.eta *= 1 + 1e-9;
-}
-
-static void loose_h(struct setup *setup)
-{
-    setup->scheme.h_tolerance = 1e-5;
-}
-
-static void corrected_for_ia(struct setup *setup)
-{
-    setup->scheme.gradient = GRADIENT_CORRECTED;
-}
-
-static void ia_for_blended(struct setup *setup)
-{
-    setup->scheme.gradient = GRADIENT_IA;
-}
-
-static void vanilla_for_lagrangian(struct setup *setup)
-{
-    setup->scheme.formulation = FORMULATION_VANILLA_ICE;
-}
-
-static void mass_for_number(struct setup *setup)
-{
-    setup->scheme.volume_element = VOLUME_MASS;
-}
-
-static void mu_for_signal(struct setup *setup)
-{
-    setup->scheme.viscosity_form = VISCOSITY_FORM_MU;
-}
-
-static void without_balsara(struct setup *setup)
-{
-    setup->scheme.balsara = BALSARA_OFF;
-}
-
-static void without_floor(struct setup *setup)
-{
-    setup->scheme.balsara_floor = 0;
-}
-
-static void less_noise(struct setup *setup)
-{
-    setup->scheme.noise *= 1 - 1e-7;
-}
-
-static void less_conductivity(struct setup *setup)
-{
-    setup->scheme.alpha_u *= 1 - 1e-9;
-}
-
-static void float_beta(struct setup *setup)
-{
-    setup->scheme.beta = (double)(float)setup->scheme.beta;
-}
-
-static void reconstructed_only(struct setup *setup)
-{
-    setup->scheme.viscosity = VISCOSITY_RECONSTRUCTED;
-}
-
-#define SPOIL(how, d, ...)                                                                         \
-    (&(const struct cloud_subject){.spoil = how, .dim = d, .scheme = {__VA_ARGS__}})
+#define TIMES(member, factor, d, ...)                                                              \
+    (&(const struct cloud_subject){HYDRO_TIMES(member, factor), d, {__VA_ARGS__}})
+#define SET(member, value, d, ...)                                                                 \
+    (&(const struct cloud_subject){HYDRO_SET(member, value), d, {__VA_ARGS__}})
 static const struct check_mutant mutants[] = {
     {"cloud_kernel_constant", "kernel's constant off by 1e-9",
-     SPOIL(wrong_constant, 2, .alpha_u = 0)},
-    {"cloud_eta", "h too large by 1e-9", SPOIL(other_eta, 3, .alpha_u = 0)},
-    {"cloud_loose_h", "h solved to 1e-5 only", SPOIL(loose_h, 2, .alpha_u = 0)},
+     TIMES(scheme.kernel.constant[2], 1 + 1e-9, 2, .alpha_u = 0)},
+    {"cloud_eta", "h too large by 1e-9", TIMES(scheme.eta, 1 + 1e-9, 3, .alpha_u = 0)},
+    {"cloud_loose_h", "h solved to 1e-5 only", SET(scheme.h_tolerance, 1e-5, 2, .alpha_u = 0)},
     {"cloud_gradient", "corrected where ia is asked for",
-     SPOIL(corrected_for_ia, 3, .gradient = GRADIENT_IA)},
+     SET(scheme.gradient, GRADIENT_CORRECTED, 3, .gradient = GRADIENT_IA)},
     {"cloud_blended", "ia where blended is asked for",
-     SPOIL(ia_for_blended, 2, .gradient = GRADIENT_BLENDED)},
+     SET(scheme.gradient, GRADIENT_IA, 2, .gradient = GRADIENT_BLENDED)},
     {"cloud_formulation", "vanilla_ice where lagrangian is asked for",
-     SPOIL(vanilla_for_lagrangian, 3, .formulation = FORMULATION_LAGRANGIAN)},
+     SET(scheme.formulation, FORMULATION_VANILLA_ICE, 3, .formulation = FORMULATION_LAGRANGIAN)},
     {"cloud_element", "mass element where number is asked for",
-     SPOIL(mass_for_number, 2, .volume_element = VOLUME_NUMBER)},
+     SET(scheme.volume_element, VOLUME_MASS, 2, .volume_element = VOLUME_NUMBER)},
     {"cloud_form", "viscosity by mu where the signal form is asked for",
-     SPOIL(mu_for_signal, 2, .viscosity_form = VISCOSITY_FORM_SIGNAL)},
-    {"cloud_balsara", "no Balsara factor", SPOIL(without_balsara, 3, .balsara = BALSARA_ON)},
+     SET(scheme.viscosity_form, VISCOSITY_FORM_MU, 2, .viscosity_form = VISCOSITY_FORM_SIGNAL)},
+    {"cloud_balsara", "no Balsara factor",
+     SET(scheme.balsara, BALSARA_OFF, 3, .balsara = BALSARA_ON)},
     {"cloud_balsara_floor", "Balsara factor without its floor",
-     SPOIL(without_floor, 2, .balsara = BALSARA_ON)},
+     SET(scheme.balsara_floor, 0, 2, .balsara = BALSARA_ON)},
     {"cloud_noise", "projected: nu off by 1e-7",
-     SPOIL(less_noise, 3, .viscosity = VISCOSITY_PROJECTED)},
+     TIMES(scheme.noise, 1 - 1e-7, 3, .viscosity = VISCOSITY_PROJECTED)},
     {"cloud_projected", "reconstructed for projected",
-     SPOIL(reconstructed_only, 2, .viscosity = VISCOSITY_PROJECTED)},
-    {"cloud_conductivity", "alpha_u off by 1e-9", SPOIL(less_conductivity, 2, .alpha_u = 0.71)},
-    {"cloud_beta_float", "beta off in the seventh digit", SPOIL(float_beta, 3, .alpha_u = 0)},
+     SET(scheme.viscosity, VISCOSITY_RECONSTRUCTED, 2, .viscosity = VISCOSITY_PROJECTED)},
+    {"cloud_conductivity", "alpha_u off by 1e-9",
+     TIMES(scheme.alpha_u, 1 - 1e-9, 2, .alpha_u = 0.71)},
+    {"cloud_beta_float", "beta off in the seventh digit",
+     SET(scheme.beta, (double)2.17F, 3, .alpha_u = 0)},
     {0},
 };
 
 static struct cloud_subject of_mutant(const struct cloud_subject *mutant)
 {
-    struct cloud_subject s = {mutant->spoil, mutant->dim, hydro_cloud_scheme(mutant->dim)};
+    struct cloud_subject s = {mutant->fault, mutant->dim, hydro_cloud_scheme(mutant->dim)};
     s.scheme.gradient = mutant->scheme.gradient;
     s.scheme.formulation = mutant->scheme.formulation;
     s.scheme.volume_element = mutant->scheme.volume_element;

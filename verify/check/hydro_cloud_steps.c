@@ -10,8 +10,8 @@
 enum { STEPS = 2 };
 
 struct cloud_steps_subject {
-    hydro_spoil *spoil;
-    int dim;
+    struct hydro_fault fault;
+    int dim; /* 0: a mutant */
     struct scheme scheme;
 };
 
@@ -44,8 +44,8 @@ static void subjects(struct check_run *run)
                 const struct integrator *integrator =
                     (const struct integrator *)integrator_family.members[i];
                 if (dim == 3 && (size_t)c != i % 4) continue;
-                const struct cloud_steps_subject subject = {NULL, dim,
-                                                            scheme_of(dim, integrator, c)};
+                const struct cloud_steps_subject subject = {
+                    {0}, dim, scheme_of(dim, integrator, c)};
                 check_subject(run, &subject, sizeof subject);
             }
 }
@@ -55,7 +55,7 @@ static void measure(struct check_run *run, const void *subject)
     const struct cloud_steps_subject *given = subject;
     struct cloud_steps_subject s = *given;
     static struct hydro_cloud cloud;
-    if (given->spoil) {
+    if (!given->dim) {
         s.dim = 2;
         s.scheme =
             scheme_of(2, hydro_integrator("predicted_midpoint"), given->scheme.viscosity ? 3 : 1);
@@ -64,12 +64,7 @@ static void measure(struct check_run *run, const void *subject)
     for (size_t i = 0; i < cloud.n; i++) cloud.v[0][i] -= 1.1; /* through the end of the box */
     char where[CLOUD_TEXT];
     hydro_cloud_describe(&s.scheme, s.dim, where);
-    hydro_against_steps(run, hydro_cloud_setup(&cloud, &s.scheme), s.spoil, STEPS + 0.3, where);
-}
-
-static void newton(struct setup *setup)
-{
-    setup->scheme.h_method = H_NEWTON;
+    hydro_against_steps(run, hydro_cloud_setup(&cloud, &s.scheme), &s.fault, STEPS + 0.3, where);
 }
 
 static void end_taken_for_evaluated(struct setup *setup)
@@ -80,31 +75,19 @@ static void end_taken_for_evaluated(struct setup *setup)
     setup->scheme.integrator = &replaced;
 }
 
-static void wider(struct setup *setup)
-{
-    setup->scheme.eta *= 1 + 1e-6;
-}
-
-static void other_cfl(struct setup *setup)
-{
-    setup->scheme.cfl *= 1 + 1e-6;
-}
-
-static void lower_alpha(struct setup *setup)
-{
-    setup->scheme.alpha_max *= 1 - 1e-6;
-}
-
-#define SPOIL(how) (&(const struct cloud_steps_subject){.spoil = how})
-#define SPOIL_SWITCH(how)                                                                          \
-    (&(const struct cloud_steps_subject){.spoil = how, .scheme.viscosity = VISCOSITY_CULLEN_DEHNEN})
+#define FAULT(...) (&(const struct cloud_steps_subject){.fault = __VA_ARGS__})
+#define FAULT_SWITCH(...)                                                                          \
+    (&(const struct cloud_steps_subject){.fault = __VA_ARGS__,                                     \
+                                         .scheme.viscosity = VISCOSITY_CULLEN_DEHNEN})
 static const struct check_mutant mutants[] = {
-    {"cloud_steps_newton", "h by Newton where it is to be predicted", SPOIL(newton)},
+    {"cloud_steps_newton", "h by Newton where it is to be predicted",
+     FAULT(HYDRO_SET(scheme.h_method, H_NEWTON))},
     {"cloud_steps_end_not_evaluated", "derived fields of the last midpoint, not of the end",
-     SPOIL(end_taken_for_evaluated)},
-    {"cloud_steps_eta", "eta too large by 1e-6", SPOIL(wider)},
-    {"cloud_steps_cfl", "cfl too large by 1e-6", SPOIL(other_cfl)},
-    {"cloud_steps_alpha_max", "what alpha jumps up to too low by 1e-6", SPOIL_SWITCH(lower_alpha)},
+     FAULT({.spoil = end_taken_for_evaluated})},
+    {"cloud_steps_eta", "eta too large by 1e-6", FAULT(HYDRO_TIMES(scheme.eta, 1 + 1e-6))},
+    {"cloud_steps_cfl", "cfl too large by 1e-6", FAULT(HYDRO_TIMES(scheme.cfl, 1 + 1e-6))},
+    {"cloud_steps_alpha_max", "what alpha jumps up to too low by 1e-6",
+     FAULT_SWITCH(HYDRO_TIMES(scheme.alpha_max, 1 - 1e-6))},
     {0},
 };
 

@@ -14,7 +14,7 @@ enum { PARTICLES = 82 };
 /* A state and a scheme of it, and what a mutant does to the solver's setup; the oracle keeps the
  * right one. A mutant names no state: hydro_scheme() on hydro_disordered(). */
 struct rates_subject {
-    hydro_spoil *spoil;
+    struct hydro_fault fault;
     void (*state)(struct hydro_state *state, size_t n);
     struct scheme scheme;
 };
@@ -22,7 +22,7 @@ struct rates_subject {
 static void add(struct check_run *run, struct scheme scheme,
                 void (*state)(struct hydro_state *state, size_t n))
 {
-    const struct rates_subject subject = {NULL, state, scheme};
+    const struct rates_subject subject = {{0}, state, scheme};
     check_subject(run, &subject, sizeof subject);
 }
 
@@ -61,12 +61,7 @@ static void measure(struct check_run *run, const void *subject)
     (s->state ? s->state : hydro_disordered)(&state, PARTICLES);
     char where[HYDRO_TEXT];
     hydro_describe(&scheme, where);
-    hydro_against_rates(run, hydro_setup(&state, &scheme), s->spoil, where);
-}
-
-static void wrong_constant(struct setup *setup)
-{
-    setup->scheme.kernel.constant[1] *= 1 + 1e-9;
+    hydro_against_rates(run, hydro_setup(&state, &scheme), &s->fault, where);
 }
 
 static double knot_off(const struct kernel *kernel, double q, int dim)
@@ -83,65 +78,25 @@ static void wrong_slope(struct setup *setup)
     setup->generic = true;
 }
 
-static void other_eta(struct setup *setup)
-{
-    setup->scheme.eta *= 1 + 1e-9;
-}
-
-static void loose_h(struct setup *setup)
-{
-    setup->scheme.h_tolerance = 1e-4;
-}
-
-static void other_gradient(struct setup *setup)
-{
-    setup->scheme.gradient = GRADIENT_IA;
-}
-
-static void other_formulation(struct setup *setup)
-{
-    setup->scheme.formulation = FORMULATION_LAGRANGIAN;
-}
-
-static void other_element(struct setup *setup)
-{
-    setup->scheme.volume_element = VOLUME_ENERGY;
-}
-
-static void float_alpha(struct setup *setup)
-{
-    setup->scheme.alpha = (double)(1 + 1.2e-7F);
-}
-
-static void beta_of_alpha(struct setup *setup)
-{
-    setup->scheme.beta = setup->scheme.alpha;
-}
-
-static void other_gamma(struct setup *setup)
-{
-    setup->gamma = 5. / 3;
-}
-
-static void other_width(struct setup *setup)
-{
-    setup->scheme.pair_width = PAIR_WIDTH_HARMONIC;
-}
-
-#define SPOIL(how) (&(const struct rates_subject){.spoil = how})
+#define FAULT(...) (&(const struct rates_subject){.fault = __VA_ARGS__})
 static const struct check_mutant mutants[] = {
-    {"hydro_kernel_constant", "kernel's constant off by 1e-9", SPOIL(wrong_constant)},
-    {"hydro_kernel_slope", "dW/dr off by 1e-7 beyond the knot", SPOIL(wrong_slope)},
-    {"hydro_eta", "h too large by 1e-9", SPOIL(other_eta)},
-    {"hydro_loose_h", "h solved to 1e-4 only", SPOIL(loose_h)},
-    {"hydro_other_gradient", "ia where standard is asked for", SPOIL(other_gradient)},
+    {"hydro_kernel_constant", "kernel's constant off by 1e-9",
+     FAULT(HYDRO_TIMES(scheme.kernel.constant[1], 1 + 1e-9))},
+    {"hydro_kernel_slope", "dW/dr off by 1e-7 beyond the knot", FAULT({.spoil = wrong_slope})},
+    {"hydro_eta", "h too large by 1e-9", FAULT(HYDRO_TIMES(scheme.eta, 1 + 1e-9))},
+    {"hydro_loose_h", "h solved to 1e-4 only", FAULT(HYDRO_SET(scheme.h_tolerance, 1e-4))},
+    {"hydro_other_gradient", "ia where standard is asked for",
+     FAULT(HYDRO_SET(scheme.gradient, GRADIENT_IA))},
     {"hydro_other_formulation", "lagrangian where vanilla_ice is asked for",
-     SPOIL(other_formulation)},
-    {"hydro_other_element", "energy element where mass is asked for", SPOIL(other_element)},
-    {"hydro_alpha_float", "alpha off in the seventh digit", SPOIL(float_alpha)},
-    {"hydro_beta", "beta = alpha for 2 alpha", SPOIL(beta_of_alpha)},
-    {"hydro_gamma", "gamma 5/3 for 1.4", SPOIL(other_gamma)},
-    {"hydro_pair_width", "harmonic mean of widths for mean of gradients", SPOIL(other_width)},
+     FAULT(HYDRO_SET(scheme.formulation, FORMULATION_LAGRANGIAN))},
+    {"hydro_other_element", "energy element where mass is asked for",
+     FAULT(HYDRO_SET(scheme.volume_element, VOLUME_ENERGY))},
+    {"hydro_alpha_float", "alpha off in the seventh digit",
+     FAULT(HYDRO_SET(scheme.alpha, (double)(1 + 1.2e-7F)))},
+    {"hydro_beta", "beta = alpha for 2 alpha", FAULT(HYDRO_TIMES(scheme.beta, 0.5))},
+    {"hydro_gamma", "gamma 5/3 for 1.4", FAULT(HYDRO_SET(gamma, 5. / 3))},
+    {"hydro_pair_width", "harmonic mean of widths for mean of gradients",
+     FAULT(HYDRO_SET(scheme.pair_width, PAIR_WIDTH_HARMONIC))},
     {0},
 };
 
@@ -162,7 +117,7 @@ static void measure_residual(struct check_run *run, const void *subject)
         struct scheme scheme = hydro_scheme();
         scheme.h_tolerance = pow(10, -digits);
         struct setup setup = hydro_setup(&state, &scheme);
-        if (s) s->spoil(&setup);
+        if (s) hydro_put_fault(&s->fault, &setup);
         struct simulation *simulation;
         if (simulation_create(&setup, &simulation, &error)) {
             check_measure(run, 1, 0, 0, "%s", error.message);
@@ -182,20 +137,10 @@ static void measure_residual(struct check_run *run, const void *subject)
     }
 }
 
-static void four_times(struct setup *setup)
-{
-    setup->scheme.h_tolerance *= 4;
-}
-
-static void once_more(struct setup *setup)
-{
-    setup->scheme.eta *= 1 + 1e-12;
-}
-
 static const struct check_mutant residual_mutants[] = {
     {"h_four_times_too_loose", "seed program: the iteration's measure 4 times too loose",
-     SPOIL(four_times)},
-    {"h_other_eta", "eta off by 1e-12", SPOIL(once_more)},
+     FAULT(HYDRO_TIMES(scheme.h_tolerance, 4))},
+    {"h_other_eta", "eta off by 1e-12", FAULT(HYDRO_TIMES(scheme.eta, 1 + 1e-12))},
     {0},
 };
 

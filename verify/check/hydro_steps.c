@@ -15,8 +15,8 @@ enum start { RUNNING, PASSING, CONTACT };
 /* A run; or a mutant: what is done to the solver's setup, where the right one is hydro_scheme()
  * with this integrator and viscosity. */
 struct steps_subject {
-    hydro_spoil *spoil;
-    const char *integrator;
+    struct hydro_fault fault;
+    const char *integrator; /* of a mutant */
     struct scheme scheme;
     double part; /* t_end = (STEPS + part) first steps */
     enum start start;
@@ -56,7 +56,7 @@ static void subjects(struct check_run *run)
 static struct steps_subject of_mutant(const struct steps_subject *mutant)
 {
     struct steps_subject subject = {
-        .spoil = mutant->spoil, .scheme = hydro_scheme(), .part = 0.3, .start = RUNNING};
+        .fault = mutant->fault, .scheme = hydro_scheme(), .part = 0.3, .start = RUNNING};
     subject.scheme.integrator = hydro_integrator(mutant->integrator);
     subject.scheme.viscosity = mutant->scheme.viscosity;
     subject.scheme.cfl = subject.scheme.integrator->cfl;
@@ -87,12 +87,12 @@ static void prepare(struct hydro_state *state, enum start start)
 static void measure(struct check_run *run, const void *subject)
 {
     const struct steps_subject *given = subject;
-    const struct steps_subject s = given->spoil ? of_mutant(given) : *given;
+    const struct steps_subject s = given->integrator ? of_mutant(given) : *given;
     static struct hydro_state state;
     prepare(&state, s.start);
     char where[HYDRO_TEXT];
     hydro_describe(&s.scheme, where);
-    hydro_against_steps(run, hydro_setup(&state, &s.scheme), s.spoil, STEPS + s.part, where);
+    hydro_against_steps(run, hydro_setup(&state, &s.scheme), &s.fault, STEPS + s.part, where);
 }
 
 static struct integrator replaced;
@@ -125,21 +125,11 @@ static void step_too_long(struct setup *setup)
     replaced.step = long_step;
 }
 
-static void other_cfl(struct setup *setup)
-{
-    setup->scheme.cfl *= 1 + 1e-6;
-}
-
 static void alpha_stands_still(struct setup *setup)
 {
     setup->scheme.viscosity = VISCOSITY_CONSTANT;
     setup->scheme.alpha = setup->scheme.alpha_min;
     setup->scheme.beta = 2 * setup->scheme.alpha;
-}
-
-static void alpha_max_float(struct setup *setup)
-{
-    setup->scheme.alpha_max = (double)1.49999F;
 }
 
 static void end_taken_for_evaluated(struct setup *setup)
@@ -148,28 +138,26 @@ static void end_taken_for_evaluated(struct setup *setup)
     replaced.ends_evaluated = true;
 }
 
-static void predicted_h(struct setup *setup)
-{
-    setup->scheme.h_method = H_PREDICTED;
-}
-
-#define SPOIL(name, kind, how)                                                                     \
+#define FAULT(name, kind, ...)                                                                     \
     (&(const struct steps_subject){                                                                \
-        .spoil = how, .integrator = name, .scheme = {.viscosity = VISCOSITY_##kind}})
+        .fault = __VA_ARGS__, .integrator = name, .scheme = {.viscosity = VISCOSITY_##kind}})
 static const struct check_mutant mutants[] = {
     {"hydro_no_second_evaluation", "leapfrog where modified_leapfrog is asked for",
-     SPOIL("modified_leapfrog", CONSTANT, never_evaluated_again)},
-    {"hydro_heun_for_vl2", "rk2 where vl2 is asked for", SPOIL("vl2", CONSTANT, heun_for_midpoint)},
-    {"hydro_step_too_long", "every step too long by 1e-9", SPOIL("rk3", CONSTANT, step_too_long)},
-    {"hydro_cfl", "cfl too large by 1e-6", SPOIL("rk2", CONSTANT, other_cfl)},
+     FAULT("modified_leapfrog", CONSTANT, {.spoil = never_evaluated_again})},
+    {"hydro_heun_for_vl2", "rk2 where vl2 is asked for",
+     FAULT("vl2", CONSTANT, {.spoil = heun_for_midpoint})},
+    {"hydro_step_too_long", "every step too long by 1e-9",
+     FAULT("rk3", CONSTANT, {.spoil = step_too_long})},
+    {"hydro_cfl", "cfl too large by 1e-6",
+     FAULT("rk2", CONSTANT, HYDRO_TIMES(scheme.cfl, 1 + 1e-6))},
     {"hydro_alpha_constant", "alpha does not evolve",
-     SPOIL("symplectic_euler", TIME_DEPENDENT, alpha_stands_still)},
+     FAULT("symplectic_euler", TIME_DEPENDENT, {.spoil = alpha_stands_still})},
     {"hydro_alpha_max", "alpha_max off in the sixth digit",
-     SPOIL("rk2", TIME_DEPENDENT, alpha_max_float)},
+     FAULT("rk2", TIME_DEPENDENT, HYDRO_SET(scheme.alpha_max, (double)1.49999F))},
     {"hydro_end_not_evaluated", "derived fields of the last midpoint, not of the end",
-     SPOIL("predicted_midpoint", CONSTANT, end_taken_for_evaluated)},
+     FAULT("predicted_midpoint", CONSTANT, {.spoil = end_taken_for_evaluated})},
     {"hydro_h_predicted", "h predicted where Newton is asked for",
-     SPOIL("leapfrog", CONSTANT, predicted_h)},
+     FAULT("leapfrog", CONSTANT, HYDRO_SET(scheme.h_method, H_PREDICTED))},
     {0},
 };
 
