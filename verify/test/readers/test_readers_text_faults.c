@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Tables of text that are spoilt at one place, which the message names, and columns that the user
- * names, rightly and wrongly. */
+ * Tables of text that are spoilt at one place, which the message names, columns that the user
+ * names, rightly and wrongly, and legacy files of VTK that are refused. */
 #include "test.h"
 
 #include <fcntl.h>
@@ -229,6 +229,74 @@ TEST(heads)
     refuses(text, 4097, NULL, "no x");
     text[4095] = '\x01';
     refuses(text, 4097, NULL, "no snapshot that is read");
+}
+
+/* ---- legacy files of VTK ---- */
+
+#define HEAD  "# vtk DataFile Version 3.0\nparticles\n"
+#define ASCII HEAD "ASCII\n"
+#define THREE ASCII "DATASET POLYDATA\nPOINTS 3 double\n0 0 0 1 0 0 2 0 0\n"
+#define DATA  THREE "POINT_DATA 3\n"
+
+TEST(legacy_vtk)
+{
+    static const struct snapshot_options plain;
+    static const struct {
+        const char *text, *says;
+    } rows[] = {
+        {HEAD "TEXT\n", "the third line is neither ASCII nor BINARY: TEXT"},
+        {ASCII "DATASET RECTILINEAR_GRID\n",
+         "allowed: POLYDATA or UNSTRUCTURED_GRID, not RECTILINEAR_GRID"},
+        {ASCII "", "has no POINTS"},
+        {ASCII "POINTS 0 double\n", "allowed: one set of points, not POINTS"},
+        {THREE "POINTS 3 double\n0 0 0 1 0 0 2 0 0\n", "allowed: one set of points, not POINTS"},
+        {ASCII "POINTS 1.5 double\n1 2 3\n", "allowed: one set of points, not POINTS"},
+        {ASCII "POINTS 4000000000 double\n", "allowed: one set of points, not POINTS"},
+        {ASCII "POINTS -1 double\n", "allowed: one set of points, not POINTS"},
+        {ASCII "POINTS 3 real\n1 2 3\n", "numbers of an unknown type: real"},
+        {ASCII "POINTS 2 double\n1 2 3 4 5\n",
+         "is cut off, or has no number where one is due, in POINTS"},
+        {ASCII "POINTS 2 double\n1 2 3 4 5 x\n",
+         "is cut off, or has no number where one is due, in POINTS"},
+        {THREE "POINT_DATA 2\n", "another number than of points has POINT_DATA"},
+        {THREE "POINT_DATA x\n", "no number that the file has room for stands behind POINT_DATA"},
+        {THREE "TENSORS a double\n", "an unknown word: TENSORS"},
+        {DATA "SCALARS rho double 5\n", "1 to 4 components are allowed for rho"},
+        {DATA "SCALARS rho double 0\n", "1 to 4 components are allowed for rho"},
+        {DATA "SCALARS rho double\n1 1 1\n", "no LOOKUP_TABLE stands behind SCALARS rho"},
+        {DATA "SCALARS rho double\nLOOKUP_TABLE default\n1 1\n",
+         "is cut off, or has no number where one is due, in rho"},
+        {DATA "FIELD a 1\nrho 1 2 double\n1 1\n",
+         "another number of tuples than of points has rho"},
+        {DATA "FIELD a 1\nrho 10 3 double\n1 1\n", "more than 9 components has rho"},
+        {DATA "FIELD a 1\nodd 9 1 double\n1 2 3 4 5 6 7 8\n",
+         "is cut off, or has no number where one is due, in odd"},
+        {DATA "FIELD a 2\nrho 1 3 double\n1 1 1\ndensity 1 3 double\n1 1 1\n",
+         "there are two arrays for density"},
+        {DATA "FIELD a x\n", "no number that the file has room for stands behind FIELD"},
+        {DATA "FIELD a 1\nrho x 3 double\n",
+         "no number that the file has room for stands behind rho"},
+        {DATA "FIELD a 1\nrho 1 x double\n",
+         "no number that the file has room for stands behind rho"},
+        {THREE "VERTICES x\n", "no number that the file has room for stands behind cells"},
+        {THREE "VERTICES 1 x\n", "no number that the file has room for stands behind cells"},
+        {THREE "CELL_TYPES x\n", "no number that the file has room for stands behind cells"},
+        {THREE "CELL_TYPES 3\n1 1\n", "is cut off, or has no number where one is due, in cells"},
+        {ASCII "FIELD a 1\nTimeValue 1 1 word\n1\n", "numbers of an unknown type: word"},
+        {THREE "a_word_of_so_many_letters_that_no_name_of_an_array_has_room_for_it_in_what_this_"
+               "reader_keeps_of_it_and_of_which_the_message_has_the_first_sixty\n",
+         "an unknown word: a_word_of_so_many_letters_that_no_name_of_an_array_has_room_"}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct snapshot_file file;
+        struct error error = {0};
+        char says[400];
+        put_file(rows[k].text, strlen(rows[k].text));
+        snprintf(says, sizeof says, "%s: legacy VTK: %s", path_of("a.txt"), rows[k].says);
+        const enum status status = snapshot_read(path_of("a.txt"), &plain, &file, &error);
+        snapshot_file_free(&file);
+        assert_string_equal(error.message, says);
+        assert_int_equal(status, STATUS_BAD_INPUT);
+    }
 }
 
 int main(void)
