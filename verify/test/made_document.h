@@ -97,12 +97,13 @@ static inline uint64_t made_digest(uint64_t before, const char *text)
     return hash;
 }
 
-/* Digests as they are kept, one line "NAME NUMBER" each, in data/drawn. With SPHPROOF_KEEP=FOLDER
- * in the environment what is found is written there instead: the texts, to be compared with those
- * of another build, and the lists that belong into data/drawn. */
+/* Digests as they are kept in data/drawn: "NAME-DRAW NUMBER", those of a draw in one line. With
+ * SPHPROOF_KEEP=FOLDER in the environment what is found is written there instead: the texts, to be
+ * compared with those of another build, and the lists that belong into data/drawn. */
 struct made_kept {
     FILE *file;
     const char *folder;
+    char draw[16]; /* of the last one written */
 };
 
 static inline void made_open(struct made_kept *kept, const char *data, const char *list)
@@ -120,7 +121,10 @@ static inline void made_compare(struct made_kept *kept, const char *name, const 
     char path[4096], there[64] = "";
     uint64_t found = made_digest(0, text), expected = 0;
     if (kept->folder) {
-        fprintf(kept->file, "%s %016" PRIx64 "\n", name, found);
+        const char *draw = strrchr(name, '-') + 1;
+        if (*kept->draw) fputs(strcmp(draw, kept->draw) ? "\n" : " ", kept->file);
+        fprintf(kept->file, "%s %016" PRIx64, name, found);
+        snprintf(kept->draw, sizeof kept->draw, "%s", draw);
         snprintf(path, sizeof path, "%s/%s", kept->folder, name);
         FILE *whole = fopen(path, "w");
         assert_non_null(whole);
@@ -137,6 +141,7 @@ static inline void made_close(struct made_kept *kept)
 {
     char more[64];
     const bool all = kept->folder || fscanf(kept->file, "%63s", more) != 1;
+    if (kept->folder) fputs("\n", kept->file);
     fclose(kept->file);
     assert_true(all);
 }
