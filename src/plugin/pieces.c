@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "list.h"
+
 enum { N = PIECES_NODES, TAIL = N / 4, LEAVES_MAX = 1 << 15 };
 
 const struct terms pieces_terms_usual = {.samples = 1 << 13, .seed = 1};
@@ -236,12 +238,6 @@ static void remember(struct pieces *pieces)
     }
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Second differences over a step in which a smooth function bends by 1e-13 only; a knot or a fault
  * here and there does not move their upper quartile. */
 static void find_grain(struct pieces *pieces)
@@ -256,7 +252,7 @@ static void find_grain(struct pieces *pieces)
             w[j] = pieces->kernel->w(pieces->kernel, q + j * step, pieces->dim);
         bend[i] = fabs(w[0] - 2 * w[1] + w[2]);
     }
-    qsort(bend, SAMPLES, sizeof *bend, ascending);
+    list_sort(bend, SAMPLES);
     pieces->grain = bend[3 * SAMPLES / 4] / pieces->max_w;
 }
 

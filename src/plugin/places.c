@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "list.h"
+
 enum { DECIMALS = 1000, DENOMINATORS = 64, DIGITS_FROM = 6, DIGITS_TO = 16, FILE_MAX = 1 << 24 };
 
 double places_random(uint64_t seed, uint64_t i)
@@ -17,17 +19,11 @@ double places_random(uint64_t seed, uint64_t i)
     return (double)(z >> 11) * 0x1p-53;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Sorts, and drops what is there twice. */
 static int distinct(double *q, int n)
 {
     int kept = 0;
-    qsort(q, (size_t)n, sizeof *q, ascending);
+    list_sort(q, (size_t)n);
     for (int i = 0; i < n; i++)
         if (kept == 0 || q[i] > q[kept - 1]) q[kept++] = q[i];
     return kept;

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include "guard.h"
+#include "list.h"
 #include "measure.h"
 #include "places.h"
 
@@ -128,14 +129,6 @@ static void take_name(struct user_kernel *user, const char *path, const struct f
     user->kernel.member = (struct member){user->name, "user's kernel", ""};
 }
 
-static int compare(const void *a, const void *b)
-{
-    double x, y;
-    memcpy(&x, a, sizeof x);
-    memcpy(&y, b, sizeof y);
-    return (x > y) - (x < y);
-}
-
 /* Adds the knots of one dimension to the user's list; 0 and 1 are break points anyway. */
 static enum status take_knots(struct user_kernel *user, const struct functions *f, int dim,
                               double *room, struct error *error)
@@ -174,7 +167,7 @@ static enum status take_all_knots(struct user_kernel *user, const struct functio
     free(room);
     if (status) return status;
     struct kernel *kernel = &user->kernel;
-    qsort(user->knots, (size_t)kernel->knot_count, sizeof *user->knots, compare);
+    list_sort(user->knots, (size_t)kernel->knot_count);
     int n = 0;
     for (int i = 0; i < kernel->knot_count; i++)
         if (n == 0 || user->knots[i] - user->knots[n - 1] > 1e-12)

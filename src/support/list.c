@@ -18,3 +18,14 @@ bool list_grow(void *list, size_t count, size_t size)
     if (grown) memcpy(list, &grown, sizeof grown);
     return grown;
 }
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+void list_sort(double *values, size_t n)
+{
+    qsort(values, n, sizeof *values, ascending);
+}

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Lists that grow, for everything whose number follows a family or what a user asks for. */
+ * Lists that grow, for everything whose number follows a family or what a user asks for, and sorted
+ * numbers. */
 #ifndef SPHPROOF_LIST_H
 #define SPHPROOF_LIST_H
 
@@ -10,5 +11,8 @@
  * list: that pointer's address. An empty list is NULL; free it with free. A list may move when it
  * grows. False: no memory, and the list is as it was. */
 bool list_grow(void *list, size_t count, size_t size);
+
+/* The least comes first. */
+void list_sort(double *values, size_t n);
 
 #endif

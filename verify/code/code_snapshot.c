@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "list.h"
+
 const char *const code_reason_names[REASONS] = {"",
 #define REASON(name) #name,
                                                 CODE_REASON_LIST(REASON)
@@ -98,23 +100,17 @@ bool code_is_new(const struct code_matches *now, size_t i, const struct code_mat
 
 /* ---- what it holds ---- */
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The difference of two columns, each in its own order, over `scale` or, where that is 0, over the
  * values: of the share of the rows that is given, the greatest. NaN: no memory. */
 static double differ(const double *a, const double *b, size_t n, double scale, double share)
 {
     double *sorted = malloc(2 * n * sizeof *sorted), found = (double)NAN;
     for (size_t i = 0; sorted && i < n; i++) sorted[i] = a[i], sorted[n + i] = b[i];
-    for (size_t k = 0; sorted && k < 2; k++) qsort(sorted + k * n, n, sizeof *sorted, ascending);
+    for (size_t k = 0; sorted && k < 2; k++) list_sort(sorted + k * n, n);
     for (size_t i = 0; sorted && i < n; i++)
         sorted[i] = fabs(sorted[i] - sorted[n + i]) / (scale > 0 ? scale : fabs(sorted[i]));
     if (sorted && n) {
-        qsort(sorted, n, sizeof *sorted, ascending);
+        list_sort(sorted, n);
         found = sorted[(size_t)(share * (double)(n - 1))];
     }
     free(sorted);

@@ -11,6 +11,7 @@
 #include "cloud_profile.h"
 #include "command.h"
 #include "judge.h"
+#include "list.h"
 #include "output.h"
 #include "page.h"
 #include "paired.h"
@@ -293,12 +294,6 @@ static enum status serialise_out(struct comparison *c, const struct options *opt
 
 /* ---- what is said ---- */
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static void say(char *text, size_t size, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 static void say(char *text, size_t size, const char *format, ...)
@@ -338,7 +333,7 @@ static void conclude(struct comparison *c)
         c->of[k] = paired_compare(c->draws, c->sides[0].error[k], c->sides[1].error[k], single,
                                   LEVEL / (double)count);
     for (size_t r = 0; r < c->draws; r++) ratio[r] = c->sides[1].cpu_s[r] / c->sides[0].cpu_s[r];
-    qsort(ratio, c->draws, sizeof *ratio, ascending);
+    list_sort(ratio, c->draws);
     c->cpu = ratio[c->draws / 2], c->cpu_low = ratio[0], c->cpu_high = ratio[c->draws - 1];
     for (size_t r = 0; r < c->draws; r++) /* a clock may be too coarse for one of them */
         if (!isfinite(ratio[r])) c->cpu = c->cpu_low = c->cpu_high = (double)NAN;

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "list.h"
 #include "plugin_kernel.h"
 #include "initial_create.h"
 
@@ -265,12 +266,6 @@ static void measure_growth(struct judged *judged)
                 r->functionals[k].exact + log(amplitude->value / amplitude->exact) / r->time;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Is the particle in the window? Exact state there, and the one that was there at the start. */
 static bool counts(const struct judged *judged, size_t i, struct problem_state *now,
                    struct problem_state *before)
@@ -366,7 +361,7 @@ static double median_error(const struct judged *judged, int f, double *errors, d
         if (f == FIELD_PRESSURE || f == FIELD_INTERNAL_ENERGY) *range = fmax(*range, 0.1 * motion);
         if (n < 8 && judged->run.problem.problem->regions) return 0; /* nothing to go by */
         if (n < 8) continue;
-        qsort(errors, n, sizeof *errors, ascending);
+        list_sort(errors, n);
         return errors[n / 2] / *range;
     }
     return 0;

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "list.h"
 #include "problem_list.h"
 #include "start_cause.h"
 
@@ -49,15 +50,9 @@ static double least_off(const struct start_gas *gas, enum start_field field, siz
     return least;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double median(double *values, size_t n)
 {
-    qsort(values, n, sizeof *values, ascending);
+    list_sort(values, n);
     return values[n / 2];
 }
 

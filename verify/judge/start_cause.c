@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "list.h"
+
 enum { PER_CENT = 100 };
 
 /* ---- how many ---- */
@@ -179,12 +181,6 @@ static const struct {
              {START_MASS, exact_density, "the density"},
              {START_MASS, exact_energy, "the internal energy"}};
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The middle one of the factors between the values and what they should be; NaN: there is none. */
 static double factor_of(const struct start_gas *gas, enum start_field field, const double *value,
                         expected *value_of)
@@ -195,7 +191,7 @@ static double factor_of(const struct start_gas *gas, enum start_field field, con
         if (gas->wrong[i] & 1u << field && fabs(value_of(gas, i, 1)) > 0)
             factors[n++] = value[i] / value_of(gas, i, 1);
     if (n) {
-        qsort(factors, n, sizeof *factors, ascending);
+        list_sort(factors, n);
         found = factors[n / 2];
     }
     free(factors);
