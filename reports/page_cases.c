@@ -19,8 +19,8 @@ enum { QUANTITIES = 4, PRESSURE = 2, ENERGY = 3 };
 static const char *const quantities[QUANTITIES] = {"density", "velocity", "pressure",
                                                    "internal_energy"};
 
-/* Internal energy of n gases of density rho and pressure P, malloced; NULL: no memory, or not both.
- */
+/* Internal energies of n particles of density rho and pressure P, malloced. NULL: no memory, or one
+ * of the arrays is missing. */
 static double *energies(const double *rho, const double *P, size_t n, double gamma)
 {
     double *u = rho && P && n ? malloc(n * sizeof *u) : NULL;
@@ -255,7 +255,7 @@ static bool is_failure(const char *state)
     return !strcmp(state, "fail") || !strcmp(state, "broke_down") || !strcmp(state, "failed");
 }
 
-/* The line that is shown of a folded case. */
+/* The summary line of a case, which stays visible when the case is folded. */
 static void case_head(struct buffer *to, const char *name, const json_t *title,
                       const json_t *const *studies, size_t study_count, const char *state)
 {
@@ -291,7 +291,7 @@ static bool is_cloud(const json_t *const *runs, size_t count)
     return count && dimension_of(runs[0]) > 1;
 }
 
-/* One case: everything that the results have on it. */
+/* Writes all that the results say about one case. */
 static void one_case(struct page_writer *writer, const json_t *results, const char *name)
 {
     struct buffer *to = &writer->to;

@@ -67,8 +67,8 @@ static struct plot_panel map_panel(const struct map *map, const struct plot_heat
                                .heat = heat};
 }
 
-/* One map as a figure of its own: figures stand side by side where there is room. The name is that
- * of the case, what, and number. */
+/* Draws one map as a figure of its own, so that maps stand side by side where there is room. The
+ * figure is called after the case and `what`. */
 static void plot_map(struct page_writer *writer, const char *case_name, const char *what,
                      const struct map *map, const struct plot_heat *heat, const char *title,
                      const char *caption)
@@ -102,7 +102,7 @@ static bool has_voids(const struct map *map, int k)
     return false;
 }
 
-/* Of the first scheme: density, speed, error. */
+/* Draws density, speed and error of the first scheme. */
 static void plot_first(struct page_writer *writer, const char *case_name, const json_t *run,
                        const struct map *map)
 {
@@ -325,7 +325,7 @@ static const struct html_column gates[] = {COLUMN("scheme", "^label", .kind = CE
                                            COLUMN("", NULL, .cell = gate_status),
                                            {0}};
 
-/* What these runs have to keep; open where one does not. */
+/* The gates of these runs; the section is open if one of them fails. */
 static void gate_table(struct buffer *to, const json_t *const *runs, size_t count)
 {
     size_t i, all = 0;

@@ -7,24 +7,25 @@
 #include "grid.h"
 #include "shapes.h"
 
-/* Sums over all points, as they come. Distances as a mean and squares about it, updated point by
- * point (Welford 1962): on a lattice the mean of the squares less the square of the mean is noise.
- */
+/* Sums over the points seen so far. Of the distances to the nearest neighbour the mean and the sum
+ * of squared deviations from it are updated point by point (Welford 1962): on a lattice the mean of
+ * the squares less the square of the mean is noise. */
 struct sums {
     const struct regularity_cloud *cloud;
     struct shapes shapes;
-    size_t points, whole; /* whole: their neighbourhood is in the box */
+    size_t points, whole; /* whole: points whose support lies in the box */
     double distance, squares, density, gradient;
     size_t paired;
 };
 
-/* One point, as its neighbours come. */
+/* Sums over the neighbours of one point seen so far. */
 struct place {
     size_t i;
     double nearest, sum, to[3];
 };
 
-/* Some of them: from the neighbour to the place, the nearest image, and its volume. */
+/* Some of its neighbours: the vector from the nearest image of each to the point, and its volume.
+ */
 enum { PART = 64 };
 
 struct part {
@@ -120,8 +121,8 @@ static struct place see_slot(const struct sums *sums, const struct grid *grid,
 
 enum { BLOCK = 65536 };
 
-/* Threads see the points of a block that begins at first; they are added in the order of the slots.
- */
+/* Threads share the points of the block that begins at first; the results are added in the order of
+ * the slots, whatever the number of threads. */
 static bool walk_block(struct sums *sums, const struct grid *grid, size_t first,
                        const unsigned char *asleep, double widest, int threads, struct place *seen)
 {
@@ -143,7 +144,8 @@ static bool walk_block(struct sums *sums, const struct grid *grid, size_t first,
     return enough;
 }
 
-/* Points are awake a block at a time, so that there are never the lists of all. */
+/* Neighbours are searched for one block of points at a time: the lists of all points would take too
+ * much memory. */
 static enum status walk_blocks(struct sums *sums, struct grid *grid, unsigned char *asleep,
                                double widest, int threads, struct place *seen, struct error *error)
 {
@@ -194,7 +196,7 @@ static int by_place(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-/* Those on one side of place k, out to its h; at least the next one. */
+/* Neighbours on one side of the k-th point in the row, as far as its h reaches; at least one. */
 static void walk_side(const struct sums *sums, const struct stand *row, size_t k, bool right,
                       struct place *place)
 {

@@ -30,7 +30,7 @@
 #include "suite.h"
 #include "suite_output.h"
 
-/* These are given back elsewhere. */
+/* GSL frees these itself: they do not count as pieces that are left. */
 WRAP(gsl_rng_alloc, (const gsl_rng_type *type), (type), false)
 WRAP(gsl_qrng_alloc, (const gsl_qrng_type *type, unsigned dim), (type, dim), false)
 
@@ -172,7 +172,7 @@ static enum status loaded(struct error *error)
     return case_load(&file, path, error);
 }
 
-/* What there is in its stead is listed. */
+/* The message lists the cases that there are, for which memory is needed. */
 static enum status unknown(struct error *error)
 {
     static struct case_file file;
@@ -294,7 +294,7 @@ static enum status add_jobs(struct pool *pool, size_t n, struct error *error)
     return STATUS_OK;
 }
 
-/* More than there is room for at first. */
+/* More jobs than there is room for at first. */
 static enum status divided(struct error *error)
 {
     struct pool pool = {0};
@@ -353,7 +353,7 @@ static enum status rated(struct error *error)
     return status;
 }
 
-/* The one that is due is left out: the next one is tried again. */
+/* A snapshot for which there is no memory is left out; the next one is tried again. */
 static enum status set_aside(struct error *error)
 {
     double arrays[4][8];
@@ -375,8 +375,8 @@ static enum status set_aside(struct error *error)
     return error->status;
 }
 
-/* Widths that reach over many boxes ask for more ghosts, and pairs for more scratch; who was
- * refused that may ask again. */
+/* Widths that reach over many boxes need more ghosts, and pairs more scratch memory. A request that
+ * was refused may be repeated. */
 static enum status widened(struct error *error)
 {
     double arrays[4][8], rate;
@@ -410,7 +410,7 @@ static enum status resumed(struct error *error)
     return checkpoint_load(&checkpoint, to_resume, &growth, error);
 }
 
-/* A file that is sound is not called damaged. */
+/* Without memory a sound file is not called damaged. */
 static void resume(void)
 {
     double arrays[4][8];
