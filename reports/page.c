@@ -146,6 +146,7 @@ void page_head(struct buffer *to, const char *title)
 bool page_end(struct page_writer *writer, struct page *page)
 {
     buffer_add(&writer->to, "</main></body></html>\n");
+    plot_pen_free(&writer->pen);
     *page = (struct page){.html = buffer_take(&writer->to), .plots = writer->plots};
     if (!page->html) page_free(page);
     return page->html;

@@ -28,7 +28,7 @@ void page_plot(struct page_writer *writer, const struct plot *plot, const char *
     char *svg = NULL, message[512] = "", *script, *data;
     buffer_add(to, "<figure>");
     enum plot_status status = PLOT_NO_GNUPLOT;
-    if (!plots->no_gnuplot) status = plot_svg(plot, &svg, message, sizeof message);
+    if (!plots->no_gnuplot) status = plot_svg(&writer->pen, plot, &svg, message, sizeof message);
     if (status == PLOT_OK) {
         buffer_add(to, svg);
     } else {

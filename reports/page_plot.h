@@ -26,6 +26,7 @@ void page_plots_free(struct page_plots *plots);
 struct page_writer {
     struct buffer to;
     struct page_plots plots;
+    struct plot_pen pen;
     bool alone; /* nothing will lie beside the page */
 };
 

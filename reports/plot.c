@@ -2,9 +2,11 @@
 #include "plot.h"
 
 #include <ctype.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "layout.h"
 #include "process.h"
@@ -22,8 +24,42 @@ static bool usable_name(const char *name)
     return true;
 }
 
-static enum plot_status draw(const struct plot *plot, enum script_terminal terminal,
-                             struct buffer *picture, char *message, size_t n)
+/* Behind each plot of a pen; an error in a file that is loaded does not end gnuplot by itself. */
+static const char end_of_plot[] = "end of plot\n";
+static const char next_plot[] = "if (GPVAL_ERRNO) exit status 1\nset output\nreset session\n"
+                                "set print '-'\nprint 'end of plot'\n";
+
+void plot_pen_free(struct plot_pen *pen)
+{
+    process_end(&pen->gnuplot);
+    if (pen->begun && pen->script >= 0) close(pen->script);
+    *pen = (struct plot_pen){0};
+}
+
+static void begin(struct plot_pen *pen)
+{
+    FILE *file = access("/dev/fd/0", F_OK) ? NULL : tmpfile();
+    pen->script = file ? fcntl(fileno(file), F_DUPFD_CLOEXEC, 3) : -1;
+    if (file) fclose(file);
+    pen->begun = true;
+}
+
+/* gnuplot reads its standard input byte by byte, a file as usual. Where there can be none (the disk
+ * is full), the script stays in the input. */
+static void set_aside(const struct plot_pen *pen, struct buffer *script)
+{
+    const int file = pen->script;
+    if (file < 0 || script->failed || ftruncate(file, 0) || lseek(file, 0, SEEK_SET) ||
+        write(file, script->data, script->size) != (ssize_t)script->size ||
+        lseek(file, 0, SEEK_SET))
+        return;
+    buffer_free(script);
+    buffer_add(script, "load '/dev/fd/3'\n");
+}
+
+static enum plot_status draw(struct plot_pen *pen, const struct plot *plot,
+                             enum script_terminal terminal, struct buffer *picture, char *message,
+                             size_t n)
 {
     if (!usable_name(plot->name) || !plot->panel_count || plot->panel_count > LAYOUT_PANELS) {
         snprintf(message, n, "a plot needs a name of letters, digits, _ and - and 1 to %d panels",
@@ -34,14 +70,21 @@ static enum plot_status draw(const struct plot *plot, enum script_terminal termi
     char *const arguments[] = {gnuplot, defaults, dash, NULL};
     struct buffer script = {0};
     script_make(&script, plot, terminal, NULL, NULL);
+    if (pen) {
+        if (!pen->begun) begin(pen);
+        set_aside(pen, &script);
+        buffer_add(&script, next_plot);
+    }
     char *bytes = buffer_take(&script);
     if (!bytes) {
         snprintf(message, n, "no memory for the plot %s", plot->name);
         return PLOT_FAILED;
     }
     char words[400] = "";
-    enum process_status status =
-        process_filter(arguments, bytes, strlen(bytes), PATIENCE, picture, words, sizeof words);
+    struct process alone = {0};
+    enum process_status status = process_ask(
+        pen ? &pen->gnuplot : &alone, arguments, pen ? pen->script : -1, bytes, strlen(bytes),
+        pen ? end_of_plot : NULL, PATIENCE, picture, words, sizeof words);
     free(bytes);
     if (status == PROCESS_NOT_FOUND || status == PROCESS_TOO_SLOW) {
         snprintf(message, n, "no plot: %s%s", words,
@@ -81,11 +124,12 @@ bool plot_source(const struct plot *plot, char **script, char **data)
     return false;
 }
 
-enum plot_status plot_svg(const struct plot *plot, char **svg, char *message, size_t n)
+enum plot_status plot_svg(struct plot_pen *pen, const struct plot *plot, char **svg, char *message,
+                          size_t n)
 {
     *svg = NULL;
     struct buffer raw = {0}, clean = {0};
-    enum plot_status status = draw(plot, SCRIPT_SVG, &raw, message, n);
+    enum plot_status status = draw(pen, plot, SCRIPT_SVG, &raw, message, n);
     if (status == PLOT_OK) {
         if (svg_adapt(&clean, raw.data, plot->name, plot->title ? plot->title : plot->name))
             *svg = buffer_take(&clean);
@@ -104,7 +148,7 @@ static enum plot_status svg_document(const struct plot *plot, struct buffer *pic
                                      size_t n)
 {
     char *svg;
-    enum plot_status status = plot_svg(plot, &svg, message, n);
+    enum plot_status status = plot_svg(NULL, plot, &svg, message, n);
     if (status != PLOT_OK) return status;
     const char *body = strchr(svg, '\n');
     buffer_add(picture, "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n");
@@ -129,8 +173,9 @@ enum plot_status plot_draw(const struct plot *plot, enum plot_format format, cha
                            size_t *size, char *message, size_t n)
 {
     struct buffer picture = {0};
-    enum plot_status status = format == PLOT_SVG ? svg_document(plot, &picture, message, n)
-                                                 : draw(plot, SCRIPT_PNG, &picture, message, n);
+    enum plot_status status = format == PLOT_SVG
+                                  ? svg_document(plot, &picture, message, n)
+                                  : draw(NULL, plot, SCRIPT_PNG, &picture, message, n);
     if (status != PLOT_OK) buffer_free(&picture);
     *size = picture.size;
     *bytes = picture.data;

@@ -7,6 +7,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "process.h"
+
 enum plot_status {
     PLOT_OK,
     PLOT_NO_GNUPLOT, /* gnuplot is not installed, or hangs: no use asking again */
@@ -99,10 +101,21 @@ struct plot {
     bool beside; /* instead: panels from left to right, each with its own axes */
 };
 
+/* To start gnuplot takes several times as long as to draw; this one draws one plot after another.
+ * {0}: it has not started. Each plot finds it as the first one did, and one that fails costs no
+ * other. */
+struct plot_pen {
+    struct process gnuplot;
+    int script; /* a file without a name, which gnuplot has open as well; -1: there is none */
+    bool begun;
+};
+void plot_pen_free(struct plot_pen *pen);
+
 /* An <svg> element for inlining in HTML (no prolog, ids prefixed with the plot's name, colours by
  * the classes of style_css). *svg is malloced; on failure NULL, and message (of n bytes) says why.
- */
-enum plot_status plot_svg(const struct plot *plot, char **svg, char *message, size_t n);
+ * pen: NULL for a gnuplot of its own. */
+enum plot_status plot_svg(struct plot_pen *pen, const struct plot *plot, char **svg, char *message,
+                          size_t n);
 
 enum plot_format { PLOT_SVG, PLOT_PNG };
 

@@ -17,11 +17,6 @@ extern char **environ;
 
 enum { READ, WRITE };
 
-struct child {
-    pid_t pid;
-    int in, out, err; /* our ends */
-};
-
 static void close_pair(int pair[2])
 {
     for (int k = 0; k < 2; k++)
@@ -42,7 +37,7 @@ static bool make_pipe(int pair[2])
 }
 
 /* posix_spawn rather than fork: this process may hold OpenMP threads. Returns an errno. */
-static int start(struct child *child, char *const argv[], const sigset_t *mask)
+static int start(struct process *child, char *const argv[], int file, const sigset_t *mask)
 {
     int in[2] = {-1, -1}, out[2] = {-1, -1}, err[2] = {-1, -1};
     if (!make_pipe(in) || !make_pipe(out) || !make_pipe(err)) {
@@ -61,23 +56,24 @@ static int start(struct child *child, char *const argv[], const sigset_t *mask)
     posix_spawn_file_actions_adddup2(&actions, in[READ], 0);
     posix_spawn_file_actions_adddup2(&actions, out[WRITE], 1);
     posix_spawn_file_actions_adddup2(&actions, err[WRITE], 2);
+    if (file >= 0) posix_spawn_file_actions_adddup2(&actions, file, 3);
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setsigmask(&attributes, mask);
     posix_spawnattr_setsigdefault(&attributes, &pipe_signal);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-    int code = posix_spawnp(&child->pid, argv[0], &actions, &attributes, argv, environ);
+    pid_t pid = 0;
+    int code = posix_spawnp(&pid, argv[0], &actions, &attributes, argv, environ);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     close(in[READ]);
     close(out[WRITE]);
     close(err[WRITE]);
-    child->in = in[WRITE];
-    child->out = out[READ];
-    child->err = err[READ];
+    *child = (struct process){pid, in[WRITE], out[READ], err[READ]};
     if (code) {
         close(child->in);
         close(child->out);
         close(child->err);
+        child->pid = 0;
     }
     return code;
 }
@@ -95,43 +91,70 @@ static void drain(int *descriptor, struct buffer *into)
     }
 }
 
-/* Writes and reads at once, so that neither side waits for the other. False: out of time. */
-static bool converse(struct child *child, const char *input, size_t size, double end,
-                     struct buffer *output, struct buffer *errors)
+/* Takes the mark away from the end of the output, if it is there. */
+static bool marked(struct buffer *output, const char *mark)
+{
+    const size_t n = strlen(mark);
+    if (output->failed || output->size < n || memcmp(output->data + output->size - n, mark, n) != 0)
+        return false;
+    output->data[output->size -= n] = '\0';
+    return true;
+}
+
+enum turn { ANSWERED, ENDED, OUT_OF_TIME };
+
+/* Writes and reads at once, so that neither side waits for the other, up to the mark. Without one
+ * the program is told that this is all, and read to its end. */
+static enum turn converse(struct process *child, const char *input, size_t size, const char *mark,
+                          double end_time, struct buffer *output, struct buffer *errors)
 {
     fcntl(child->in, F_SETFL, O_NONBLOCK);
     while (child->in >= 0 || child->out >= 0 || child->err >= 0) {
+        const int in = size || !mark ? child->in : -1;
         struct pollfd polled[3] = {
-            {child->in, POLLOUT, 0}, {child->out, POLLIN, 0}, {child->err, POLLIN, 0}};
-        double left = end - clock_wall();
-        if (left <= 0) return false;
-        if (poll(polled, 3, (int)(1000 * left) + 1) < 0 && errno != EINTR) return false;
+            {in, POLLOUT, 0}, {child->out, POLLIN, 0}, {child->err, POLLIN, 0}};
+        double left = end_time - clock_wall();
+        if (left <= 0) return OUT_OF_TIME;
+        if (poll(polled, 3, (int)(1000 * left) + 1) < 0 && errno != EINTR) return OUT_OF_TIME;
         if (polled[0].revents) {
             ssize_t n = size ? write(child->in, input, size) : 0;
             if (n > 0) {
                 input += n;
                 size -= (size_t)n;
             }
-            if (!size || (n < 0 && errno != EAGAIN && errno != EINTR)) {
+            if ((!size && !mark) || (n < 0 && errno != EAGAIN && errno != EINTR)) {
                 close(child->in);
                 child->in = -1;
             }
         }
-        if (polled[1].revents) drain(&child->out, output);
         if (polled[2].revents) drain(&child->err, errors);
+        if (polled[1].revents) drain(&child->out, output);
+        if (mark && marked(output, mark)) return ANSWERED;
+        if (mark && child->out < 0 && child->in >= 0) { /* it will not answer */
+            close(child->in);
+            child->in = -1;
+        }
     }
-    return true;
+    return ENDED;
 }
 
-static enum process_status finish(struct child *child, const char *program, bool timely,
-                                  int seconds, const struct buffer *errors, char *message, size_t n)
+/* Waits for its end; returns how it ended. */
+static int end(struct process *child)
 {
     int *ends[] = {&child->in, &child->out, &child->err};
     for (size_t k = 0; k < 3; k++)
         if (*ends[k] >= 0) close(*ends[k]);
-    if (!timely) kill(child->pid, SIGKILL);
     int status = 0;
     while (waitpid(child->pid, &status, 0) < 0 && errno == EINTR) continue;
+    child->pid = 0;
+    return status;
+}
+
+static enum process_status finish(struct process *child, const char *program, bool timely,
+                                  int seconds, const struct buffer *errors, char *message, size_t n)
+{
+    if (!timely) kill(child->pid, SIGKILL);
+    const int status = end(child);
     const char *words = errors->data ? errors->data : "";
     while (*words == '\n' || *words == ' ') words++;
     if (!timely)
@@ -148,8 +171,9 @@ static enum process_status finish(struct child *child, const char *program, bool
     return WIFEXITED(status) && WEXITSTATUS(status) == 127 ? PROCESS_NOT_FOUND : PROCESS_FAILED;
 }
 
-enum process_status process_filter(char *const argv[], const char *input, size_t size, int seconds,
-                                   struct buffer *output, char *message, size_t n)
+enum process_status process_ask(struct process *process, char *const argv[], int file,
+                                const char *input, size_t size, const char *mark, int seconds,
+                                struct buffer *output, char *message, size_t n)
 {
     sigset_t pipe_signal, before, pending;
     sigemptyset(&pipe_signal);
@@ -158,16 +182,17 @@ enum process_status process_filter(char *const argv[], const char *input, size_t
     bool was_pending = sigismember(&pending, SIGPIPE);
     pthread_sigmask(SIG_BLOCK, &pipe_signal, &before);
 
-    struct child child;
     struct buffer errors = {0};
-    enum process_status status;
-    int code = start(&child, argv, &before);
+    enum process_status status = PROCESS_OK;
+    const int code = process->pid ? 0 : start(process, argv, file, &before);
     if (code) {
         snprintf(message, n, "%s cannot be run: %s", argv[0], strerror(code));
         status = code == ENOENT || code == EACCES ? PROCESS_NOT_FOUND : PROCESS_FAILED;
     } else {
-        bool timely = converse(&child, input, size, clock_wall() + seconds, output, &errors);
-        status = finish(&child, argv[0], timely, seconds, &errors, message, n);
+        const enum turn turn =
+            converse(process, input, size, mark, clock_wall() + seconds, output, &errors);
+        if (turn != ANSWERED)
+            status = finish(process, argv[0], turn == ENDED, seconds, &errors, message, n);
         if (status == PROCESS_OK && output->failed) {
             snprintf(message, n, "no memory for what %s wrote", argv[0]);
             status = PROCESS_FAILED;
@@ -180,4 +205,18 @@ enum process_status process_filter(char *const argv[], const char *input, size_t
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     buffer_free(&errors);
     return status;
+}
+
+void process_end(struct process *process)
+{
+    if (!process->pid) return;
+    kill(process->pid, SIGKILL); /* it may wait for ever */
+    end(process);
+}
+
+enum process_status process_filter(char *const argv[], const char *input, size_t size, int seconds,
+                                   struct buffer *output, char *message, size_t n)
+{
+    struct process process = {0};
+    return process_ask(&process, argv, -1, input, size, NULL, seconds, output, message, n);
 }

@@ -449,7 +449,9 @@ static int begin(void **state)
     (void)state;
     char path[8192], here[4096];
     if (!mkdtemp(place) || chdir(place) || !getcwd(here, sizeof here)) return 1;
-    write_all("gnuplot", "#!/bin/sh\ncat >drawn.gp\necho \"<svg viewBox='0 0 1 1'>\n</svg>\"\n");
+    write_all("gnuplot", "#!/bin/sh\nsed '/^print/q' >drawn.gp\n"
+                         "if grep -q '^load' drawn.gp; then cat /dev/fd/3 >drawn.gp; fi\n"
+                         "echo \"<svg viewBox='0 0 1 1'>\n</svg>\"\n");
     write_all("ffmpeg", "#!/bin/sh\nfor to; do :; done\n"
                         "[ $1 = -version ] || (echo \"${*% *}\"; cat) >\"${to#file:}\"\n");
     chmod("gnuplot", 0755), chmod("ffmpeg", 0755);

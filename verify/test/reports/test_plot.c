@@ -78,7 +78,7 @@ TEST(inline_svg)
     const struct plot *const plots[] = {&stack, &heated};
     for (size_t k = 0; k < 2; k++) {
         char *svg, message[512] = "", fault[256] = "", prefix[64];
-        enum plot_status status = plot_svg(plots[k], &svg, message, sizeof message);
+        enum plot_status status = plot_svg(NULL, plots[k], &svg, message, sizeof message);
         if (status) fail_msg("%s", message);
         assert_int_equal(strncmp(svg, "<svg ", 5), 0);
         if (!markup_well_formed(svg, fault, sizeof fault)) fail_msg("%s", fault);
@@ -118,7 +118,7 @@ TEST(one_value)
         const struct plot drawn = {
             .name = "one", .title = "one value", .panels = &alone, .panel_count = 1};
         char *svg, message[512] = "";
-        if (plot_svg(&drawn, &svg, message, sizeof message)) fail_msg("%d: %s", k, message);
+        if (plot_svg(NULL, &drawn, &svg, message, sizeof message)) fail_msg("%d: %s", k, message);
         free(svg);
     }
 }
@@ -213,11 +213,88 @@ TEST(processes)
     assert_false(sigismember(&mask, SIGPIPE));
 }
 
+/* A program that is kept answers each question; one that it fails takes neither its words nor its
+ * end to the next. */
+TEST(questions)
+{
+    char sh[] = "sh", c[] = "-c", message[512];
+    char loop[] = "while read -r a; do case $a in die) exit 3;; stop) echo bye; exit;; esac; "
+                  "echo said 1>&2; echo $a; cat <&3; echo end; done";
+    char *const arguments[] = {sh, c, loop, NULL};
+    static const struct {
+        const char *question, *answer;
+        enum process_status status;
+        bool goes_on;
+    } asked[] = {{"1\n", "1\nfile\n", PROCESS_OK, true},
+                 {"2\n", "2\n", PROCESS_OK, true}, /* the file has been read */
+                 {"die\n", "", PROCESS_FAILED, false},
+                 {"stop\n", "bye\n", PROCESS_OK, false},
+                 {"3\n", "3\n", PROCESS_OK, true}};
+    FILE *file = tmpfile();
+    assert_non_null(file);
+    fputs("file\n", file);
+    rewind(file);
+    struct process process = {0};
+    for (size_t k = 0; k < sizeof asked / sizeof *asked; k++) {
+        struct buffer output = {0};
+        const int before = process.pid;
+        const enum process_status status =
+            process_ask(&process, arguments, fileno(file), asked[k].question,
+                        strlen(asked[k].question), "end\n", 60, &output, message, sizeof message);
+        assert_int_equal(status, asked[k].status);
+        assert_string_equal(output.data ? output.data : "", asked[k].answer);
+        assert_int_equal(process.pid != 0, asked[k].goes_on);
+        if (before && asked[k].goes_on) assert_int_equal(process.pid, before);
+        if (status) {
+            assert_non_null(strstr(message, "status 3"));
+            assert_null(strstr(message, "said"));
+        }
+        buffer_free(&output);
+    }
+    const int last = process.pid;
+    process_end(&process);
+    assert_int_equal(process.pid, 0);
+    assert_int_equal(kill(last, 0), -1);
+    fclose(file);
+}
+
+/* One gnuplot for many plots draws what one for each draws, and a plot that fails is the only one.
+ */
+TEST(pen)
+{
+    if (!have_gnuplot()) skip();
+    static const struct plot_mark nowhere = {.at = (double)NAN};
+    struct plot_panel wrong_panel = panels[1];
+    wrong_panel.marks = &nowhere, wrong_panel.mark_count = 1;
+    const struct plot_panel half_wrong[] = {panels[0], wrong_panel};
+    const struct plot wrong = {.name = "wrong", .panels = &wrong_panel, .panel_count = 1},
+                      half = {.name = "half", .panels = half_wrong, .panel_count = 2};
+    const struct plot *const plots[] = {&stack, &heated, &wrong, &stack, &half, &heated};
+    struct plot_pen pen = {0};
+    for (size_t k = 0; k < sizeof plots / sizeof *plots; k++) {
+        char *alone, *svg, why[512] = "", message[512] = "";
+        const enum plot_status status = plot_svg(NULL, plots[k], &alone, why, sizeof why);
+        assert_int_equal(plot_svg(&pen, plots[k], &svg, message, sizeof message), status);
+        const bool fails = plots[k] == &wrong || plots[k] == &half;
+        assert_int_equal(status, fails ? PLOT_FAILED : PLOT_OK);
+        assert_int_equal(pen.gnuplot.pid != 0, status == PLOT_OK);
+        if (status) {
+            assert_non_null(strstr(message, plots[k]->name));
+            assert_non_null(strstr(message, "gnuplot ended with status 1"));
+        } else {
+            assert_string_equal(svg, alone);
+        }
+        free(alone);
+        free(svg);
+    }
+    plot_pen_free(&pen);
+}
+
 TEST(missing_gnuplot)
 {
     char *path = strdup(getenv("PATH") ? getenv("PATH") : ""), *svg, message[512];
     setenv("PATH", "/nowhere", 1);
-    enum plot_status status = plot_svg(&stack, &svg, message, sizeof message);
+    enum plot_status status = plot_svg(NULL, &stack, &svg, message, sizeof message);
     setenv("PATH", path, 1);
     free(path);
     assert_int_equal(status, PLOT_NO_GNUPLOT);
@@ -248,7 +325,7 @@ TEST(gap)
     const struct plot plot = {.name = "gap", .title = "gap", .panels = &panel, .panel_count = 1};
     char *svg, message[256];
     if (!have_gnuplot()) skip();
-    assert_int_equal(plot_svg(&plot, &svg, message, sizeof message), PLOT_OK);
+    assert_int_equal(plot_svg(NULL, &plot, &svg, message, sizeof message), PLOT_OK);
     const char *end = strstr(svg, "class=\"plot_1\""), *path = end;
     assert_non_null(end);
     while (path > svg && strncmp(path, "<path", 5) != 0) path--;
@@ -337,7 +414,7 @@ TEST(images)
     assert_true(layout.panels[0].right < layout.panels[1].left);
     char *svg, message[256], fault[256];
     if (!have_gnuplot()) skip();
-    assert_int_equal(plot_svg(&plot, &svg, message, sizeof message), PLOT_OK);
+    assert_int_equal(plot_svg(NULL, &plot, &svg, message, sizeof message), PLOT_OK);
     if (!markup_well_formed(svg, fault, sizeof fault)) fail_msg("%s", fault);
     assert_int_equal(occurrences(svg, " href=\"data:image/png;base64,"), 2);
     assert_null(strstr(svg, "xlink"));
