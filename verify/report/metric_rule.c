@@ -210,7 +210,7 @@ const struct metric_rule *metric_rule(const char *path, const char *name)
 {
     for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) {
         const struct metric_rule *rule = &rules[i];
-        if ((!*rule->inside || metric_passes(path, rule->inside)) && fits(rule->name, name))
+        if (fits(rule->name, name) && (!*rule->inside || metric_passes(path, rule->inside)))
             return rule;
     }
     return NULL;
