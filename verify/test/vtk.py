@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """vtk.py SPHPROOF: legacy files of VTK, as text and binary, with arrays as SCALARS, VECTORS and FIELD, are judged as the
-table of the same particles is; every file that is cut off anywhere, or has another number, is told."""
+table of the same particles is; every file that is cut off anywhere is told. (Other refusals: test_readers_text_faults.)"""
 import json
 import os
 import random
@@ -78,12 +78,6 @@ def main():
                 file.write(text[:cut])
             code, out, err = call("cut.vtk")
             check(code == 2 and "cut.vtk" in err and not out, "cut off at", cut, code, err)
-    for old, new in ((b"POINT_DATA 40", b"POINT_DATA 39"), (b"POINTS 40", b"POINTS 4e9"), (b"DATASET UNSTRUCTURED_GRID", b"DATASET RECTILINEAR_GRID"),
-                     (b"Vel 3 40", b"Vel 3 39"), (b"BINARY", b"BINARI"), (b"Mass 1", b"Maas 1")):
-        with open("bad.vtk", "wb") as file:
-            file.write(make(points, True, True, True, b"float").replace(old, new))
-        code, out, err = call("bad.vtk")
-        check(code == 2 and "bad.vtk" in err and not out, new, code, err)
 
 
 with tempfile.TemporaryDirectory() as place:
