@@ -18,6 +18,67 @@
 FAMILY_FILE_LIST(FAMILY_OF_FILES)
 FAMILY_CHOICE_LIST(FAMILY_OF_CHOICES)
 
+/* A choice of another key that one does not go together with. */
+struct exclusion {
+    bool excluded;
+    const char *key, *name, *why;
+};
+
+/* The first of them that is excluded. */
+static enum status refuse_first(const char *choice, const struct exclusion *list, size_t n,
+                                struct error *error)
+{
+    for (size_t k = 0; k < n; k++)
+        if (list[k].excluded)
+            return error_set(error, STATUS_BAD_INPUT, "%s and %s=%s exclude each other: %s", choice,
+                             list[k].key, list[k].name, list[k].why);
+    return STATUS_OK;
+}
+
+#define MEMBER(family) #family, scheme_##family##_family.members[scheme->family]->name
+
+static enum status check_steps(const struct scheme *scheme, struct error *error)
+{
+    const struct exclusion list[] = {
+        {!scheme->integrator->local, "integrator", scheme->integrator->member.name,
+         "local steps are those of predicted_midpoint"},
+        {scheme->h_method != H_PREDICTED, MEMBER(h_method),
+         "widths are predicted between a particle's sums"},
+        {scheme->formulation != FORMULATION_VANILLA_ICE, MEMBER(formulation),
+         "grad-h factors cannot be predicted"},
+        {scheme->volume_element == VOLUME_ENERGY, MEMBER(volume_element),
+         "the volume does not follow from the width"},
+        {viscosity_varies(scheme->viscosity), MEMBER(viscosity),
+         "alpha evolves in global steps alone"},
+    };
+    if (scheme->steps != STEPS_LOCAL) return STATUS_OK;
+    return refuse_first("steps=local", list, sizeof list / sizeof *list, error);
+}
+
+/* Shifting changes masses, and excludes all that takes them for constant. */
+static enum status check_shifting(const struct scheme *scheme, struct error *error)
+{
+    const struct exclusion list[] = {
+        {!scheme->integrator->shifts, "integrator", scheme->integrator->member.name,
+         "masses advance with predicted_midpoint alone"},
+        {scheme->steps != STEPS_GLOBAL, "steps",
+         scheme_time_steps_family.members[scheme->steps]->name,
+         "masses change in global steps alone"},
+        {scheme->energy != ENERGY_TOTAL, MEMBER(energy), "particles exchange total energy"},
+        {scheme->formulation != FORMULATION_VANILLA_ICE, MEMBER(formulation),
+         "grad-h factors belong to constant masses"},
+        {scheme->volume_element != VOLUME_NUMBER, MEMBER(volume_element),
+         "volumes must not depend on what particles exchange, as those of number do"},
+        {gradient_of[scheme->gradient].weight == WEIGHT_NONE, MEMBER(gradient),
+         "particles shift along the gradient that a moment matrix makes of a constant"},
+    };
+    char chosen[40];
+    if (scheme->shifting == SHIFTING_NONE) return STATUS_OK;
+    snprintf(chosen, sizeof chosen, "shifting=%s",
+             scheme_shifting_family.members[scheme->shifting]->name);
+    return refuse_first(chosen, list, sizeof list / sizeof *list, error);
+}
+
 /* Of 2D: wide smooth kernel and ia, which repairs the error of a uniform pressure, with a viscosity
  * that damps noise and leaves shear alone: the only one that is among the best both for vortices
  * and for Kelvin-Helmholtz (see the tables of cases/README.md). */
@@ -56,6 +117,7 @@ void scheme_default(struct scheme *scheme, const struct scheme_open *open, int d
                              : viscosity->defaults.predicted ? viscosity->defaults.predicted
                              : own && standard               ? kernel->predicted.pair_width
                                                              : PAIR_WIDTH_MEAN;
+    if (open->shifting && check_shifting(scheme, NULL)) scheme->shifting = SHIFTING_NONE;
     if (!open->cfl) return;
     /* long steps are stable with this much viscosity, and not needed without */
     const double most_alpha = viscosity->evolve ? scheme->alpha_max : scheme->alpha;
@@ -121,67 +183,6 @@ static enum status check_members(const struct scheme *scheme, int dim, struct er
                          "and 3 dimensions",
                          scheme->alpha_u);
     return STATUS_OK;
-}
-
-/* A choice of another key that one does not go together with. */
-struct exclusion {
-    bool excluded;
-    const char *key, *name, *why;
-};
-
-/* The first of them that is excluded. */
-static enum status refuse_first(const char *choice, const struct exclusion *list, size_t n,
-                                struct error *error)
-{
-    for (size_t k = 0; k < n; k++)
-        if (list[k].excluded)
-            return error_set(error, STATUS_BAD_INPUT, "%s and %s=%s exclude each other: %s", choice,
-                             list[k].key, list[k].name, list[k].why);
-    return STATUS_OK;
-}
-
-#define MEMBER(family) #family, scheme_##family##_family.members[scheme->family]->name
-
-static enum status check_steps(const struct scheme *scheme, struct error *error)
-{
-    const struct exclusion list[] = {
-        {!scheme->integrator->local, "integrator", scheme->integrator->member.name,
-         "local steps are those of predicted_midpoint"},
-        {scheme->h_method != H_PREDICTED, MEMBER(h_method),
-         "widths are predicted between a particle's sums"},
-        {scheme->formulation != FORMULATION_VANILLA_ICE, MEMBER(formulation),
-         "grad-h factors cannot be predicted"},
-        {scheme->volume_element == VOLUME_ENERGY, MEMBER(volume_element),
-         "the volume does not follow from the width"},
-        {viscosity_varies(scheme->viscosity), MEMBER(viscosity),
-         "alpha evolves in global steps alone"},
-    };
-    if (scheme->steps != STEPS_LOCAL) return STATUS_OK;
-    return refuse_first("steps=local", list, sizeof list / sizeof *list, error);
-}
-
-/* Shifting changes masses, and excludes all that takes them for constant. */
-static enum status check_shifting(const struct scheme *scheme, struct error *error)
-{
-    const struct exclusion list[] = {
-        {!scheme->integrator->shifts, "integrator", scheme->integrator->member.name,
-         "masses advance with predicted_midpoint alone"},
-        {scheme->steps != STEPS_GLOBAL, "steps",
-         scheme_time_steps_family.members[scheme->steps]->name,
-         "masses change in global steps alone"},
-        {scheme->energy != ENERGY_TOTAL, MEMBER(energy), "particles exchange total energy"},
-        {scheme->formulation != FORMULATION_VANILLA_ICE, MEMBER(formulation),
-         "grad-h factors belong to constant masses"},
-        {scheme->volume_element != VOLUME_NUMBER, MEMBER(volume_element),
-         "volumes must not depend on what particles exchange, as those of number do"},
-        {gradient_of[scheme->gradient].weight == WEIGHT_NONE, MEMBER(gradient),
-         "particles shift along the gradient that a moment matrix makes of a constant"},
-    };
-    char chosen[40];
-    if (scheme->shifting == SHIFTING_NONE) return STATUS_OK;
-    snprintf(chosen, sizeof chosen, "shifting=%s",
-             scheme_shifting_family.members[scheme->shifting]->name);
-    return refuse_first(chosen, list, sizeof list / sizeof *list, error);
 }
 
 /* Reports a value that is not in (least, most]. */

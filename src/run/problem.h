@@ -107,6 +107,7 @@ struct problem {
     bool filed;           /* its particles come from a file, always */
     bool heavy;           /* it takes gravity: any other has no solution in it */
     bool steady; /* the exact flow is the same at all times, but for where the boost carries it */
+    bool shifts; /* closed gradients and particle shifting make its errors smaller */
     bool smooth; /* neither jumps nor shocks, for as long as it is solved */
     struct problem_ends ends[3];
     /* NULL, but where energy starts in the middle of the window: the sample at t = 0 does not show

@@ -96,6 +96,17 @@ static enum status choose_gravity(struct prepared *p, const struct settings *set
     return STATUS_OK;
 }
 
+/* What the problem asks for; scheme_default knows what excludes it. */
+static void choose_shifting(const struct prepared *p, struct settings *settings)
+{
+    struct setting_value *shifting = &settings->value[SETTING_shifting];
+    if (!shifting->automatic) return;
+    bool closed = p->problem->shifts && p->domain.dim > 1;
+    for (int d = 0; d < p->domain.dim; d++)
+        closed &= p->boundary[d] == BOUNDARY_PERIODIC || p->boundary[d] == BOUNDARY_REFLECTING;
+    shifting->choice = closed ? SHIFTING_CLOSED : SHIFTING_NONE;
+}
+
 /* Automatic keys as they are used. */
 static void write_back(const struct prepared *p, struct settings *settings)
 {
@@ -219,6 +230,7 @@ enum status problem_prepare_as(struct prepared *p, const struct problem *problem
         choose_lattice(settings, dim, error) || choose_ends(p, settings, error) ||
         choose_gravity(p, settings, error) || problem->prepare(p, settings, error))
         return error->status;
+    choose_shifting(p, settings);
     write_back(p, settings);
     return STATUS_OK;
 }

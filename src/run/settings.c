@@ -339,6 +339,7 @@ static enum status read_scheme(const struct settings *settings, int dim, struct 
         .energy = IS_AUTO(energy),
         .pair_width = IS_AUTO(pair_width),
         .h_method = IS_AUTO(h_method),
+        .shifting = IS_AUTO(shifting),
     };
     return plugin_select(&scheme->kernel, CHOICE_OF(kernel), (int)REAL_OF(sinc_n), dim, error);
 #undef REAL_OF
@@ -369,7 +370,8 @@ static void write_scheme(struct settings *settings, const struct scheme *scheme)
                    {SETTING_balsara, (int)scheme->balsara},
                    {SETTING_energy, (int)scheme->energy},
                    {SETTING_pair_width, (int)scheme->pair_width},
-                   {SETTING_h_method, (int)scheme->h_method}};
+                   {SETTING_h_method, (int)scheme->h_method},
+                   {SETTING_shifting, (int)scheme->shifting}};
     for (size_t i = 0; i < sizeof choices / sizeof *choices; i++)
         settings->value[choices[i].key].choice = choices[i].choice;
 }

@@ -26,7 +26,11 @@ static const struct {
      ALWAYS,
      PROMISE_ROUND_OFF,
      1e-8},
-    {"the shortest step for all", {"steps=local", "steps=global"}, LOCAL, PROMISE_ERROR, 0.05},
+    {"the shortest step for all",
+     {"steps=local shifting=none", "steps=global shifting=none"},
+     LOCAL,
+     PROMISE_ERROR,
+     0.05},
     {"h by Newton", {"", "h_method=newton"}, PREDICTED, PROMISE_ERROR, 0.05},
     {"viscosity of none",
      {"", "viscosity=constant alpha=0 beta=0 cfl=CFL"},
@@ -151,6 +155,7 @@ static bool applies(enum when when, const struct scheme *scheme, int dim)
     struct scheme local = *scheme;
     struct error ignored;
     local.steps = STEPS_LOCAL;
+    local.shifting = SHIFTING_NONE;
     switch (when) {
     case PREDICTED:
         return scheme->h_method != H_NEWTON;

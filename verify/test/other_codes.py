@@ -51,7 +51,7 @@ if mode == "wound":
                     words[names.index(name)] = repr(1.1 * float(words[names.index(name)]))
             print(",".join(words), file=file)
 elif mode == "viscous":
-    run(t_end, n, out + "_1.csv", "alpha=2")
+    run(t_end, n, out + "_1.csv", "noise=2" if case == "gresho" else "alpha=2")
 elif mode == "early":
     run(t=repr(0.998 * float(t_end)))
 elif mode == "late":

@@ -83,6 +83,7 @@ const struct problem problem_gresho = {
     .reference = "gresho",
     .least_dim = 2,
     .most_dim = 2,
+    .shifts = true,
     .carried = true,
     .steady = true,
     .circular = CIRCULAR_ROUND,

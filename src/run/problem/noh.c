@@ -122,6 +122,7 @@ const struct problem problem_noh = {
     .reference = "noh",
     .least_dim = 1,
     .most_dim = 3,
+    .shifts = true,
     .circular = CIRCULAR_RADIAL,
     .ends = {{.also = PROBLEM_END(OPEN)}, {.also = PROBLEM_END(OPEN)}, {.also = PROBLEM_END(OPEN)}},
     .prepare = prepare,

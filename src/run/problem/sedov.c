@@ -307,6 +307,7 @@ const struct problem problem_sedov = {
     .reference = "sedov",
     .least_dim = 2,
     .most_dim = 3,
+    .shifts = true,
     .circular = CIRCULAR_RADIAL,
     .mean_energy = mean_energy,
     .prepare = prepare,

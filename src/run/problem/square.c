@@ -130,6 +130,7 @@ const struct problem problem_square = {
     .reference = "square",
     .least_dim = 2,
     .most_dim = 3,
+    .shifts = true,
     .carried = true,
     .steady = true,
     .ends = {{.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)},

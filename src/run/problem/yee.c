@@ -38,6 +38,7 @@ const struct problem problem_yee = {
     .reference = "yee",
     .least_dim = 2,
     .most_dim = 2,
+    .shifts = true,
     .carried = true,
     .steady = true,
     .circular = CIRCULAR_ROUND,

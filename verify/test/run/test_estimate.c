@@ -116,7 +116,7 @@ TEST(of_a_million)
     assert_non_null(setup.scheme.integrator);
     scheme_default(&setup.scheme,
                    &(struct scheme_open){true, true, true, true, true, true, true, true, true, true,
-                                         true, true, true},
+                                         true, true, true, true},
                    3);
     assert_true(setup.scheme.viscosity == VISCOSITY_PROJECTED && setup.scheme.eta == 3.6);
     assert_true(estimate_size(&setup).memory < 0x1p30);

@@ -124,7 +124,7 @@ TEST(a_kernel_with_too_few_neighbours_is_named)
 TEST(disorder_is_named)
 {
     struct autopsy autopsy;
-    examine(&autopsy, "yee", plane, "t_end=4", NULL);
+    examine(&autopsy, "yee", plane, "t_end=4 shifting=none", NULL);
     expect(&autopsy, true, AUTOPSY_DISORDER, "is lost to disorder");
     for (size_t l = 0; l < LEVELS; l++) {
         const struct autopsy_level *level = &autopsy.levels[l];
@@ -226,7 +226,7 @@ TEST(snapshots_tell_the_same_of_positions)
     struct run_result result, judged;
     struct error error;
     struct autopsy_level own, theirs;
-    resolve(&run, "gresho", N, "t_end=0.5");
+    resolve(&run, "gresho", N, "t_end=0.5 shifting=none");
     if (autopsy_measure(&run, &own, NULL, &error) || run_execute(&run, &result, &error))
         fail_msg("%s", error.message);
     struct snapshot snapshot = result.snapshot;

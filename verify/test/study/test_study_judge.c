@@ -337,7 +337,7 @@ TEST(idle_settings_are_suspected)
         {"h_method=newton,h_tolerance=1e-9,1e-8", "h_tolerance", NULL},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        const char *name = strstr(rows[k].vary, "cullen") ? "gresho" : "sod";
+        const char *name = strstr(rows[k].vary, "cullen") ? "kelvin_helmholtz" : "sod";
         struct study study = made(name, rows[k].vary, 1, rows[k].tampering);
         if (!rows[k].words != !study.suspicion[0] ||
             (rows[k].words && !strstr(study.suspicion, rows[k].words)))
