@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """report.py SPHPROOF FOLDER: the report as a whole, into FOLDER: killed, resumed, repeated on an
-unchanged night, and repeated with damaged entries, what is found and that results are the same; its
-history; its files, that it stands alone, that each plot can be drawn again, that kept results are the
-computed ones, and what happens when things fail."""
+unchanged night without gnuplot, and repeated with damaged entries after a night that was better, what
+is found and that results are the same; its history; its files, that it stands alone, that each plot can
+be drawn again, that kept results are the computed ones, and what happens when things fail."""
 import base64
 import glob
 import json
@@ -57,14 +57,6 @@ def computed(value):
     return [computed(v) for v in value] if isinstance(value, list) else value
 
 
-def sound(*arguments):
-    """The results of a report where all is well."""
-    done = report("--quick", "--out", folder, "--jobs", "2", *arguments)
-    expect("exit status of a sound report %s:" % (arguments,), done.returncode == 0, done.stdout[:500] + done.stderr)
-    expect("where the report is:", os.path.join(folder, "index.html") in done.stdout, done.stdout)
-    return json.loads(read("results.json"))
-
-
 def entries():
     return glob.glob(os.path.join(folder, "cache", "*", "*.entry"))
 
@@ -90,26 +82,12 @@ def kill_one():
 shutil.rmtree(folder, ignore_errors=True)
 folder = os.path.join(folder, "a b", "é")
 kept = kill_one()
-resumed = sound("--resume")
-expect("found after kill -9:", resumed["found"] == len(kept) >= 5, (resumed["found"], len(kept)))
-expect("computed twice:", kept.items() <= {name: os.stat(name).st_ino for name in entries()}.items())
-
-unchanged = sound()
-expect("found on an unchanged night:", unchanged["found"] == unchanged["computations"], unchanged["found"])
-expect("an unchanged night, results:", computed(unchanged) == computed(resumed))
-since = unchanged["history"]["since"]
-expect("an unchanged night, history:", since["worse"] == since["better"] == 0 and since["same"] > 1000, since)
-
-with open(entries()[0], "r+b") as file:
-    file.seek(200)
-    file.write(b"!")
-os.truncate(entries()[1], 100)
-mended = sound()
-expect("found beside damaged entries:", mended["found"] == mended["computations"] - 2, mended["found"])
-expect("mended, results:", computed(mended) == computed(resumed))
-expect("nights:", len([json.loads(line) for line in read("history.jsonl").splitlines()]) == 3)
-
+done = report("--quick", "--out", folder, "--jobs", "2", "--resume")
+expect("exit status of a sound report:", done.returncode == 0, done.stdout[:500] + done.stderr)
+expect("where the report is:", os.path.join(folder, "index.html") in done.stdout, done.stdout)
 page, results = read("index.html"), json.loads(read("results.json"))
+expect("found after kill -9:", results["found"] == len(kept) >= 5, (results["found"], len(kept)))
+expect("computed twice:", kept.items() <= {name: os.stat(name).st_ino for name in entries()}.items())
 expect("verdict:", "<h1>%s</h1>" % results["verdict"]["headline"] in page and results["verdict"]["status"] == "pass")
 counts = {"smoke": 0, "undetermined": 0, "known": 0, "pass": 0}
 for entry in [o for s in results["studies"] for o in s["orders"] + [b["still_gas"] for b in s.get("budgets", []) if b.get("still_gas")]] \
@@ -161,14 +139,15 @@ again = subprocess.run([program] + commands[1].split()[1:] + ["--json", "-"], ca
 expect("a run seen again:",
        json.loads(again.stdout)["errors"] == results["runs"][1]["errors"], again.stderr)
 
-alone = os.path.join(folder, "alone")
-shutil.copytree(os.path.join(folder, "cache"), os.path.join(alone, "cache"))
-done = report("--out", alone, "--jobs", "1", PATH="/nowhere")
+done = report("--quick", "--out", folder, "--jobs", "1", PATH="/nowhere")
+unchanged = json.loads(read("results.json"))
 expect("exit status without gnuplot:", done.returncode == 4 and "gnuplot" in done.stderr, done)
-expect("page without gnuplot:", '<svg class="plot"' not in unsealed(read("alone", "index.html"))
-       and results["verdict"]["headline"] in read("alone", "index.html"))
-expect("what was kept is not what was computed:",
-       lasting(json.loads(read("alone", "results.json"))) == lasting(results))
+expect("page without gnuplot:", '<svg class="plot"' not in unsealed(read("index.html"))
+       and results["verdict"]["headline"] in read("index.html"))
+expect("found on an unchanged night:", unchanged["found"] == unchanged["computations"], unchanged["found"])
+expect("what was kept is not what was computed:", lasting(unchanged) == lasting(results))
+since = unchanged["history"]["since"]
+expect("an unchanged night, history:", since["worse"] == since["better"] == 0 and since["same"] > 1000, since)
 
 for arguments, status in ((["--jobs", "0"], 2), (["--quick", "--nightly"], 2), (["sod"], 2),
                           (["--out", os.path.join(folder, "index.html")], 4)):
@@ -176,14 +155,23 @@ for arguments, status in ((["--jobs", "0"], 2), (["--quick", "--nightly"], 2), (
     expect("exit status of %s:" % arguments, done.returncode == status and done.stderr
            and not done.stdout, done)
 
-# what survived the night before and breaks down now fails the report, its page, its JUnit file and its exit status
+# what survived the night before and breaks down now fails the report, its page, its JUnit file and its exit status;
+# entries that are damaged are computed again
 night = json.loads(read("history.jsonl").splitlines()[-1])
 lost = next(path for path, value in night["figures"].items() if path.startswith("stress") and value == "broke_down")
 night["figures"][lost] = "ok"
 with open(os.path.join(folder, "nights.jsonl"), "w", encoding="utf-8") as file:
-    file.write(json.dumps(night) + "\n")
+    file.write(read("history.jsonl") + json.dumps(night) + "\n")
+with open(entries()[0], "r+b") as file:
+    file.seek(200)
+    file.write(b"!")
+os.truncate(entries()[1], 100)
 done = report("--quick", "--out", folder, "--jobs", "2", "--history", os.path.join(folder, "nights.jsonl"))
-verdict = json.loads(read("results.json"))["verdict"]
+mended = json.loads(read("results.json"))
+expect("found beside damaged entries:", mended["found"] == mended["computations"] - 2, mended["found"])
+expect("mended, results:", {**computed(mended), "verdict": 0} == {**computed(results), "verdict": 0})
+expect("nights:", len([json.loads(line) for line in read("nights.jsonl").splitlines()]) == 4)
+verdict = mended["verdict"]
 expect("lost since the night before:", done.returncode == 1 and verdict["status"] == "fail"
        and [failure["name"] for failure in verdict["failures"]] == [lost], (done.returncode, verdict, done.stderr))
 failing = [case.get("name") for case in xml.fromstring(read("junit.xml")).iter("testcase") if case.find("failure") is not None]
