@@ -32,9 +32,12 @@ static bool allocate(struct bench_cells *bench, size_t n, struct arrays *of)
                              &of->v[2], &of->m,      &of->U,        &of->alpha,     &of->balsara,
                              &of->P,    &of->c,      &of->rho,      &of->h_inverse, &of->V,
                              &of->b,    &of->grad_h, &bench->radius};
-    double **const found[] = {&f->sum_m,  &f->sum_m_dh,    &f->sum_Z, &f->sum_Z_dh, &f->condition,
-                              &f->F[0],   &f->F[1],        &f->F[2],  &f->de,       &f->div_v,
-                              &f->signal, &f->alpha_local, &f->decay};
+    double **const found[] = {
+        &f->sum_m,       &f->sum_m_dh,    &f->sum_Z,        &f->sum_Z_dh,     &f->condition,
+        &f->F[0],        &f->F[1],        &f->F[2],         &f->de,           &f->div_v,
+        &f->signal,      &f->alpha_local, &f->decay,        &f->steep,        &f->dm,
+        &f->shift[0],    &f->shift[1],    &f->shift[2],     &f->de_shift,     &f->dp_shift[0],
+        &f->dp_shift[1], &f->dp_shift[2], &f->potential[0], &f->potential[1], &f->potential[2]};
     enum { READ = sizeof read / sizeof *read, FOUND = sizeof found / sizeof *found };
     const size_t stride = n + 16; /* whole vectors read a little beyond */
     double *next = bench->storage =

@@ -518,6 +518,31 @@ TEST(test_cells)
     bench_cells_free(&bench);
 }
 
+/* Schemes that find more of each particle have the arrays for it: forces are balanced. */
+TEST(test_cells_of_schemes)
+{
+    static const char *const schemes[] = {"shifting=fluxes", "shifting=closed", "gradient=blended",
+                                          "viscosity=cullen_dehnen", "formulation=lagrangian"};
+    for (size_t k = 0; k < 2 * sizeof schemes / sizeof *schemes; k++) {
+        struct run_settings asked;
+        static struct run run;
+        static struct bench_cells bench;
+        struct error error;
+        char words[40], *keys[] = {words};
+        const int dim = k % 2 ? 3 : 2;
+        snprintf(words, sizeof words, "%s", schemes[k / 2]);
+        assert_int_equal(run_prepare(&asked, dim == 2 ? "rest_2d" : "rest_3d", 1, keys, &error), 0);
+        assert_int_equal(run_resolve(&run, &asked, &error), 0);
+        assert_int_equal(
+            bench_cells_create(&bench, &run.scheme, dim, 12, true, CELLS_DENSITY, &error), 0);
+        double force = 0, size = 0;
+        for (size_t i = 0; i < bench.fields.n; i++)
+            force += bench.fields.F[0][i], size += fabs(bench.fields.F[0][i]);
+        assert_true(size > 0 && fabs(force) <= 1e-12 * size);
+        bench_cells_free(&bench);
+    }
+}
+
 /* --- how cost grows --------------------------------------------------------------------------- */
 
 TEST(test_scaling)
