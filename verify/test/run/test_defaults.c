@@ -223,6 +223,54 @@ TEST(nothing_chosen)
     }
 }
 
+/* shifting=auto: closed for these problems, where nothing excludes it. */
+TEST(what_shifts)
+{
+    enum { KEYS = 2 };
+    static const struct {
+        const char *name, *keys[KEYS];
+        enum shifting shifting;
+    } rows[] = {
+        {"gresho", {0}, SHIFTING_CLOSED},
+        {"yee", {"boost=1", "lattice=hexagonal"}, SHIFTING_CLOSED},
+        {"square", {"n=24^2"}, SHIFTING_CLOSED},
+        {"noh_2d", {0}, SHIFTING_CLOSED},
+        {"noh_3d", {"gradient=corrected"}, SHIFTING_CLOSED},
+        {"sedov_2d", {"kernel=cubic_spline"}, SHIFTING_CLOSED},
+        {"sedov_3d", {"gradient=blended"}, SHIFTING_CLOSED},
+        {"gresho", {"boundary=reflecting"}, SHIFTING_CLOSED},
+        {"gresho", {"boundary=fixed"}, SHIFTING_NONE},
+        {"noh_2d", {"boundary=open"}, SHIFTING_NONE},
+        {"noh_2d", {"boundary=periodic open"}, SHIFTING_NONE},
+        {"gresho", {"shifting=fluxes"}, SHIFTING_FLUXES},
+        {"gresho", {"shifting=none"}, SHIFTING_NONE},
+        {"yee", {"gradient=standard"}, SHIFTING_NONE},
+        {"yee", {"steps=local"}, SHIFTING_NONE},
+        {"yee", {"integrator=rk2"}, SHIFTING_NONE},
+        {"yee", {"energy=internal"}, SHIFTING_NONE},
+        {"yee", {"formulation=lagrangian"}, SHIFTING_NONE},
+        {"yee", {"volume_element=mass"}, SHIFTING_NONE},
+        {"noh_1d", {0}, SHIFTING_NONE},
+        {"sod_2d", {0}, SHIFTING_NONE},
+        {"sod_2d", {"shifting=closed"}, SHIFTING_CLOSED},
+        {"rest_3d", {0}, SHIFTING_NONE},
+        {"kelvin_helmholtz", {0}, SHIFTING_NONE},
+        {"rotation", {0}, SHIFTING_NONE},
+        {"sound_wave_3d", {0}, SHIFTING_NONE},
+        {"rayleigh_taylor_mode", {0}, SHIFTING_NONE},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct run_settings base = case_of(rows[k].name);
+        struct run run;
+        size_t n = 0;
+        while (n < KEYS && rows[k].keys[n]) n++;
+        assert_true(scheme_of(&base, n, rows[k].keys, &run));
+        if (run.scheme.shifting != rows[k].shifting ||
+            settings_choice(&run.settings, SETTING_shifting) != (int)rows[k].shifting)
+            fail_msg("row %zu: %s", k, rows[k].name);
+    }
+}
+
 /* sinc: half its exponent. */
 TEST(sinc)
 {
