@@ -406,6 +406,23 @@ static void finest_value(struct buffer *to, const json_t *values)
     html_digits(to, value_real(json_array_get(values, json_array_size(values) - 1)));
 }
 
+/* A dash where there is none, as where steps are irregular. */
+static void known_value(struct buffer *to, const json_t *value)
+{
+    if (isfinite(value_real(value)))
+        html_digits(to, value_real(value));
+    else
+        buffer_add(to, "—");
+}
+
+static void known_order(struct buffer *to, const json_t *order)
+{
+    if (isfinite(value_real(order)))
+        html_number(to, value_real(order));
+    else
+        buffer_add(to, "—");
+}
+
 static void percent(struct buffer *to, const json_t *part)
 {
     if (isfinite(value_real(part))) html_number(to, 100 * value_real(part));
@@ -416,9 +433,9 @@ static const struct html_column functionals[] = {
     COLUMN("scheme", "^label", .kind = CELL_TEXT),
     COLUMN("scalar", "name", .kind = CELL_WORDS),
     COLUMN("#finest level", "values", .cell = finest_value),
-    COLUMN("#extrapolated", "extrapolated", .kind = CELL_DIGITS),
+    COLUMN("#extrapolated", "extrapolated", .cell = known_value),
     COLUMN("#exact", "exact", .kind = CELL_DIGITS),
-    COLUMN("#order", "order"),
+    COLUMN("#order", "order", .cell = known_order),
     COLUMN("#GCI, finest", "gci", .cell = percent),
     COLUMN("#GCI, next", "gci_coarse", .cell = percent),
     COLUMN("convergence", NULL, .cell = class_words),
