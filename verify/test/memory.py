@@ -38,7 +38,9 @@ def said_and_taken(words):
     said = json.loads(sphproof("run", *words, "--explain", "--json", "-").stdout)
     estimate = said["estimate"]
     assert "status" not in said and estimate["cpu_s"] > 0
-    cost = json.loads(sphproof("run", *words, "--json", "-").stdout)["cost"]
+    # where the system lays memory changes from run to run, and with it how many pages are touched: the least of three
+    costs = [json.loads(sphproof("run", *words, "--json", "-").stdout)["cost"] for _ in range(3)]
+    cost = min(costs, key=lambda one: one["peak_rss_bytes"])
     if not 0.3 * cost["steps"] - 1 <= estimate["steps"] <= 3 * cost["steps"] + 1:
         sys.exit("%s: %r steps are said, %d made" % (" ".join(words), estimate["steps"], cost["steps"]))
     return estimate["memory_bytes"], cost["peak_rss_bytes"]

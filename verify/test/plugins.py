@@ -158,8 +158,10 @@ def main():
             print("%-24s %s" % (name, trouble or "ok"), flush=True)
             bad += trouble is not None
     if os.path.isdir("/proc/self"):
-        left = [p for line in table for p in processes(module(line[0]))]
-        for name, trouble in [("nothing left", "left behind: %s" % left if left else None),
+        def left():
+            return [p for line in table for p in processes(module(line[0]))]
+        gone = wait_for(lambda: not left()) # what has been killed takes a moment to end, plug-ins that stay do not end
+        for name, trouble in [("nothing left", None if gone else "left behind: %s" % left()),
                               ("interrupted", judge_interrupt(signal.SIGINT)),
                               ("terminated", judge_interrupt(signal.SIGTERM))]:
             print("%-24s %s" % (name, trouble or "ok"))
