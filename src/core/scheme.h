@@ -42,7 +42,7 @@ struct scheme {
 struct scheme_open {
     bool kernel, gradient, volume_element, viscosity, viscosity_form, balsara;
     bool eta, alpha, beta, cfl, energy, pair_width, h_method;
-    bool shifting; /* it is what a problem asks for, unless something excludes it */
+    bool shifting; /* the scheme has what a problem asks for, which may be excluded */
 };
 
 /* Fills what is open: choices with those of the best scheme that was measured in so many

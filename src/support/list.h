@@ -12,7 +12,7 @@
  * grows. False: no memory, and the list is as it was. */
 bool list_grow(void *list, size_t count, size_t size);
 
-/* The least comes first. */
+/* Sorts n numbers, the least first. */
 void list_sort(double *values, size_t n);
 
 #endif

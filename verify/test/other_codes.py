@@ -108,7 +108,16 @@ if mode == "nan":
     lines = text.splitlines()
     lines[-3] = ",".join(["nan"] + lines[-3].split(",")[1:])
     text = "\\n".join(lines) + "\\n"
-if mode in ("cut", "nan"):
+if mode == "uneven": # their sum is right
+    lines = text.splitlines()
+    column = lines[0].split(",").index("m")
+    rows = [i for i, line in enumerate(lines) if i and line[0] != "#"]
+    for k, i in enumerate(rows):
+        words = lines[i].split(",")
+        words[column] = repr((1.5, 0.5)[k %% 2] * float(words[column]))
+        lines[i] = ",".join(words)
+    text = "\\n".join(lines) + "\\n"
+if mode in ("cut", "nan", "uneven"):
     with open(out + "_1.csv", "w") as file:
         file.write(text)
 if mode == "old":
@@ -138,7 +147,7 @@ FAILURES = (("exit", "exit_status", "no such table"), ("killed", "exit_status", 
             ("old", "old_snapshot", "older"), ("nan", "not_a_number", "nan"), ("early", "wrong_time", "0.1996"),
             ("gas", "wrong_gamma", "1.5"), ("own", "ignored_ic", "out_0.csv: positions along x"),
             ("fast", "ignored_ic", "out_0.csv: vx differs"),
-            ("few", "wrong_particles", "99"), ("heavy", "ignored_ic", "masses"), ("still", "ignored_ic", "at the start"))
+            ("few", "wrong_particles", "99"), ("heavy", "ignored_ic", "masses"), ("uneven", "ignored_ic", "masses"), ("still", "ignored_ic", "at the start"))
 GOOD = FILE % ("good sod", 60, "none")
 # what is replaced, by what, what the message says
 BAD = ((GOOD, "", "is empty"), ("title", "titel", "did you mean 'title'"), ("[case sod]", "[case sodd]", "did you mean 'sod'"),
