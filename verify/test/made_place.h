@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A folder of a test's own, beside what was built, as fixtures of a group:
- * cmocka_run_group_tests(tests, make_place, remove_place). Include after cmocka.h. */
+ * test_run(make_place, remove_place). Include after cmocka.h. */
 #ifndef MADE_PLACE_H
 #define MADE_PLACE_H
 

@@ -153,6 +153,4 @@ static inline size_t shares_computations(int share)
     return n;
 }
 
-#define IN_ITS_PLACE(test) cmocka_unit_test_setup_teardown(test, begin, end)
-
 #endif

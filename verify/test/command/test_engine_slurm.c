@@ -322,19 +322,5 @@ TEST(its_name)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        IN_ITS_PLACE(once),
-        IN_ITS_PLACE(thrice),
-        IN_ITS_PLACE(many),
-        IN_ITS_PLACE(one_after_the_other),
-        IN_ITS_PLACE(two_tasks_of_a_share),
-        IN_ITS_PLACE(what_ended_well_may_be_late),
-        IN_ITS_PLACE(only_what_is_missing),
-        IN_ITS_PLACE(how_many_shares),
-        IN_ITS_PLACE(the_line_of_a_share),
-        IN_ITS_PLACE(a_command_without_jobs),
-        IN_ITS_PLACE(too_many_words),
-        IN_ITS_PLACE(its_name),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(begin, end);
 }

@@ -353,20 +353,5 @@ TEST(how_often_it_looks)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        IN_ITS_PLACE(what_sbatch_says),
-        IN_ITS_PLACE(a_controller_that_is_away),
-        IN_ITS_PLACE(away_twice),
-        IN_ITS_PLACE(nothing_is_left_to_do),
-        IN_ITS_PLACE(held_for_ever),
-        IN_ITS_PLACE(interrupted),
-        IN_ITS_PLACE(the_signal_is_given_back),
-        IN_ITS_PLACE(attached),
-        IN_ITS_PLACE(the_state),
-        IN_ITS_PLACE(shares_stay),
-        IN_ITS_PLACE(the_last_line),
-        IN_ITS_PLACE(logs_go),
-        IN_ITS_PLACE(how_often_it_looks),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(begin, end);
 }

@@ -217,6 +217,7 @@ TEST(joined_in_every_order)
 TEST(what_is_remarkable)
 {
     char path[CACHE_PATH_MAX];
+    end(NULL), begin(NULL);
     assert_int_equal(run_share("1/1"), STATUS_OK);
     pool_free(&call.pool);
     cache_path(&call.place.cache, "task 1", path);
@@ -254,6 +255,7 @@ TEST(what_is_remarkable)
 /* Nothing is printed where speak is off. */
 TEST(a_share_may_be_silent)
 {
+    end(NULL), begin(NULL);
     call.options.speak = 0;
     assert_int_equal(run_share("2/3"), STATUS_OK);
     assert_string_equal(call.said, "");
@@ -265,6 +267,7 @@ TEST(listing)
 {
     static const char *const shards[] = {NULL, "1/3", "2/3", "3/3"};
     int shares[N], said[2], usual[2];
+    end(NULL), begin(NULL);
     fill_planned();
     assert_int_equal(pool_divide(&call.pool, SHARES, shares, &call.error), STATUS_OK);
     pool_free(&call.pool);
@@ -392,6 +395,7 @@ TEST(wrong_options)
 TEST(right_options)
 {
     struct sharing sharing;
+    end(NULL), begin(NULL);
     assert_int_equal(sharing_take(&sharing, &call.options, 5, NULL, false, &call.error), STATUS_OK);
     assert_int_equal(sharing.pool.jobs, 5);
     assert_true(!sharing.list && !sharing.pool.cache && !sharing.pool.share.of && !sharing.tasks);
@@ -423,18 +427,7 @@ TEST(right_options)
     assert_true(sharing.cache.force);
 }
 
-#define IN_ITS_PLACE(test) cmocka_unit_test_setup_teardown(test, begin, end)
-
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        IN_ITS_PLACE(a_share_ends_as_its_computations),
-        IN_ITS_PLACE(joined_in_every_order),
-        IN_ITS_PLACE(what_is_remarkable),
-        IN_ITS_PLACE(a_share_may_be_silent),
-        IN_ITS_PLACE(listing),
-        IN_ITS_PLACE(wrong_options),
-        IN_ITS_PLACE(right_options),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(begin, end);
 }

@@ -56,7 +56,7 @@ TEST(left_out)
 
 /* The same, read in a process of its own, also when that process cannot hand over what it has
  * read. */
-static void apart(void **state)
+TEST(apart)
 {
     struct rlimit usual, none;
     struct snapshot_file file;
@@ -248,12 +248,7 @@ TEST(spoilt_numbers)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(left_out),       cmocka_unit_test(apart),
-        cmocka_unit_test(other_forms),    cmocka_unit_test(spoilt_columns),
-        cmocka_unit_test(spoilt_numbers),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }
 #else
 

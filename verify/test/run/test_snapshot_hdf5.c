@@ -13,7 +13,7 @@
 
 extern const struct snapshot_writer writer_hdf5;
 
-static void names(void **state)
+TEST(names)
 {
     static const struct {
         const char *path, *writer; /* NULL: refused */
@@ -22,7 +22,6 @@ static void names(void **state)
                 {"-", "csv"},           {"a.b/c", "csv"},    {"a.txt", "csv"},     {"a.dat", "csv"},
                 {"a.hdf5x", NULL},      {"a.vtk", NULL},     {"a.", NULL},         {"a.h", NULL},
                 {"a.hdf5 .h5", "hdf5"}, {"a.VTU", NULL}};
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct error error = {0};
         const struct snapshot_writer *writer = snapshot_writer_of(rows[k].path, &error);
@@ -199,9 +198,8 @@ static hsize_t members(hid_t file, const char *group)
     return info.nlinks;
 }
 
-static void whole_files(void **state)
+TEST(whole_files)
 {
-    (void)state;
     for (int k = 0; k < 6; k++) {
         const int dim = 1 + k / 2;
         const bool cube = k % 2;
@@ -252,12 +250,11 @@ static void whole_files(void **state)
 }
 
 /* Whichever call fails: there is no file, and nothing stays open. */
-static void failures(void **state)
+TEST(failures)
 {
     const struct run_result result = made(2, false);
     struct error error = {0};
     char path[256];
-    (void)state;
     snprintf(path, sizeof path, "%s", path_of("f.h5"));
     assert_int_equal(writer_hdf5.possible(path, &error), STATUS_OK);
     take_their_place();
@@ -281,16 +278,12 @@ static void failures(void **state)
     assert_int_equal(open_things(), open);
 }
 #else
-static void whole_files(void **state)
-{
-    (void)state;
-}
+TEST(whole_files) {}
 
-static void failures(void **state)
+TEST(failures)
 {
     struct run_result result = {0};
     struct error error = {0};
-    (void)state;
     assert_int_equal(writer_hdf5.possible("a.h5", &error), STATUS_ENVIRONMENT);
     assert_int_equal(writer_hdf5.write(&result, "a.h5", &error), STATUS_ENVIRONMENT);
     assert_non_null(strstr(error.message, "a.h5: built without HDF5"));
@@ -299,10 +292,5 @@ static void failures(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names),
-        cmocka_unit_test(whole_files),
-        cmocka_unit_test(failures),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

@@ -52,100 +52,6 @@ TEST(any_number_of_processes)
     place_clear(&place);
 }
 
-/* A crash or a failure is one job's own and is not kept. */
-TEST(crashes)
-{
-    struct place place;
-    struct pool pool;
-    struct task tasks[4] = {[1] = {.kind = CRASHES}, [2] = {.kind = FAILS}};
-    place_make(&place);
-    for (int round = 1; round <= 2; round++) {
-        fill(&pool, tasks, &place, 4);
-        assert_int_equal(run(&pool, &place.cache, 2), STATUS_OK);
-        assert_int_equal(pool.found, round == 1 ? 0 : 2);
-        assert_int_equal(pool.jobs[1].error.status, STATUS_BROKE_DOWN);
-        assert_non_null(strstr(pool.jobs[1].error.message, "signal 9"));
-        assert_int_equal(pool.jobs[2].error.status, STATUS_ENVIRONMENT);
-        assert_string_equal(pool.jobs[2].error.message, "no luck");
-        assert_null(pool.jobs[1].document);
-        assert_non_null(pool.jobs[3].document);
-        pool_free(&pool);
-    }
-    place_clear(&place);
-}
-
-/* Every job in one share, the same whatever their order; even by weight. Equal keys are one job. */
-TEST(shares)
-{
-    enum { MANY = 200 };
-    static int divided[MANY], again[MANY];
-    struct pool pool = {0}, turned = {0};
-    struct error error = {0};
-    double load[6] = {0}, least = 1e9, most = 0;
-    for (size_t i = 0; i < MANY; i++) {
-        char key[2][32];
-        const size_t numbers[2] = {i, MANY - 1 - i};
-        for (int k = 0; k < 2; k++) {
-            struct pool *of = k ? &turned : &pool;
-            const char *name = numbers[k] == 7 ? NULL : key[k];
-            snprintf(key[k], sizeof key[k], "key %zu", numbers[k]);
-            for (int times = 0; times < 2; times++) {
-                if (times && !name) continue;
-                assert_int_equal(
-                    pool_add(of, "job", name, 1 + (double)(numbers[k] * 37 % 100), compute, NULL),
-                    i);
-            }
-        }
-    }
-    assert_int_equal(pool_divide(&pool, 5, divided, &error), STATUS_OK);
-    assert_int_equal(pool_divide(&turned, 5, again, &error), STATUS_OK);
-    for (size_t i = 0; i < MANY; i++) {
-        assert_int_equal(divided[i], again[MANY - 1 - i]);
-        assert_true(i == 7 ? divided[i] == 0 : divided[i] >= 1 && divided[i] <= 5);
-        load[divided[i]] += pool.jobs[i].weight;
-    }
-    for (int s = 1; s <= 5; s++) {
-        least = load[s] < least ? load[s] : least;
-        most = load[s] > most ? load[s] : most;
-    }
-    assert_true(most - least <= 100); /* the heaviest job */
-    pool_free(&pool);
-    pool_free(&turned);
-}
-
-/* Three processes with a share each, one after the other: then all is there, computed once. */
-TEST(shares_meet)
-{
-    struct place place;
-    struct pool pool, alone;
-    struct task tasks[JOBS] = {0}, others[JOBS] = {0};
-    struct error error = {0};
-    place_make(&place);
-    for (int s = 1; s <= 3; s++) {
-        size_t mine = 0;
-        fill(&pool, tasks, &place, JOBS);
-        const struct pool_settings settings = {
-            .jobs = 2, .cache = &place.cache, .share = {.number = s, .of = 3}};
-        assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
-        for (size_t i = 0; i < JOBS; i++) {
-            assert_true(pool.jobs[i].done != pool.jobs[i].elsewhere);
-            mine += pool.jobs[i].done;
-        }
-        assert_true(mine >= 1 && mine <= JOBS - 2);
-        pool_free(&pool);
-    }
-    assert_int_equal(computed(&place), JOBS);
-    fill(&pool, tasks, &place, JOBS);
-    fill(&alone, others, &place, JOBS);
-    assert_int_equal(run(&pool, &place.cache, 2), STATUS_OK);
-    assert_int_equal(pool.found, JOBS);
-    assert_int_equal(run(&alone, NULL, 2), STATUS_OK);
-    same_results(&pool, &alone);
-    pool_free(&pool);
-    pool_free(&alone);
-    place_clear(&place);
-}
-
 /* Where nothing can be kept, results are still there, and the pool says why. */
 TEST(full_disk)
 {
@@ -198,13 +104,6 @@ static enum status tell(const void *context, json_t **document, struct error *er
     if (told->kind == WITH_DOCUMENT) *document = json_pack("{s:i}", "number", told->number);
     error_set(error, told->status, "said by %d", told->number);
     return told->status;
-}
-
-static int clean_board(void **state)
-{
-    (void)state;
-    *board = (struct board){0};
-    return 0;
 }
 
 /* n jobs of these weights. */
@@ -317,6 +216,7 @@ TEST(what_is_kept)
     enum { N = 5 };
     struct place place;
     struct pool pool;
+    *board = (struct board){0};
     place_make(&place);
     for (int round = 0; round < 2; round++) {
         struct told told[N] = {{0}};
@@ -355,6 +255,7 @@ TEST(what_is_not_there)
     struct error error = {0};
     struct told told[3] = {{.kind = WITH_DOCUMENT}, {.kind = WITH_DOCUMENT}, {.kind = NOTHING}};
     char path[CACHE_PATH_MAX];
+    *board = (struct board){0};
     place_make(&place);
     for (int round = 0; round < 3; round++) {
         add(&pool, told, 2, NULL);
@@ -378,6 +279,7 @@ TEST(what_is_not_there)
     place_clear(&place);
 }
 
+/* A crash or a failure is one job's own and is not kept. */
 TEST(no_result)
 {
     struct pool pool;
@@ -386,22 +288,26 @@ TEST(no_result)
     struct place place;
     place_make(&place);
     task.place = &place;
-    add(&pool, told, 3, NULL);
-    assert_int_equal(pool_add(&pool, "bad one", "bad one", 1, compute, &task), 3);
-    assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK);
-    for (int i = 0; i < 2; i++) {
-        char said[80];
-        snprintf(said, sizeof said, "job %d: its process gave no result: no memory?", i);
-        assert_int_equal(pool.jobs[i].error.status, STATUS_ENVIRONMENT);
-        assert_string_equal(pool.jobs[i].error.message, said);
-        assert_true(pool.jobs[i].done && !pool.jobs[i].crashed && !pool.jobs[i].document);
+    for (int round = 0; round < 2; round++) {
+        add(&pool, told, 3, NULL);
+        assert_int_equal(pool_add(&pool, "bad one", "bad one", 1, compute, &task), 3);
+        assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK);
+        assert_int_equal(pool.found, round);
+        for (int i = 0; i < 2; i++) {
+            char said[80];
+            snprintf(said, sizeof said, "job %d: its process gave no result: no memory?", i);
+            assert_int_equal(pool.jobs[i].error.status, STATUS_ENVIRONMENT);
+            assert_string_equal(pool.jobs[i].error.message, said);
+            assert_true(pool.jobs[i].done && !pool.jobs[i].crashed && !pool.jobs[i].document);
+        }
+        assert_true(pool.jobs[2].document && !pool.jobs[2].error.status);
+        assert_true(pool.jobs[3].crashed && pool.jobs[3].done && !pool.jobs[2].crashed);
+        assert_null(pool.jobs[3].document);
+        assert_int_equal(pool.jobs[3].error.status, STATUS_BROKE_DOWN);
+        assert_string_equal(pool.jobs[3].error.message,
+                            "bad one: its process was ended by signal 9 (Killed)");
+        pool_free(&pool);
     }
-    assert_true(pool.jobs[2].document && !pool.jobs[2].error.status);
-    assert_true(pool.jobs[3].crashed && pool.jobs[3].done && !pool.jobs[2].crashed);
-    assert_int_equal(pool.jobs[3].error.status, STATUS_BROKE_DOWN);
-    assert_string_equal(pool.jobs[3].error.message,
-                        "bad one: its process was ended by signal 9 (Killed)");
-    pool_free(&pool);
     place_clear(&place);
 }
 
@@ -609,23 +515,5 @@ TEST(a_share_is_its_own)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(nothing_twice, clean_board),
-        cmocka_unit_test(any_number_of_processes),
-        cmocka_unit_test(shares),
-        cmocka_unit_test(shares_meet),
-        cmocka_unit_test(crashes),
-        cmocka_unit_test(full_disk),
-        cmocka_unit_test(many_jobs),
-        cmocka_unit_test_setup(order_and_number, clean_board),
-        cmocka_unit_test_setup(what_is_kept, clean_board),
-        cmocka_unit_test_setup(what_is_not_there, clean_board),
-        cmocka_unit_test_setup(no_result, clean_board),
-        cmocka_unit_test_setup(no_pipe, clean_board),
-        cmocka_unit_test_setup(progress, clean_board),
-        cmocka_unit_test_setup(several_times_a_second, clean_board),
-        cmocka_unit_test(shares_by_hand),
-        cmocka_unit_test_setup(a_share_is_its_own, clean_board),
-    };
-    return cmocka_run_group_tests(tests, begin, NULL);
+    return test_run(begin, NULL);
 }
