@@ -85,11 +85,7 @@ const char *case_state(const json_t *results, const char *case_name)
 
 void case_state_cell(struct buffer *to, const char *case_name)
 {
-    buffer_add(to, "<td><a href=\"#case-");
-    buffer_escape(to, case_name);
-    buffer_add(to, "\">");
-    html_words(to, case_name);
-    buffer_add(to, "</a></td>");
+    html_format(to, "<td><a href=\"#case-%s\">%-s</a></td>", case_name, case_name);
 }
 
 double case_state_error(const json_t *run, const char **name)

@@ -109,19 +109,11 @@ static void say_figure(struct buffer *to, const struct finding *finding)
     const double excess = finding_excess(finding, &beyond);
     const bool floor = finding->value <= finding->bound && finding->floor > finding->bound;
     if (finding->status != FINDING_FAIL) {
-        html_number(to, finding->value);
-        buffer_add(to, ", bound ");
-        html_number(to, finding->bound);
+        html_format(to, "%f, bound %f", finding->value, finding->bound);
         return;
     }
-    if (floor) buffer_add(to, "the floor ");
-    html_number(to, beyond);
-    buffer_add(to, " is not <= ");
-    html_number(to, finding->bound);
-    if (!(excess > 1) || isinf(excess)) return;
-    buffer_add(to, " (");
-    html_number(to, excess);
-    buffer_add(to, " times the bound)");
+    html_format(to, "%s%f is not <= %f", floor ? "the floor " : "", beyond, finding->bound);
+    if (excess > 1 && !isinf(excess)) html_format(to, " (%f times the bound)", excess);
 }
 
 static void add_check(struct findings *to, const json_t *entry, const char *verify)
@@ -151,10 +143,8 @@ static void add_mutant(struct findings *to, const json_t *entry, const char *ver
     struct finding finding = figure(AREA_DETECTION, detected ? FINDING_PASS : FINDING_FAIL,
                                     value_text(entry, "check"), command.data, entry);
     finding.subject = value_text(entry, "mutant");
-    buffer_format(&reason, "the wrong variant '%s' passes: value ", finding.subject);
-    html_number(&reason, finding.value);
-    buffer_add(&reason, ", bound ");
-    html_number(&reason, finding.bound);
+    buffer_format(&reason, "the wrong variant '%s' passes: ", finding.subject);
+    html_format(&reason, "value %f, bound %f", finding.value, finding.bound);
     if (*value_text(entry, "fault")) buffer_format(&reason, "; %s", value_text(entry, "fault"));
     add(to, finding, NULL, &reason);
     buffer_free(&command);
@@ -179,10 +169,8 @@ static void add_gate(struct findings *to, const json_t *run, const json_t *gate)
     buffer_format(&subject, "%s: %s", value_text(run, "label"), value_text(gate, "name"));
     const bool fails = finding.status == FINDING_FAIL;
     const char *why = value_text(gate, "why"), *known = value_text(gate, "known");
-    if (fails) buffer_add(&reason, "the error of the run, ");
-    html_number(&reason, finding.value);
-    buffer_add(&reason, fails ? ", is not <= " : ", bound ");
-    html_number(&reason, finding.bound);
+    html_format(&reason, fails ? "the error of the run, %f, is not <= %f" : "%f, bound %f",
+                finding.value, finding.bound);
     if (*why || *known) buffer_format(&reason, "; %s%s", why, known);
     add(to, finding, &subject, &reason);
 }
@@ -216,12 +204,9 @@ static void add_order(struct findings *to, const json_t *study, const json_t *or
     finding.value = value_member(order, "order");
     buffer_format(&subject, "%s: order of %s(%s)", value_text(study, "label"),
                   value_text(order, "norm"), value_text(order, "field"));
-    html_number(&reason, finding.value);
-    buffer_add(&reason, " (95 % interval ");
-    html_number(&reason, value_member(order, "low"));
-    buffer_add(&reason, " to ");
-    html_number(&reason, value_member(order, "high"));
-    buffer_format(&reason, ") %s", value_text(order, "why"));
+    html_format(&reason, "%f (95 %% interval %f to %f) ", finding.value, value_member(order, "low"),
+                value_member(order, "high"));
+    buffer_add(&reason, value_text(order, "why"));
     add(to, finding, &subject, &reason);
 }
 
@@ -232,10 +217,9 @@ static void add_still_gas(struct findings *to, const json_t *study, const json_t
         figure(AREA_BUDGET, status_of(to, still, false, "still gas"), value_text(study, "case"),
                value_text(study, "reproduce"), still);
     buffer_format(&subject, "%s: still gas", value_text(study, "label"));
-    buffer_add(&reason, "gas that no wave has reached moves at ");
-    html_number(&reason, finding.value);
-    buffer_add(&reason, " of its sound speed, allowed is ");
-    html_number(&reason, finding.bound);
+    html_format(&reason,
+                "gas that no wave has reached moves at %f of its sound speed, allowed is %f",
+                finding.value, finding.bound);
     add(to, finding, &subject, &reason);
 }
 
@@ -452,11 +436,9 @@ json_t *findings_failures(const struct findings *findings)
 static void test_case(struct buffer *to, const struct finding *f)
 {
     const bool check = f->rank < AREA_DETECTION;
-    buffer_add(to, "    <testcase classname=\"");
-    if (check) buffer_escape(to, f->group), buffer_add(to, ".");
-    buffer_escape(to, *f->subject || check ? f->what : f->group);
-    buffer_add(to, "\" name=\"");
-    buffer_escape(to, *f->subject || check ? f->subject : f->what);
+    html_format(to, "    <testcase classname=\"%s%s%s\" name=\"%s", check ? f->group : "",
+                check ? "." : "", *f->subject || check ? f->what : f->group,
+                *f->subject || check ? f->subject : f->what);
     if (f->seconds >= 0) buffer_format(to, "\" time=\"%.6f", f->seconds);
     if (f->status == FINDING_PASS) {
         buffer_add(to, "\"/>\n");
@@ -465,8 +447,7 @@ static void test_case(struct buffer *to, const struct finding *f)
     const bool fails = f->status == FINDING_FAIL;
     buffer_format(to, "\"><%s message=\"", fails ? "failure" : "skipped");
     if (!fails && f->status != FINDING_SKIP) buffer_format(to, "%s: ", finding_words[f->status]);
-    buffer_escape(to, f->reason);
-    buffer_add(to, "\"/></testcase>\n");
+    html_format(to, "%s\"/></testcase>\n", f->reason);
 }
 
 static void test_suite(struct buffer *to, const struct findings *findings, const char *group)
@@ -482,10 +463,10 @@ static void test_suite(struct buffer *to, const struct findings *findings, const
         passes += finding->status == FINDING_PASS;
     }
     if (tests) {
-        buffer_add(to, "  <testsuite name=\"");
-        buffer_escape(to, group);
-        buffer_format(to, "\" tests=\"%zu\" failures=\"%zu\" skipped=\"%zu\" errors=\"0\">\n",
-                      tests, failures, tests - failures - passes);
+        html_format(to,
+                    "  <testsuite name=\"%s\" tests=\"%zu\" failures=\"%zu\" skipped=\"%zu\" "
+                    "errors=\"0\">\n",
+                    group, tests, failures, tests - failures - passes);
         if (cases.data) buffer_add(to, cases.data);
         buffer_add(to, "  </testsuite>\n");
     }

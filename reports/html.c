@@ -2,6 +2,7 @@
 #include "html.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,6 +31,35 @@ void html_number(struct buffer *to, double value)
     }
 }
 
+void html_format(struct buffer *to, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    while (*format) {
+        const size_t plain = strcspn(format, "%");
+        buffer_add_bytes(to, format, plain);
+        format += plain;
+        if (!*format) break;
+        char one[16];
+        const size_t end = 1 + strcspn(format + 1, "%sudefg");
+        snprintf(one, sizeof one, "%.*s", (int)end + 1, format);
+        if (format[end] == '%')
+            buffer_add(to, "%");
+        else if (format[end] == 's')
+            (end == 1 ? buffer_escape : html_words)(to, va_arg(arguments, const char *));
+        else if (format[end] == 'u')
+            buffer_format(to, one, va_arg(arguments, size_t));
+        else if (format[end] == 'd')
+            buffer_format(to, one, va_arg(arguments, int));
+        else if (format[end] == 'f' && end == 1)
+            html_number(to, va_arg(arguments, double));
+        else
+            buffer_format(to, one, va_arg(arguments, double));
+        format += end + 1;
+    }
+    va_end(arguments);
+}
+
 void html_table(struct buffer *to, const char *class, const char *columns)
 {
     buffer_format(to, "<div class=\"scroll\"><table class=\"%s\"><thead><tr>", class);
@@ -52,16 +82,12 @@ void html_table_end(struct buffer *to)
 
 void html_cell(struct buffer *to, const char *string)
 {
-    buffer_add(to, "<td>");
-    buffer_escape(to, string);
-    buffer_add(to, "</td>");
+    html_format(to, "<td>%s</td>", string);
 }
 
 void html_cell_number(struct buffer *to, double value)
 {
-    buffer_add(to, "<td class=\"n\">");
-    html_number(to, value);
-    buffer_add(to, "</td>");
+    html_format(to, "<td class=\"n\">%f</td>", value);
 }
 
 void html_digits(struct buffer *to, double value)
@@ -74,9 +100,7 @@ void html_digits(struct buffer *to, double value)
 
 void html_cell_code(struct buffer *to, const char *string)
 {
-    buffer_add(to, "<td><code>");
-    buffer_escape(to, string);
-    buffer_add(to, "</code></td>");
+    html_format(to, "<td><code>%s</code></td>", string);
 }
 
 /* "a/b/0" of an object, or the object. */
@@ -113,7 +137,10 @@ static void show(struct buffer *to, const struct html_column *column, const json
 {
     const double number = value_real(value);
     const char *string = json_string_value(value), *text = string ? string : "";
-    if (column->cell)
+    if (column->otherwise &&
+        (!value || json_is_null(value) || (column->finite && !isfinite(number))))
+        buffer_add(to, column->otherwise);
+    else if (column->cell)
         column->cell(to, value);
     else if (column->kind == CELL_TEXT)
         buffer_escape(to, text);
@@ -122,9 +149,7 @@ static void show(struct buffer *to, const struct html_column *column, const json
     else if (column->kind == CELL_STATUS)
         html_status(to, text);
     else if (column->kind == CELL_CODE)
-        buffer_add(to, "<code>"), buffer_escape(to, text), buffer_add(to, "</code>");
-    else if (column->otherwise && (!value || json_is_null(value)))
-        buffer_add(to, column->otherwise);
+        html_format(to, "<code>%s</code>", text);
     else if (column->format)
         buffer_format(to, column->format, number);
     else
@@ -185,11 +210,7 @@ void html_lists(struct buffer *to, const char *class, const struct html_column *
 void html_command(struct buffer *to, const char *what, const char *command)
 {
     if (!*command) return;
-    buffer_add(to, "<p class=\"command\"><span>");
-    buffer_escape(to, what);
-    buffer_add(to, "</span> <code>");
-    buffer_escape(to, command);
-    buffer_add(to, "</code></p>\n");
+    html_format(to, "<p class=\"command\"><span>%s</span> <code>%s</code></p>\n", what, command);
 }
 
 void html_status(struct buffer *to, const char *status)
@@ -200,9 +221,23 @@ void html_status(struct buffer *to, const char *status)
     const char *class = "fail";
     for (size_t k = 0; k < sizeof classes / sizeof *classes; k++)
         if (!strcmp(status, classes[k][0])) class = classes[k][1];
-    buffer_format(to, "<b class=\"%s\">", class);
-    html_words(to, status);
-    buffer_add(to, "</b>");
+    html_format(to, "<b class=\"%s\">%-s</b>", class, status);
+}
+
+void html_order(struct buffer *to, const json_t *order)
+{
+    buffer_format(to, "%.2f ± %.2f", value_member(order, "order"),
+                  (value_member(order, "high") - value_member(order, "low")) / 2);
+}
+
+void html_order_cell(struct buffer *to, const json_t *order)
+{
+    buffer_add(to, "<td class=\"n\">");
+    if (order)
+        html_order(to, order);
+    else
+        buffer_add(to, "—");
+    buffer_add(to, "</td>");
 }
 
 void html_words(struct buffer *to, const char *name)

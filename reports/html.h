@@ -14,6 +14,10 @@ void html_number(struct buffer *to, double value);
 /* With eight digits, for what differs in the last ones. */
 void html_digits(struct buffer *to, double value);
 
+/* As printf, but %s is escaped, %-s written by html_words and %f by html_number; knows %d and %zu
+ * of the integers. */
+void html_format(struct buffer *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
 /* Table: <table class="..."> in a box that scrolls sideways on a narrow screen, its head row from
  * columns separated by '|' (a leading '#' marks a column of numbers). */
 void html_table(struct buffer *to, const char *class, const char *columns);
@@ -33,6 +37,7 @@ struct html_column {
     enum html_kind kind;
     const char *format;    /* of a number */
     const char *otherwise; /* what is shown in place of null and of nothing */
+    bool finite;           /* and of what is not finite */
     void (*cell)(struct buffer *to, const json_t *value); /* writes what is in the cell */
     bool optional; /* left out where the first entry of the table has no finite number there */
 };
@@ -59,6 +64,10 @@ void html_command(struct buffer *to, const char *what, const char *command);
 /* A status as a coloured word: what passes, what is not judged, what is open (known, smoke,
  * undetermined), and all else as a failure. */
 void html_status(struct buffer *to, const char *status);
+
+/* An order with half of its interval, "1.97 ± 0.03"; the same, or a dash for NULL, as a cell. */
+void html_order(struct buffer *to, const json_t *order);
+void html_order_cell(struct buffer *to, const json_t *order);
 
 /* A name of the results for people: "internal_energy" is "internal energy". */
 void html_words(struct buffer *to, const char *name);

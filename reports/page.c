@@ -45,13 +45,12 @@ static void head(struct buffer *to, const json_t *results, const json_t *verdict
     buffer_format(&title, ": %s", value_text(verdict, "headline"));
     page_head(to, title.data ? title.data : "");
     buffer_free(&title);
-    buffer_format(to, "<header class=\"%s\"><p class=\"kind\">sphproof %s report</p><h1>",
-                  well ? "well" : "unwell", value_text(results, "mode"));
-    buffer_escape(to, value_text(verdict, "headline"));
-    buffer_add(to, "</h1>\n<p class=\"facts\">");
-    buffer_escape(to, value_text(results, "date"));
-    buffer_add(to, " · git ");
-    buffer_escape(to, value_text(results, "git"));
+    html_format(to,
+                "<header class=\"%s\"><p class=\"kind\">sphproof %s report</p><h1>%s</h1>\n"
+                "<p class=\"facts\">%s · git %s",
+                well ? "well" : "unwell", value_text(results, "mode"),
+                value_text(verdict, "headline"), value_text(results, "date"),
+                value_text(results, "git"));
     double seconds = value_member(results, "seconds");
     if (seconds > 0) buffer_format(to, " · computed in %.0f s", seconds);
     buffer_add(to, "</p>\n");
@@ -79,13 +78,9 @@ static void failures(struct buffer *to, const json_t *verdict)
     size_t i;
     json_array_foreach(list, i, entry) {
         if (i == SHOWN) break;
-        buffer_add(to, "<li><p><span class=\"area\">");
-        buffer_escape(to, value_text(entry, "area"));
-        buffer_add(to, "</span> <b>");
-        buffer_escape(to, value_text(entry, "name"));
-        buffer_add(to, "</b><br/>");
-        buffer_escape(to, value_text(entry, "detail"));
-        buffer_add(to, "</p>");
+        html_format(to, "<li><p><span class=\"area\">%s</span> <b>%s</b><br/>%s</p>",
+                    value_text(entry, "area"), value_text(entry, "name"),
+                    value_text(entry, "detail"));
         html_command(to, "see it again:", value_text(entry, "command"));
         buffer_add(to, "</li>\n");
     }
@@ -98,10 +93,7 @@ static void failures(struct buffer *to, const json_t *verdict)
 
 static void row(struct buffer *to, const char *name, const char *value)
 {
-    if (!*value) return;
-    buffer_format(to, "<tr><th>%s</th>", name);
-    html_cell(to, value);
-    buffer_add(to, "</tr>\n");
+    if (*value) html_format(to, "<tr><th>%s</th><td>%s</td></tr>\n", name, value);
 }
 
 static void environment(struct buffer *to, const json_t *results)
@@ -134,11 +126,12 @@ static void environment(struct buffer *to, const json_t *results)
 
 void page_head(struct buffer *to, const char *title)
 {
-    buffer_add(to, "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
-                   "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
-                   "<meta name=\"color-scheme\" content=\"light dark\"/><title>sphproof");
-    buffer_escape(to, title);
-    buffer_add(to, "</title><style>");
+    html_format(
+        to,
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
+        "<meta name=\"color-scheme\" content=\"light dark\"/><title>sphproof%s</title><style>",
+        title);
     for (size_t k = 0; page_styles[k]; k++) buffer_add(to, page_styles[k]);
     buffer_format(to, "%s</style></head><body>\n", style_css());
 }

@@ -50,11 +50,8 @@ void page_autopsies(struct page_writer *writer, const json_t *autopsies)
         char name[NAME], what[32];
         snprintf(what, sizeof what, "autopsy-%zu", k + 1);
         page_plot_name(name, sizeof name, value_text(document, "case"), what);
-        buffer_add(to, "<p><b>");
-        buffer_escape(to, value_text(document, "case"));
-        buffer_add(to, "</b>: ");
-        buffer_escape(to, value_text(document, "sentence"));
-        buffer_add(to, "</p>");
+        html_format(to, "<p><b>%s</b>: %s</p>", value_text(document, "case"),
+                    value_text(document, "sentence"));
         html_command(to, "see it again:", value_text(document, "reproduce"));
         buffer_add(to, "<div class=\"figures\">");
         autopsy_plot_page(writer, document, name);

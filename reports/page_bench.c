@@ -222,11 +222,8 @@ void page_bench(struct page_writer *writer, const json_t *bench, bool of_codes)
             return;
         }
         size_t count = read_curves(document, curves, most);
-        buffer_add(to, "<h3><code>");
-        buffer_escape(to, value_text(document, "case"));
-        buffer_add(to, "</code> <span>");
-        buffer_escape(to, value_text(document, "title"));
-        buffer_add(to, "</span></h3>\n<div class=\"figures\">");
+        html_format(to, "<h3><code>%s</code> <span>%s</span></h3>\n<div class=\"figures\">",
+                    value_text(document, "case"), value_text(document, "title"));
         plot_curves(writer, document, curves, count, of_codes);
         buffer_add(to, "<div>");
         scheme_table(to, curves, count);

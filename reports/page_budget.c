@@ -18,9 +18,7 @@ static void share_cell(struct buffer *to, const json_t *region)
     buffer_add(to, "<td class=\"n\">");
     if (share > 0) buffer_format(to, "%.0f %%", 100 * share);
     buffer_add(to, "</td><td class=\"n\">");
-    if (share > 0 && isfinite(order))
-        buffer_format(to, "%.2f ± %.2f", order,
-                      (value_member(region, "high") - value_member(region, "low")) / 2);
+    if (share > 0 && isfinite(order)) html_order(to, region);
     buffer_add(to, "</td>");
 }
 
@@ -47,11 +45,8 @@ void page_budget(struct page_writer *writer, const json_t *const *documents, siz
         regions = json_object_get(budget_of(documents[k]), "regions");
     if (!regions) return;
     buffer_add(&columns, "region");
-    for (size_t k = 0; k < count; k++) {
-        buffer_add(&columns, "|#");
-        buffer_escape(&columns, value_text(documents[k], "label"));
-        buffer_add(&columns, "|#order");
-    }
+    for (size_t k = 0; k < count; k++)
+        html_format(&columns, "|#%s|#order", value_text(documents[k], "label"));
     buffer_add(to, "<details><summary>Where the error of density comes from, by region of the "
                    "flow</summary>\n");
     if (columns.data) html_table(to, "budget", columns.data);

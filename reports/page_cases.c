@@ -259,12 +259,10 @@ static bool is_failure(const char *state)
 static void case_head(struct buffer *to, const char *name, const json_t *title,
                       const json_t *const *studies, size_t study_count, const char *state)
 {
-    buffer_format(to, "<details class=\"case\" id=\"case-%s\"%s><summary><h3><code>", name,
+    buffer_format(to, "<details class=\"case\" id=\"case-%s\"%s>", name,
                   is_failure(state) ? " open=\"open\"" : "");
-    buffer_escape(to, name);
-    buffer_add(to, "</code> <span>");
-    buffer_escape(to, title ? json_string_value(title) : "");
-    buffer_add(to, "</span></h3>");
+    html_format(to, "<summary><h3><code>%s</code> <span>%s</span></h3>", name,
+                title ? json_string_value(title) : "");
     html_status(to, state);
     size_t shown = 0;
     for (size_t k = 0; k < study_count; k++) {
@@ -272,10 +270,8 @@ static void case_head(struct buffer *to, const char *name, const json_t *title,
         if (!order) continue; /* it failed */
         if (!shown) buffer_add(to, " <span class=\"note\">order of ");
         if (!shown) page_study_name(to, order);
-        buffer_add(to, shown++ ? ", " : ": ");
-        buffer_escape(to, value_text(studies[k], "label"));
-        buffer_format(to, " %.2f ± %.2f", value_member(order, "order"),
-                      (value_member(order, "high") - value_member(order, "low")) / 2);
+        html_format(to, shown++ ? ", %s " : ": %s ", value_text(studies[k], "label"));
+        html_order(to, order);
     }
     buffer_format(to, "%s</summary>\n", shown ? "</span>" : "");
 }

@@ -81,11 +81,11 @@ static void check_row(struct buffer *to, const json_t *figures, const struct spa
     size_t all = span->end - span->first, judged = all - span->skipped;
     buffer_add(to, "<tr><td>");
     html_status(to, span->failed ? "fail" : judged ? "pass" : "skip");
-    buffer_add(to, " <code>");
-    buffer_escape(to, value_text(leader, "name"));
-    buffer_add(to, "</code><br/><span class=\"note\">");
-    buffer_escape(to, value_text(leader, "property"));
-    buffer_format(to, "</span></td><td class=\"n\">%zu of %zu</td>", judged - span->failed, judged);
+    html_format(to,
+                " <code>%s</code><br/><span class=\"note\">%s</span></td>"
+                "<td class=\"n\">%zu of %zu</td>",
+                value_text(leader, "name"), value_text(leader, "property"), judged - span->failed,
+                judged);
     if (judged)
         figure_cells(to, json_array_get(figures, span->worst));
     else
@@ -124,9 +124,7 @@ void page_checks(struct page_writer *writer, const json_t *verify)
         const json_t *leader = json_array_get(figures, i);
         const char *group = value_text(leader, "group");
         struct buffer command = {0};
-        buffer_add(to, "<h3>");
-        html_words(to, group);
-        buffer_add(to, "</h3>\n");
+        html_format(to, "<h3>%-s</h3>\n", group);
         html_table(to, "checks", "check|#hold|nearest to its bound|#value|#bound|#floor|#of bound");
         while (i < n && same(json_array_get(figures, i), leader, "group")) {
             const struct span span = next_check(figures, i);
@@ -172,20 +170,16 @@ void page_detection(struct page_writer *writer, const json_t *verify)
         json_array_foreach(mutants, i, entry) {
             bool detected = json_is_true(json_object_get(entry, "detected"));
             if (detected != (round == 1)) continue;
-            buffer_add(to, "<tr><td>");
             const char *fault = value_text(entry, "fault");
-            html_words(to, value_text(entry, "mutant"));
-            if (*fault) {
-                buffer_add(to, "<br/><span class=\"note\">");
-                buffer_escape(to, fault);
-                buffer_add(to, "</span>");
-            }
-            buffer_add(to, "</td>");
-            html_cell_code(to, value_text(entry, "check"));
-            html_cell_number(to, value_member(entry, "value"));
-            html_cell_number(to, value_member(entry, "bound"));
-            buffer_format(to, "<td><b class=\"%s\">%s</b></td></tr>\n", detected ? "pass" : "fail",
-                          detected ? "caught" : "missed");
+            html_format(to, "<tr><td>%-s", value_text(entry, "mutant"));
+            if (*fault) html_format(to, "<br/><span class=\"note\">%s</span>", fault);
+            html_format(
+                to,
+                "</td><td><code>%s</code></td><td class=\"n\">%f</td><td class=\"n\">%f</td>"
+                "<td><b class=\"%s\">%s</b></td></tr>\n",
+                value_text(entry, "check"), value_member(entry, "value"),
+                value_member(entry, "bound"), detected ? "pass" : "fail",
+                detected ? "caught" : "missed");
         }
     }
     html_table_end(to);

@@ -12,12 +12,8 @@ enum { KERNELS = 16, STEPS = 16, DIMS = 2 };
 
 static void claim_head(struct buffer *to, const json_t *claim)
 {
-    buffer_add(to, "<h3>");
-    html_words(to, value_text(claim, "name"));
-    buffer_add(to, ": ");
-    buffer_escape(to, value_text(claim, "verdict"));
-    buffer_add(to, "</h3>\n<p>");
-    buffer_escape(to, value_text(claim, "claim"));
+    html_format(to, "<h3>%-s: %s</h3>\n<p>%s", value_text(claim, "name"),
+                value_text(claim, "verdict"), value_text(claim, "claim"));
 }
 
 /* ---- particles in pairs ---- */
@@ -142,11 +138,10 @@ static void claim_table(struct buffer *to, const json_t *claim)
     claim_head(to, claim);
     buffer_add(to, " Errors of the figure, relative where its exact value is not 0:</p>\n");
     html_heads(to, "runs", sides);
-    buffer_add(to, "<tr><td></td><td></td><td class=\"n\"><code>");
-    buffer_escape(to, value_text(claim, "without"));
-    buffer_add(to, "</code></td><td class=\"n\"><code>");
-    buffer_escape(to, value_text(claim, "with"));
-    buffer_add(to, "</code></td><td></td><td></td></tr>\n");
+    html_format(to,
+                "<tr><td></td><td></td><td class=\"n\"><code>%s</code></td>"
+                "<td class=\"n\"><code>%s</code></td><td></td><td></td></tr>\n",
+                value_text(claim, "without"), value_text(claim, "with"));
     json_array_foreach(json_object_get(claim, "rows"), i, row) html_row(to, sides, row);
     html_table_end(to);
 }

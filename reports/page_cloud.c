@@ -314,8 +314,7 @@ static void gate_status(struct buffer *to, const json_t *gate)
 {
     const char *why = value_text_or(gate, "known", value_text(gate, "why"));
     html_status(to, value_text(gate, "status"));
-    if (*why) buffer_add(to, ": ");
-    buffer_escape(to, why);
+    html_format(to, *why ? ": %s" : "%s", why);
 }
 
 static const struct html_column gates[] = {COLUMN("scheme", "^label", .kind = CELL_TEXT),

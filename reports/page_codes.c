@@ -35,13 +35,6 @@ static void again(struct buffer *to, const char *command)
     buffer_add(to, "</details>");
 }
 
-static void failed_cell(struct buffer *to, const json_t *document)
-{
-    html_status(to, value_text(document, "status"));
-    buffer_add(to, " ");
-    buffer_escape(to, value_text(document, "message"));
-}
-
 static double finest_n(const json_t *study)
 {
     const json_t *levels = json_object_get(study, "levels");
@@ -60,19 +53,16 @@ static void cell(struct buffer *to, const json_t *study, const json_t *run)
         return;
     }
     if (!strcmp(status, "failed") || !strcmp(status, "broke_down")) {
-        failed_cell(to, shown);
+        html_status(to, status);
+        html_format(to, " %s", value_text(shown, "message"));
     } else if (order) {
         page_study_name(to, order);
-        buffer_add(to, " ");
-        html_number(to, page_study_finest(study));
-        buffer_format(to, " at n&#160;=&#160;%.0f", finest_n(study));
-        buffer_format(to, "<br/>order %.2f [%.2f,&#160;%.2f]", value_member(order, "order"),
-                      value_member(order, "low"), value_member(order, "high"));
+        html_format(to, " %f at n&#160;=&#160;%.0f<br/>order %.2f [%.2f,&#160;%.2f]",
+                    page_study_finest(study), finest_n(study), value_member(order, "order"),
+                    value_member(order, "low"), value_member(order, "high"));
     } else {
         const double error = case_state_error(run, &what);
-        html_words(to, what);
-        buffer_add(to, " ");
-        html_number(to, error);
+        html_format(to, "%-s %f", what, error);
     }
     const char *gate = gate_of(shown, study ? "orders" : "gates");
     if (strcmp(gate, "none")) {
@@ -90,10 +80,7 @@ static void heads(struct buffer *to, const char *first, const char *const *label
 {
     struct buffer columns = {0};
     buffer_add(&columns, first);
-    for (size_t k = 0; k < count; k++) {
-        buffer_add(&columns, "|");
-        buffer_escape(&columns, labels[k]);
-    }
+    for (size_t k = 0; k < count; k++) html_format(&columns, "|%s", labels[k]);
     if (columns.data) html_table(to, "overview", columns.data);
     buffer_free(&columns);
 }
@@ -162,11 +149,8 @@ static void assumptions(struct buffer *to, const json_t *run)
 {
     const json_t *list = json_object_get(json_object_get(run, "judged"), "assumptions");
     if (!json_array_size(list)) return;
-    buffer_add(to, "<details><summary>What was assumed of ");
-    buffer_escape(to, value_text(run, "label"));
-    buffer_add(to, ", ");
-    buffer_escape(to, value_text(run, "case"));
-    buffer_add(to, "</summary>\n");
+    html_format(to, "<details><summary>What was assumed of %s, %s</summary>\n",
+                value_text(run, "label"), value_text(run, "case"));
     html_list(to, "facts", assumed, list, NULL);
     buffer_add(to, "</details>\n");
 }

@@ -68,17 +68,14 @@ static void table(struct buffer *to, const json_t *document)
                      half = 100 * value_member(figure, "half");
         const char *verdict = value_text(figure, "verdict");
         if (!isfinite(change)) continue;
-        buffer_add(to, "<tr><td>");
-        html_words(to, value_text(figure, "name"));
-        buffer_add(to, "</td>");
-        html_cell_number(to, value_member(figure, "a"));
-        html_cell_number(to, value_member(figure, "b"));
+        html_format(to, "<tr><td>%-s</td><td class=\"n\">%f</td><td class=\"n\">%f</td>",
+                    value_text(figure, "name"), value_member(figure, "a"),
+                    value_member(figure, "b"));
         const int places = half > 0 && half < 10 ? 2 : 0;
         buffer_format(to, "<td class=\"n\">%+.*f", places, change);
         if (!isnan(half)) buffer_format(to, " ± %.*f", places, half);
-        buffer_add(to, "</td>");
-        html_cell(to, strcmp(verdict, "none") ? verdict : "no different");
-        buffer_add(to, "</tr>\n");
+        html_format(to, "</td><td>%s</td></tr>\n",
+                    strcmp(verdict, "none") ? verdict : "no different");
     }
     html_table_end(to);
     buffer_format(to,
@@ -100,18 +97,14 @@ bool page_make_compare(struct page *page, const json_t *document)
     const json_t *runs[SIDES] = {0};
     size_t k;
     page_head(to, " compare");
-    buffer_add(to, "<header><p class=\"kind\">sphproof compare, case ");
-    buffer_escape(to, value_text(document, "case"));
-    buffer_add(to, "</p><h1>");
-    buffer_escape(to, value_text(document, "verdict"));
-    buffer_add(to, "</h1></header>\n<main>\n<section><h2>Errors</h2>\n");
+    html_format(to,
+                "<header><p class=\"kind\">sphproof compare, case %s</p><h1>%s</h1></header>\n"
+                "<main>\n<section><h2>Errors</h2>\n",
+                value_text(document, "case"), value_text(document, "verdict"));
     json_array_foreach(sides, k, side) {
         runs[k] = json_object_get(side, "first");
-        buffer_add(to, "<p><b>");
-        buffer_escape(to, value_text(side, "name"));
-        buffer_add(to, "</b> <code>");
-        buffer_escape(to, value_text(side, "of"));
-        buffer_format(to, "</code>, n = %.0f</p>\n", value_member(runs[k], "n"));
+        html_format(to, "<p><b>%s</b> <code>%s</code>, n = %.0f</p>\n", value_text(side, "name"),
+                    value_text(side, "of"), value_member(runs[k], "n"));
     }
     table(to, document);
     buffer_add(to, "</section>\n<section><h2>Side by side</h2>\n");

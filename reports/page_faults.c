@@ -7,34 +7,19 @@
 #include "page_part.h"
 #include "value.h"
 
-/* An exit status, or the signal that ended it where that is how it must end. */
-static void ended(struct buffer *to, const json_t *fault)
-{
-    const json_t *number = json_object_get(fault, "exit");
-    const int value = (int)json_number_value(number);
-    buffer_add(to, "<td>");
-    if (json_is_number(number))
-        buffer_format(to, value < 0 ? "signal %d" : "exit status %d", abs(value));
-    buffer_add(to, "</td>");
-}
-
 static void row(struct buffer *to, const json_t *fault)
 {
     const char *detail = value_text(fault, "detail");
-    buffer_add(to, "<tr>");
-    html_cell(to, value_text(fault, "fault"));
-    buffer_add(to, "<td>");
+    const json_t *number = json_object_get(fault, "exit");
+    const int value = (int)json_number_value(number); /* below 0: the signal that ended it */
+    html_format(to, "<tr><td>%s</td><td>", value_text(fault, "fault"));
     html_status(to, value_text(fault, "status"));
-    buffer_add(to, "</td>");
-    ended(to, fault);
-    buffer_add(to, "<td class=\"note\">");
-    if (*detail) {
-        buffer_add(to, "<b class=\"fail\">");
-        buffer_escape(to, detail);
-        buffer_add(to, "</b><br/>");
-    }
-    buffer_escape(to, value_text(fault, "message"));
-    buffer_add(to, "</td></tr>\n");
+    buffer_add(to, "</td><td>");
+    if (json_is_number(number))
+        buffer_format(to, value < 0 ? "signal %d" : "exit status %d", abs(value));
+    buffer_add(to, "</td><td class=\"note\">");
+    if (*detail) html_format(to, "<b class=\"fail\">%s</b><br/>", detail);
+    html_format(to, "%s</td></tr>\n", value_text(fault, "message"));
 }
 
 void page_faults(struct page_writer *writer, const json_t *results)
@@ -47,13 +32,10 @@ void page_faults(struct page_writer *writer, const json_t *results)
     buffer_add(to, "<section id=\"faults\"><h2>Faults of the world around it</h2>\n"
                    "<p>Full disks, missing rights, broken tools, odd paths and locales, closed "
                    "streams, no memory, and kill -9: each time the exit status and the message "
-                   "must be right, and nothing may be lost or left half-written. Tried ");
-    buffer_escape(to, value_text(faults, "date"));
-    if (strcmp(git, value_text(results, "git"))) {
-        buffer_add(to, ", with another build (git ");
-        buffer_escape(to, git);
-        buffer_add(to, ")");
-    }
+                   "must be right, and nothing may be lost or left half-written. ");
+    html_format(to, "Tried %s", value_text(faults, "date"));
+    if (strcmp(git, value_text(results, "git")))
+        html_format(to, ", with another build (git %s)", git);
     buffer_add(to, ".</p>\n");
     for (int round = 0; round < 2; round++) { /* first what went wrong */
         bool open = false;

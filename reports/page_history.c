@@ -94,8 +94,7 @@ static const json_t *spokesman(const json_t *list, size_t i, size_t *others)
 
 static void path_cell(struct buffer *to, const char *path, size_t others)
 {
-    buffer_add(to, "<td>");
-    buffer_escape(to, path);
+    html_format(to, "<td>%s", path);
     if (others) buffer_format(to, "<br/>and %zu more of the same", others);
     buffer_add(to, "</td>");
 }
@@ -136,9 +135,7 @@ static void revision(struct buffer *to, const char *git)
     char text[REVISION + 1];
     strncpy(text, git, REVISION);
     text[REVISION] = '\0';
-    buffer_add(to, "<code>");
-    buffer_escape(to, text);
-    buffer_add(to, "</code>");
+    html_format(to, "<code>%s</code>", text);
 }
 
 static const json_t *first_worse(const json_t *figures)
@@ -190,9 +187,7 @@ void page_since(struct buffer *to, const json_t *results)
     since_words(to, since);
     const json_t *worst = first_worse(json_object_get(since, "figures"));
     if (worst) {
-        buffer_add(to, "; most: ");
-        buffer_escape(to, value_text(worst, "path"));
-        buffer_add(to, " <b>");
+        html_format(to, "; most: %s <b>", value_text(worst, "path"));
         value(to, json_object_get(worst, "old"));
         buffer_add(to, " → ");
         value(to, json_object_get(worst, "new"));
@@ -206,9 +201,7 @@ static void since_section(struct buffer *to, const json_t *since)
     static const char *const verdicts[] = {"worse", "incomparable", "better"};
     const json_t *figures = json_object_get(since, "figures");
     size_t rows = 0;
-    buffer_add(to, "<h3>Since the last report</h3><p>Against ");
-    buffer_escape(to, value_text(since, "date"));
-    buffer_add(to, ", git ");
+    html_format(to, "<h3>Since the last report</h3><p>Against %s, git ", value_text(since, "date"));
     revision(to, value_text(since, "git"));
     buffer_add(to, ": ");
     since_words(to, since);

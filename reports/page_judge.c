@@ -123,11 +123,8 @@ static const struct html_column assumptions[] = {COLUMN("what", "what", .kind = 
 static void snapshot(struct page_writer *writer, const json_t *judged, size_t number)
 {
     struct buffer *to = &writer->to;
-    buffer_add(to, "<section><h2>");
-    buffer_escape(to, value_text(judged, "file"));
-    buffer_add(to, "</h2><p>");
-    buffer_escape(to, value_text(judged, "verdict"));
-    buffer_add(to, "</p>\n");
+    html_format(to, "<section><h2>%s</h2><p>%s</p>\n", value_text(judged, "file"),
+                value_text(judged, "verdict"));
     if (json_integer_value(json_object_get(judged, "dim")) > 1)
         cloud(writer, judged, number);
     else
@@ -135,9 +132,8 @@ static void snapshot(struct page_writer *writer, const json_t *judged, size_t nu
     errors(to, judged);
     buffer_add(to, "<h3>What was assumed</h3>\n");
     html_list(to, "assumptions", assumptions, json_object_get(judged, "assumptions"), NULL);
-    buffer_add(to, "<h3>Kernel and meaning of h: the density summed again</h3><p>");
-    buffer_escape(to, value_text(json_object_get(judged, "kernel"), "why"));
-    buffer_add(to, "</p>\n");
+    html_format(to, "<h3>Kernel and meaning of h: the density summed again</h3><p>%s</p>\n",
+                value_text(json_object_get(judged, "kernel"), "why"));
     html_list(to, "candidates", candidates,
               json_object_get(json_object_get(judged, "kernel"), "candidates"), NULL);
     buffer_add(to, "</section>\n");
@@ -145,8 +141,8 @@ static void snapshot(struct page_writer *writer, const json_t *judged, size_t nu
 
 static void allowed(struct buffer *to, const json_t *gate)
 {
-    buffer_add(to, strcmp(value_text(gate, "relation"), ">=") ? "≤ " : "≥ ");
-    html_number(to, value_member(gate, "bound"));
+    html_format(to, strcmp(value_text(gate, "relation"), ">=") ? "≤ %f" : "≥ %f",
+                value_member(gate, "bound"));
 }
 
 static void why(struct buffer *to, const json_t *gate)
@@ -174,15 +170,13 @@ static void together(struct buffer *to, const json_t *document)
         html_table(to, "orders", "L1 of|#order|#95 % interval|pairwise");
         json_array_foreach(orders, k, order) {
             const bool fitted = json_is_number(json_object_get(order, "order"));
-            buffer_add(to, "<tr><td>");
-            html_words(to, value_text(order, "field"));
+            html_format(to, "<tr><td>%-s</td>", value_text(order, "field"));
             if (fitted)
-                buffer_format(to,
-                              "</td><td class=\"n\">%.3f</td><td class=\"n\">%.3f to %.3f</td><td>",
+                buffer_format(to, "<td class=\"n\">%.3f</td><td class=\"n\">%.3f to %.3f</td><td>",
                               value_member(order, "order"), value_member(order, "low"),
                               value_member(order, "high"));
             else
-                buffer_add(to, "</td><td class=\"n\">—</td><td class=\"n\">—</td><td>");
+                buffer_add(to, "<td class=\"n\">—</td><td class=\"n\">—</td><td>");
             json_array_foreach(json_object_get(order, "pairwise"), i, one)
                 buffer_format(to, "%s%.3f", i ? ", " : "", value_real(one));
             buffer_add(to, "</td></tr>\n");
@@ -194,15 +188,11 @@ static void together(struct buffer *to, const json_t *document)
     buffer_add(to, "<section id=\"conservation\"><h2>Conservation</h2><p>From ");
     for (k = 0; k < 2; k++) {
         const char *file = json_string_value(json_array_get(json_object_get(drift, "between"), k));
-        buffer_escape(to, file ? file : "");
-        buffer_add(to, k ? ":" : " to ");
+        html_format(to, k ? "%s:" : "%s to ", file ? file : "");
     }
     for (k = 0; k < sizeof kept / sizeof *kept; k++) {
         if (!isfinite(value_member(drift, kept[k]))) continue;
-        buffer_add(to, k ? ", " : " ");
-        html_words(to, kept[k]);
-        buffer_add(to, " ");
-        html_number(to, value_member(drift, kept[k]));
+        html_format(to, k ? ", %-s %f" : " %-s %f", kept[k], value_member(drift, kept[k]));
     }
     buffer_add(to, " have changed.</p></section>\n");
 }
@@ -214,12 +204,11 @@ bool page_make_judge(struct page *page, const json_t *document)
     const json_t *snapshots = json_object_get(document, "snapshots"), *one;
     size_t k;
     page_head(to, " judge");
-    buffer_format(to, "<header class=\"%s\"><p class=\"kind\">sphproof judge, case ",
-                  strcmp(value_text(document, "status"), "pass") ? "unwell" : "well");
-    buffer_escape(to, value_text(document, "case"));
-    buffer_add(to, "</p><h1>");
-    buffer_escape(to, value_text(document, "headline"));
-    buffer_add(to, "</h1></header>\n<main>\n");
+    html_format(to,
+                "<header class=\"%s\"><p class=\"kind\">sphproof judge, case %s</p><h1>%s</h1>"
+                "</header>\n<main>\n",
+                strcmp(value_text(document, "status"), "pass") ? "unwell" : "well",
+                value_text(document, "case"), value_text(document, "headline"));
     if (json_array_size(json_object_get(document, "gates"))) {
         buffer_add(to, "<section id=\"gates\"><h2>Gates</h2>\n");
         html_list(to, "gates", gates, json_object_get(document, "gates"), NULL);

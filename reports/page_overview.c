@@ -21,10 +21,27 @@ static void case_cells(struct buffer *to, const char *name, double n)
     html_cell_number(to, n);
 }
 
-static void order_cell(struct buffer *to, const json_t *order)
+static void end_row(struct buffer *to, const json_t *results, const char *name, const json_t *order,
+                    const json_t *run)
 {
-    buffer_format(to, "<td class=\"n\">%.2f ± %.2f</td>", value_member(order, "order"),
-                  (value_member(order, "high") - value_member(order, "low")) / 2);
+    html_order_cell(to, order);
+    html_cell_number(to, value_inner(run, "conservation", "momentum"));
+    html_cell_number(to, value_inner(run, "conservation", "energy"));
+    buffer_add(to, "<td>");
+    html_status(to, case_state(results, name));
+    buffer_add(to, "</td></tr>\n");
+}
+
+/* Heads of a table of so many columns for each label, and then those of end_row. */
+static void heads(struct buffer *to, const char *first, const char *each, const char *const *labels,
+                  size_t count)
+{
+    struct buffer columns = {0};
+    buffer_add(&columns, first);
+    for (size_t k = 0; k < count; k++) html_format(&columns, "|#%s%s", each, labels[k]);
+    html_format(&columns, "|#order, %s|#momentum error|#energy error|", labels[0]);
+    if (columns.data) html_table(to, "overview", columns.data);
+    buffer_free(&columns);
 }
 
 static void row(struct buffer *to, const json_t *results, const json_t *first,
@@ -42,12 +59,7 @@ static void row(struct buffer *to, const json_t *results, const json_t *first,
         const json_t *finest = json_array_get(levels, json_array_size(levels) - 1);
         html_cell_number(to, value_inner(json_object_get(finest, "errors"), "density", "l1"));
     }
-    order_cell(to, page_study_order(first, "density", "l1"));
-    html_cell_number(to, value_inner(run, "conservation", "momentum"));
-    html_cell_number(to, value_inner(run, "conservation", "energy"));
-    buffer_add(to, "<td>");
-    html_status(to, case_state(results, name));
-    buffer_add(to, "</td></tr>\n");
+    end_row(to, results, name, page_study_order(first, "density", "l1"), run);
 }
 
 /* ---- 2D and 3D: by their runs, whatever they are judged by ---- */
@@ -61,9 +73,7 @@ static void cloud_row(struct buffer *to, const json_t *results, const json_t *ru
         case_state_find(json_object_get(results, "studies"), case_name, labels[0]);
     case_state_error(run, &what);
     case_cells(to, case_name, value_member(run, "n"));
-    buffer_add(to, "<td>");
-    html_words(to, what);
-    buffer_add(to, "</td>");
+    html_format(to, "<td>%-s</td>", what);
     for (size_t k = 0; k < count; k++) {
         const json_t *one = case_state_find(runs, case_name, labels[k]);
         if (one)
@@ -71,35 +81,17 @@ static void cloud_row(struct buffer *to, const json_t *results, const json_t *ru
         else
             buffer_add(to, "<td class=\"n\">—</td>");
     }
-    if (page_study_main(study))
-        order_cell(to, page_study_main(study));
-    else
-        buffer_add(to, "<td class=\"n\">—</td>");
-    html_cell_number(to, value_inner(run, "conservation", "momentum"));
-    html_cell_number(to, value_inner(run, "conservation", "energy"));
-    buffer_add(to, "<td>");
-    html_status(to, case_state(results, case_name));
-    buffer_add(to, "</td></tr>\n");
+    end_row(to, results, case_name, page_study_main(study), run);
 }
 
 static void clouds(struct buffer *to, const json_t *results)
 {
     const json_t *runs = json_object_get(results, "runs"), *entry;
     const char *labels[PAGE_SCHEMES];
-    struct buffer columns = {0};
     size_t count = case_state_labels(runs, 2, 3, labels), i;
     if (!count) return;
-    buffer_add(&columns, "case|#n|error of");
-    for (size_t k = 0; k < count; k++) {
-        buffer_add(&columns, "|#");
-        buffer_escape(&columns, labels[k]);
-    }
-    buffer_add(&columns, "|#order, ");
-    buffer_escape(&columns, labels[0]);
-    buffer_add(&columns, "|#momentum error|#energy error|");
     buffer_add(to, "<h3>In 2D and 3D</h3>\n");
-    if (columns.data) html_table(to, "overview", columns.data);
-    buffer_free(&columns);
+    heads(to, "case|#n|error of", "", labels, count);
     json_array_foreach(runs, i, entry) {
         if (is_cloud(entry) && !strcmp(value_text(entry, "label"), labels[0]))
             cloud_row(to, results, entry, labels, count);
@@ -111,21 +103,11 @@ static void clouds(struct buffer *to, const json_t *results)
 
 static void lines(struct buffer *to, const json_t *results)
 {
-    struct buffer columns = {0};
     const json_t *studies = json_object_get(results, "studies"), *entry;
     const char *labels[PAGE_SCHEMES];
     size_t count = case_state_labels(studies, 1, 1, labels), i;
     if (!count) return;
-    buffer_add(&columns, "case|#n");
-    for (size_t k = 0; k < count; k++) {
-        buffer_add(&columns, "|#L1 density, ");
-        buffer_escape(&columns, labels[k]);
-    }
-    buffer_add(&columns, "|#order, ");
-    buffer_escape(&columns, labels[0]);
-    buffer_add(&columns, "|#momentum error|#energy error|");
-    if (columns.data) html_table(to, "overview", columns.data);
-    buffer_free(&columns);
+    heads(to, "case|#n", "L1 density, ", labels, count);
     json_array_foreach(studies, i, entry) {
         if (!is_cloud(entry) && !strcmp(value_text(entry, "label"), labels[0]))
             row(to, results, entry, labels, count);

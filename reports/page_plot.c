@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "html.h"
+
 static void keep(struct page_writer *writer, const char *name, const char *ending, char *bytes)
 {
     struct page_plots *plots = &writer->plots;
@@ -33,14 +35,12 @@ void page_plot(struct page_writer *writer, const struct plot *plot, const char *
         buffer_add(to, svg);
     } else {
         if (!plots->missing++) snprintf(plots->message, sizeof plots->message, "%s", message);
-        buffer_add(to, "<p class=\"missing\">");
-        buffer_escape(to, plots->no_gnuplot ? plots->message : message);
+        html_format(to, "<p class=\"missing\">%s</p>",
+                    plots->no_gnuplot ? plots->message : message);
         plots->no_gnuplot |= status == PLOT_NO_GNUPLOT;
-        buffer_add(to, "</p>");
     }
     free(svg);
-    buffer_add(to, "<figcaption>");
-    buffer_escape(to, caption);
+    html_format(to, "<figcaption>%s", caption);
     if (!writer->alone)
         buffer_format(to,
                       " <span class=\"files\"><a href=\"plots/%s.dat\">data</a>, "

@@ -27,15 +27,13 @@ static const struct html_column files[] = {COLUMN("file", "file", .kind = CELL_C
 void page_score(struct page_writer *writer, const json_t *score)
 {
     struct buffer *to = &writer->to;
-    buffer_add(to,
-               "<section id=\"score\"><h2>Mutation score</h2>\n<p>One-line faults, generated at "
-               "every operator, constant, statement and returned status, that the tests must "
-               "notice: ");
-    buffer_format(to, "%.0f of %.0f were tried, ", value_member(score, "tried"),
-                  value_member(score, "generated"));
-    html_number(to, 100 * value_member(score, "score"));
-    buffer_format(to, " %% of those noticed that a result can show, in %.0f s.</p>\n",
-                  value_member(score, "seconds"));
+    html_format(to,
+                "<section id=\"score\"><h2>Mutation score</h2>\n<p>One-line faults, generated at "
+                "every operator, constant, statement and returned status, that the tests must "
+                "notice: %.0f of %.0f were tried, %f %% of those noticed that a result can show, "
+                "in %.0f s.</p>\n",
+                value_member(score, "tried"), value_member(score, "generated"),
+                100 * value_member(score, "score"), value_member(score, "seconds"));
     html_list(to, "score", files, json_object_get(score, "files"), NULL);
     buffer_add(to, "<details><summary>Survivors</summary>\n");
     html_list(to, "score", survivors, json_object_get(score, "survivors"), NULL);

@@ -171,11 +171,8 @@ static bool is_number(const json_t *entry, const char *name)
 static void cell(struct buffer *to, const json_t *entry, double stable_below)
 {
     const char *outcome = value_text(entry, "outcome");
-    buffer_format(to, "<td class=\"%s\" title=\"", outcome);
-    buffer_escape(to, value_text(entry, "reason"));
-    buffer_add(to, *value_text(entry, "reason") ? ": " : "");
-    buffer_escape(to, value_text(entry, "command"));
-    buffer_add(to, "\">");
+    html_format(to, "<td class=\"%s\" title=\"%s%s%s\">", outcome, value_text(entry, "reason"),
+                *value_text(entry, "reason") ? ": " : "", value_text(entry, "command"));
     /* not by its colour alone */
     if (!strcmp(outcome, "inaccurate")) buffer_add(to, "≉ ");
     if (!strcmp(outcome, "wrong")) buffer_add(to, "≠ ");
@@ -183,9 +180,8 @@ static void cell(struct buffer *to, const json_t *entry, double stable_below)
     const bool stable = predicted && !measured && value_member(entry, "predicted") < stable_below;
     if (stable) buffer_add(to, "stable");
     if (measured) html_number(to, value_member(entry, "measured"));
-    if (measured && predicted) buffer_add(to, " <span>of ");
-    if (predicted && !stable) html_number(to, value_member(entry, "predicted"));
-    if (measured && predicted) buffer_add(to, "</span>");
+    if (predicted && !stable)
+        html_format(to, measured ? " <span>of %f</span>" : "%f", value_member(entry, "predicted"));
     if (!measured && !predicted) html_words(to, strcmp(outcome, "ok") ? outcome : "none");
     buffer_add(to, "</td>");
 }
@@ -208,13 +204,8 @@ static void reasons(struct buffer *to, const char *group, const json_t *cells)
                   count == 1 ? "cell that is not ok" : "cells that are not ok");
     json_array_foreach(cells, i, entry) {
         if (!belongs(entry, group, NULL) || !strcmp(value_text(entry, "outcome"), "ok")) continue;
-        buffer_add(to, "<p><b>");
-        buffer_escape(to, value_text(entry, "row"));
-        buffer_add(to, ", ");
-        buffer_escape(to, value_text(entry, "column"));
-        buffer_add(to, "</b>: ");
-        buffer_escape(to, value_text(entry, "reason"));
-        buffer_add(to, "</p>");
+        html_format(to, "<p><b>%s, %s</b>: %s</p>", value_text(entry, "row"),
+                    value_text(entry, "column"), value_text(entry, "reason"));
         html_command(to, "", value_text(entry, "command"));
     }
     buffer_add(to, "</details>\n");
@@ -226,20 +217,13 @@ static void map(struct buffer *to, const json_t *group, const json_t *cells)
                  *columns = json_object_get(group, "columns"), *row, *column, *entry;
     const char *name = value_text(group, "name");
     size_t r, c, i;
-    buffer_format(to, "<h3><code>%s</code> <span>", name);
-    buffer_escape(to, value_text(group, "title"));
-    buffer_add(to, "</span></h3>\n<p class=\"facts\">");
-    buffer_escape(to, value_text(group, "number"));
-    buffer_add(to, "</p>\n<div class=\"scroll\"><table class=\"map\"><thead><tr><th>");
-    buffer_escape(to, value_text(group, "row_title"));
-    buffer_add(to, " ↓ ");
-    buffer_escape(to, value_text(group, "column_title"));
-    buffer_add(to, " →</th>");
-    json_array_foreach(columns, c, column) {
-        buffer_add(to, "<th>");
-        buffer_escape(to, json_string_value(column));
-        buffer_add(to, "</th>");
-    }
+    html_format(to,
+                "<h3><code>%s</code> <span>%s</span></h3>\n<p class=\"facts\">%s</p>\n"
+                "<div class=\"scroll\"><table class=\"map\"><thead><tr><th>%s ↓ %s →</th>",
+                name, value_text(group, "title"), value_text(group, "number"),
+                value_text(group, "row_title"), value_text(group, "column_title"));
+    json_array_foreach(columns, c, column)
+        html_format(to, "<th>%s</th>", json_string_value(column));
     buffer_add(to, "</tr></thead><tbody>\n");
     json_array_foreach(rows, r, row) {
         buffer_add(to, "<tr>");

@@ -62,10 +62,8 @@ static void path(struct buffer *to, const char *class, const struct frame *f, co
 
 static void svg_begin(struct buffer *to, const char *title)
 {
-    buffer_format(to, "<svg class=\"mini\" viewBox=\"0 0 %d %d\" role=\"img\"><title>", WIDTH,
-                  HEIGHT);
-    html_words(to, title);
-    buffer_add(to, "</title>");
+    html_format(to, "<svg class=\"mini\" viewBox=\"0 0 %d %d\" role=\"img\"><title>%-s</title>",
+                WIDTH, HEIGHT, title);
 }
 
 /* Do the values of a curve differ by more than noise would? */
@@ -214,21 +212,15 @@ static void figures(struct buffer *to, const json_t *run, const json_t *study)
     const char *what;
     buffer_add(to, "<span>");
     if (order) {
-        html_number(to, page_study_finest(study));
-        buffer_add(to, " ");
+        html_format(to, "%f ", page_study_finest(study));
         page_study_name(to, order);
     } else if (run) {
         const double error = case_state_error(run, &what);
         if (isfinite(error)) html_number(to, error);
-        buffer_add(to, isfinite(error) ? " off in " : "no error of ");
-        html_words(to, what);
+        html_format(to, isfinite(error) ? " off in %-s" : "no error of %-s", what);
     }
-    buffer_add(to, "</span><span>");
-    if (order)
-        buffer_format(to, "order %.2f ± %.2f", value_member(order, "order"),
-                      (value_member(order, "high") - value_member(order, "low")) / 2);
-    else
-        buffer_add(to, "one run");
+    buffer_add(to, order ? "</span><span>order " : "</span><span>one run");
+    if (order) html_order(to, order);
     buffer_add(to, "</span>");
 }
 
@@ -237,17 +229,13 @@ static void card(struct buffer *to, const json_t *results, const char *name)
     const json_t *run = case_state_find(json_object_get(results, "runs"), name, NULL);
     const json_t *study = case_state_find(json_object_get(results, "studies"), name, NULL);
     const char *state = case_state(results, name);
-    buffer_format(to, "<a class=\"card %s\" href=\"#case-", state);
-    buffer_escape(to, name);
-    buffer_add(to, "\">");
+    html_format(to, "<a class=\"card %s\" href=\"#case-%s\">", state, name);
     if (!profile(to, run) && !map(to, run)) {
         svg_begin(to, "no picture");
         buffer_add(to, "</svg>");
     }
     html_status(to, state);
-    buffer_add(to, "<span><b>");
-    html_words(to, name);
-    buffer_add(to, "</b></span>");
+    html_format(to, "<span><b>%-s</b></span>", name);
     figures(to, run, study);
     buffer_add(to, "</a>\n");
 }

@@ -72,9 +72,7 @@ static bool is_scalar(const json_t *order)
 
 void page_study_name(struct buffer *to, const json_t *order)
 {
-    buffer_add(to, is_scalar(order) ? "the error of " : "L1(");
-    html_words(to, value_text(order, "field"));
-    if (!is_scalar(order)) buffer_add(to, ")");
+    html_format(to, is_scalar(order) ? "the error of %-s" : "L1(%-s)", value_text(order, "field"));
 }
 
 /* At a level (the i-th) of a study. */
@@ -270,10 +268,8 @@ static void error_table(struct buffer *to, const struct study *studies, size_t c
 {
     struct buffer columns = {0};
     buffer_add(&columns, "#n");
-    for (size_t k = 0; k < count; k++) {
-        buffer_add(&columns, "|#");
-        buffer_escape(&columns, value_text(studies[k].document, "label"));
-    }
+    for (size_t k = 0; k < count; k++)
+        html_format(&columns, "|#%s", value_text(studies[k].document, "label"));
     const json_t *named = NULL;
     for (size_t k = 0; k < count && !named; k++) named = page_study_main(studies[k].document);
     buffer_add(to, "<h4>");
@@ -287,14 +283,7 @@ static void error_table(struct buffer *to, const struct study *studies, size_t c
         buffer_add(to, "</tr>\n");
     }
     buffer_add(to, "<tr class=\"total\"><th>order</th>");
-    for (size_t k = 0; k < count; k++) {
-        const json_t *order = page_study_main(studies[k].document);
-        if (order)
-            buffer_format(to, "<td class=\"n\">%.2f ± %.2f</td>", value_member(order, "order"),
-                          (value_member(order, "high") - value_member(order, "low")) / 2);
-        else
-            buffer_add(to, "<td class=\"n\">—</td>");
-    }
+    for (size_t k = 0; k < count; k++) html_order_cell(to, page_study_main(studies[k].document));
     buffer_add(to, "</tr>\n");
     html_table_end(to);
     replicates_note(to, studies->document);
@@ -306,19 +295,11 @@ static void gate_words(struct buffer *to, const json_t *gate)
     if (json_is_object(gate)) {
         double low = value_member(gate, "low"), bound = value_member(gate, "bound");
         const double least = value_member(gate, "least");
-        if (isfinite(low)) { /* else any order will do */
-            html_number(to, low);
-            buffer_add(to, " to ");
-            html_number(to, value_member(gate, "high"));
-        }
-        if (isfinite(bound)) {
-            buffer_add(to, isfinite(low) ? ", finest ≤ " : "finest ≤ ");
-            html_number(to, bound);
-        }
-        if (isfinite(least)) {
-            buffer_add(to, ", not below ");
-            html_number(to, least);
-        }
+        if (isfinite(low)) /* else any order will do */
+            html_format(to, "%f to %f", low, value_member(gate, "high"));
+        if (isfinite(bound))
+            html_format(to, isfinite(low) ? ", finest ≤ %f" : "finest ≤ %f", bound);
+        if (isfinite(least)) html_format(to, ", not below %f", least);
     }
     buffer_add(to, "</td>");
 }
@@ -344,14 +325,12 @@ static void order_rows(struct buffer *to, const struct study *study)
         bool gated = json_is_object(json_object_get(order, "gate"));
         bool shown = !strcmp(value_text(order, "norm"), "l1") || is_scalar(order);
         if (!gated && !shown && strcmp(status, "fail")) continue;
-        buffer_add(to, "<tr>");
-        html_cell(to, value_text(study->document, "label"));
-        buffer_format(to, "<td>%s of ", norm_name(value_text(order, "norm")));
-        html_words(to, value_text(order, "field"));
-        buffer_add(to, "</td><td class=\"n\">");
-        buffer_format(to, "%.2f", value_member(order, "order"));
-        buffer_format(to, "</td><td class=\"n\">%.2f to %.2f</td><td>", value_member(order, "low"),
-                      value_member(order, "high"));
+        html_format(to,
+                    "<tr><td>%s</td><td>%s of %-s</td><td class=\"n\">%.2f</td>"
+                    "<td class=\"n\">%.2f to %.2f</td><td>",
+                    value_text(study->document, "label"), norm_name(value_text(order, "norm")),
+                    value_text(order, "field"), value_member(order, "order"),
+                    value_member(order, "low"), value_member(order, "high"));
         json_array_foreach(json_object_get(order, "pairwise"), j, pair)
             buffer_format(to, "%s%.2f", j ? ", " : "", value_real(pair));
         buffer_add(to, "</td>");
@@ -359,10 +338,7 @@ static void order_rows(struct buffer *to, const struct study *study)
         buffer_add(to, "<td>");
         if (gated) html_status(to, status);
         const char *why = value_text_or(order, "known", value_text(order, "why"));
-        if (gated && *why) {
-            buffer_add(to, ": ");
-            buffer_escape(to, why);
-        }
+        if (gated && *why) html_format(to, ": %s", why);
         buffer_add(to, "</td></tr>\n");
     }
 }
@@ -406,38 +382,20 @@ static void finest_value(struct buffer *to, const json_t *values)
     html_digits(to, value_real(json_array_get(values, json_array_size(values) - 1)));
 }
 
-/* A dash where there is none, as where steps are irregular. */
-static void known_value(struct buffer *to, const json_t *value)
-{
-    if (isfinite(value_real(value)))
-        html_digits(to, value_real(value));
-    else
-        buffer_add(to, "—");
-}
-
-static void known_order(struct buffer *to, const json_t *order)
-{
-    if (isfinite(value_real(order)))
-        html_number(to, value_real(order));
-    else
-        buffer_add(to, "—");
-}
-
 static void percent(struct buffer *to, const json_t *part)
 {
-    if (isfinite(value_real(part))) html_number(to, 100 * value_real(part));
-    buffer_add(to, isfinite(value_real(part)) ? " %" : "—");
+    html_format(to, "%f %%", 100 * value_real(part));
 }
 
 static const struct html_column functionals[] = {
     COLUMN("scheme", "^label", .kind = CELL_TEXT),
     COLUMN("scalar", "name", .kind = CELL_WORDS),
     COLUMN("#finest level", "values", .cell = finest_value),
-    COLUMN("#extrapolated", "extrapolated", .cell = known_value),
+    COLUMN("#extrapolated", "extrapolated", .kind = CELL_DIGITS, .otherwise = "—", .finite = true),
     COLUMN("#exact", "exact", .kind = CELL_DIGITS),
-    COLUMN("#order", "order", .cell = known_order),
-    COLUMN("#GCI, finest", "gci", .cell = percent),
-    COLUMN("#GCI, next", "gci_coarse", .cell = percent),
+    COLUMN("#order", "order", .otherwise = "—", .finite = true),
+    COLUMN("#GCI, finest", "gci", .cell = percent, .otherwise = "—", .finite = true),
+    COLUMN("#GCI, next", "gci_coarse", .cell = percent, .otherwise = "—", .finite = true),
     COLUMN("convergence", NULL, .cell = class_words),
     {0}};
 

@@ -15,9 +15,7 @@ static void flat_cell(struct buffer *to, const json_t *value)
     } else if (json_is_null(value)) {
         html_cell(to, "—");
     } else if (json_is_string(value) && !value_is_real(value)) {
-        buffer_add(to, "<td>");
-        html_words(to, json_string_value(value));
-        buffer_add(to, "</td>");
+        html_format(to, "<td>%-s</td>", json_string_value(value));
     } else {
         html_cell_number(to, value_real(value));
     }
@@ -148,9 +146,7 @@ static size_t failed_checks(const json_t *kernel)
 static void kernel_name(struct buffer *to, const json_t *kernel)
 {
     html_status(to, failed_checks(kernel) ? "fail" : "pass");
-    buffer_add(to, " <code>");
-    buffer_escape(to, value_text(kernel, "kernel"));
-    buffer_add(to, "</code>");
+    html_format(to, " <code>%s</code>", value_text(kernel, "kernel"));
 }
 
 static void off_one(struct buffer *to, const json_t *normalisation)
