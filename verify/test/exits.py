@@ -2,8 +2,10 @@
 """exits.py SPHPROOF [all]: what a study ends with is the same alone, from a cache that is cold or warm, after its
 shares in either order, after one that is missing, and through an engine. A share itself ends with 0 whatever it finds,
 unless its input is bad (2) or it cannot keep what it computes (4). With `all` of every command that has shares."""
+import contextlib
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -29,11 +31,11 @@ STUDIES = [
     (1, ["converge", "sod", *LADDER, "t_end=0.05"]),
     (2, ["converge", "sod", *LADDER, "kernel=none"]),
     (3, ["converge", "sod", *LADDER, "cfl=50", "viscosity=none"]),
+    (0, ["verify", "riemann/star_states", "norms", "--mutants"]),
+    (0, ["bench", "sod", "--n", "40,60", "--samples", "1", "--time", "1e-4"]),
 ]
 OTHERS = [
-    (0, ["verify", "riemann/star_states", "norms", "--mutants"]),
     (2, ["verify", "nonsense"]),
-    (0, ["bench", "sod", "--n", "40,60", "--samples", "1", "--time", "1e-4"]),
     (2, ["bench", "sod", "--n", "40,60", "kernel=none"]),
     (0, ["stress", "leblanc"]),
     (2, ["stress", "nonsense"]),
@@ -60,14 +62,19 @@ def fixed(value):
 
 
 def call(*words):
-    """Exit status, what is in the document and what was said about an error."""
-    if os.path.exists("out.json"):
-        os.remove("out.json")
-    done = subprocess.run([program, *words, "--quiet", "--json", "out.json"], capture_output=True, text=True, timeout=100)
+    """Exit status, what is in the document (and in a JUnit file) and what was said about an error."""
+    for name in ("out.json", "out.xml"):
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(name)
+    junit = ("--junit", "out.xml") if words[0] == "verify" else ()
+    done = subprocess.run([program, *words, "--quiet", "--json", "out.json", *junit], capture_output=True, text=True, timeout=100)
     document = None
     if os.path.exists("out.json"):
         with open("out.json", encoding="utf-8") as file:
             document = fixed(without_times(json.load(file)))
+    if os.path.exists("out.xml"):
+        with open("out.xml", encoding="utf-8") as file:
+            document["junit"] = re.sub(r' time="[^"]*"', "", file.read())
     return done.returncode, document, done.stderr
 
 
@@ -94,6 +101,13 @@ def try_study(number, code, words):
     expect("%s: an engine was asked" % what, os.path.exists("submitted") == (code != 2))
 
 
+def test_all_checks():
+    """They are all computed, each once."""
+    listed, names = (subprocess.run([program, *words], capture_output=True, text=True).stdout.splitlines()
+                     for words in (("verify", "--slow", "--list"), ("list", "checks")))
+    expect("all checks", len(set(listed)) == len(listed) == len(names) - 1, (len(listed), len(names)))
+
+
 def test_environment():
     """Where nothing can be kept, and where there is no Slurm, every way ends with 4."""
     words = STUDIES[0][1]
@@ -118,6 +132,7 @@ def main():
         os.environ["PATH"] = os.path.abspath("bin")  # nothing of a Slurm that may be here
         for number, (code, words) in enumerate(STUDIES + (OTHERS if "all" in sys.argv else [])):
             try_study(number, code, words)
+        test_all_checks()
         test_environment()
         os.chdir("/")
     print("\n".join(faults) or "a study ends as it ends alone")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """slurm.py SPHPROOF DATA [--night FOLDER]: `--engine slurm` on a cluster of two nodes on this host. The
 results must be those of this machine alone, nothing that is finished may be computed again, and nothing
-may be lost by a node that loses its power, by kill -9 of who submitted or of a worker, or a full disk.
+may be lost by a node that loses its power, by kill -9 of who submitted or of a worker.
 Tasks that are requeued, preempted, out of time or killed are done again, or it is said which.
 With --night a whole quick report in FOLDER, and a task beyond its --time; Slurm must then be here, else the test is skipped."""
 import contextlib
@@ -100,47 +100,10 @@ def test_code():
     expect("another code: by tasks alone", "submitted again" not in said and load("coded.json")["code"]["title"] == "code", said)
 
 
-def test_refused(nodes):
-    """What cannot be: exit 4 with the reason, and nothing is left in the queue."""
-    path = dict(os.environ, PATH="/nowhere")
-    others = queue().keys()
-    gone = os.path.join(nodes.folder, "gone.conf")
-    with open(nodes.conf, encoding="ascii") as file, open(gone, "w", encoding="ascii") as changed:
-        changed.write(file.read().replace("SlurmctldPort=%d" % nodes.ports[0],
-                                          "SlurmctldPort=%d" % cluster.free_ports(1)[0]))
-    for what, options, words, said in (
-            ("no sbatch", {"env": path}, (), "no command squeue"),
-            ("no controller", {"env": dict(os.environ, SLURM_CONF=gone)}, (), "Unable to contact slurm controller"),
-            ("no partition", {}, ("--engine-options", "--partition=none"), "invalid partition")):
-        running = start(QUICK, "refused", "--engine-tasks", "2", *words, **options)
-        heard = running.communicate()[1]
-        expect(what, running.returncode == 4 and said in heard, (running.returncode, heard))
-    expect("the queue", queue().keys() <= others, queue())
-    os.makedirs("small")
-    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=48k", "none", "small"], capture_output=True).returncode:
-        return
-    running = start(QUICK, "small/cache", "--engine-tasks", "1")
-    heard = running.communicate()[1]
-    expect("a full disk", running.returncode == 4 and "No space left" in heard, (running.returncode, heard))
-
-
 def kill(nodes):
     for pid in nodes.tasks():
         with contextlib.suppress(ProcessLookupError):
             os.kill(pid, signal.SIGKILL)
-
-
-def test_worker(nodes):
-    """kill -9 of a worker: its share is submitted again, and the caller says so."""
-    running = start(LONG, "worker", "--engine-tasks", "1", "--json", "worker.json")
-    nodes.wait(lambda: len(entries("worker")) == 0 and nodes.tasks() or len(entries("worker")) > 0, "task")
-    nodes.wait(nodes.tasks, "worker")
-    kept = entries("worker")
-    kill(nodes)
-    said = running.communicate()[1]
-    expect("a worker was killed", running.returncode in (0, 1) and "submitted again (1 of 2)" in said, said)
-    expect("a worker was killed: results", load("worker.json") == alone(LONG), said)
-    expect("a worker was killed: computed twice", kept.items() <= entries("worker").items())
 
 
 def hold(nodes):
@@ -291,10 +254,8 @@ def main():
             else:
                 test_same(nodes)
                 test_code()
-                test_worker(nodes)
                 power = test_power(nodes)
                 next(power)
-                test_refused(nodes)
                 test_interrupt(nodes)
                 next(power, None)
                 nodes.start("n0")  # which had no power
@@ -303,7 +264,6 @@ def main():
                 test_given_up(nodes, lambda task: kill(nodes), "FAILED")
         finally:
             nodes.end()
-            subprocess.run(["umount", "-l", "small"], capture_output=True)
             os.chdir("/")
     print("\n".join(faults) or "a cluster computes what one machine does")
     return bool(faults)
