@@ -207,7 +207,9 @@ static enum status read_figures(struct side *side, const struct run_result *r, s
     return STATUS_OK;
 }
 
-static enum status one_run(struct side *side, size_t r, size_t draws, struct error *error)
+/* The draw r of so many becomes the side's draw `to`. */
+static enum status one_run(struct side *side, size_t r, size_t draws, size_t to,
+                           struct error *error)
 {
     struct run run;
     struct run_result result;
@@ -220,7 +222,7 @@ static enum status one_run(struct side *side, size_t r, size_t draws, struct err
         error_set(error, status, "%s, '%.160s', n=%zu: %.280s", side->name, side->text, result.n,
                   result.message);
     else
-        status = read_figures(side, &result, r, error);
+        status = read_figures(side, &result, to, error);
     run_free(&result);
     return status;
 }
@@ -278,12 +280,7 @@ static enum status serialise_out(struct comparison *c, const struct options *opt
     for (size_t r = 0; r < asked && !status; r++) {
         for (int s = 0; s < 2 && !status; s++) {
             struct side *side = &c->sides[s];
-            if (!side->is_snapshot) {
-                status = one_run(side, r, asked, error);
-                if (!status) side->n[c->draws] = side->n[r], side->cpu_s[c->draws] = side->cpu_s[r];
-                for (size_t k = 0; k < side->count && !status; k++)
-                    side->error[k][c->draws] = side->error[k][r];
-            }
+            if (!side->is_snapshot) status = one_run(side, r, asked, c->draws, error);
             progress_update(&progress, (double)(2 * r) + s + 1, 2 * (double)asked);
         }
         if (!status && !seen(c, c->draws)) c->draws++;

@@ -1,0 +1,530 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * sphproof compare: what is said of planted errors and times, which runs are drawn, and what may be
+ * compared at all. (Whole calls, snapshots and pages: the transcripts.) */
+#include "test.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* the command's own text, of which the parts are asked */
+#include "compare.c"
+
+static const char *values[3];
+static struct options options = {
+    .quiet = 1, .threads = 1, .command = &command_compare, .values = values};
+
+/* ---- what is said ---- */
+
+/* Errors of up to two figures and CPU times of the draws of a and b. */
+static const struct {
+    size_t draws, figures;
+    bool snapshot[2];
+    double a[2][4], b[2][4], cpu[2][4];
+    const char *table, *times, *verdict;
+} planted[] = {
+    {1,
+     1,
+     {false, false},
+     {{1}},
+     {{1.25}},
+     {{2}, {1}},
+     "density              1.0000e+00   1.2500e+00                  +25.0 %  [.unknown]\n",
+     "CPU time           b/a = 0.5 (0.5 to 0.5)\n",
+     "a single draw does not tell how much of the difference is chance: density more by 25.0 % (1 "
+     "draw); b takes 0.5 times the CPU time (0.5 to 0.5)"},
+    {1,
+     2,
+     {true, true},
+     {{1}, {2}},
+     {{0.5}, {2}},
+     {{(double)NAN}, {(double)NAN}},
+     "density              1.0000e+00   5.0000e-01                  -50.0 %  [.unknown]\n"
+     "velocity             2.0000e+00   2.0000e+00                     +0 %  [.no different]\n",
+     "",
+     "a single draw does not tell how much of the difference is chance: density less by 50.0 %; no "
+     "difference can be told in velocity (1 draw)"},
+    {2,
+     1,
+     {false, false},
+     {{1, 2}},
+     {{1, 2}},
+     {{1, 1}, {2, 3}},
+     "density              1.4142e+00   1.4142e+00                +0 +- 0 %  [.no different]\n",
+     "CPU time           b/a = 3 (2 to 3)\n",
+     "no difference can be told in density (2 draws); b takes 3 times the CPU time (2 to 3)"},
+    {2,
+     1,
+     {false, true},
+     {{1, 2}},
+     {{1.5, 2.9}},
+     {{1, 1}, {(double)NAN, (double)NAN}},
+     "density              1.4142e+00   2.0857e+00              +47 +- 55 %  [-worse]\n",
+     "",
+     "b is worse in density by 47 +- 55 % (2 draws)"},
+    {2,
+     1,
+     {true, false},
+     {{1, 1}},
+     {{1.5, 1.6}},
+     {{(double)NAN, (double)NAN}, {1, 1}},
+     "density              1.0000e+00   1.5492e+00             +55 +- 110 %  [.no different]\n",
+     "",
+     "no difference can be told in density (2 draws)"},
+    {3,
+     1,
+     {true, true},
+     {{1, 1, 1}},
+     {{1.5, 1.6, 1.55}},
+     {{1, 1, 1}, {2, 3, 1}},
+     "density              1.0000e+00   1.5495e+00              +55 +- 12 %  [-worse]\n",
+     "CPU time           b/a = 2 (1 to 3)\n",
+     "b is worse in density by 55 +- 12 % (3 draws)"},
+    {4,
+     2,
+     {false, false},
+     {{1, 2, 3, 4}, {1, 1, 1, 1}},
+     {{0.5, 1.01, 1.49, 2.02}, {2, 2.01, 1.99, 2.02}},
+     {{4, 1, 2, 8}, {4, 3, 4, 8}},
+     "density              2.2134e+00   1.1103e+00         -49.83 +- 0.85 %  [+better]\n"
+     "velocity             1.0000e+00   2.0050e+00          +100.5 +- 2.7 %  [-worse]\n",
+     "CPU time           b/a = 2 (1 to 3)\n",
+     "b is better in density by 49.83 +- 0.85 %; b is worse in velocity by 100.5 +- 2.7 % (4 "
+     "draws)"},
+    {3,
+     2,
+     {false, false},
+     {{1, 2, 3}, {0}},
+     {{1, 2.5, 2.5}, {1, 1, 1}},
+     {{1, 1, 0}, {3, 2, 1}},
+     "density              1.8171e+00   1.8420e+00               +1 +- 74 %  [.no different]\n",
+     "CPU time           too short for this clock\n",
+     "no difference can be told in density (3 draws)"},
+    {2,
+     2,
+     {false, false},
+     {{1, 1}, {1, 1}},
+     {{40, 45}, {1.0000105, 1.00001}},
+     {{1, 1}, {1, 1.5}},
+     "density              1.0000e+00   4.2426e+01          +4143 +- 6359 %  [-worse]\n"
+     "velocity             1.0000e+00   1.0000e+00    +0.00102 +- 0.00064 %  [.no different]\n",
+     "CPU time           b/a = 1.5 (1 to 1.5)\n",
+     "b is worse in density by 4143 +- 6359 %; no difference can be told in velocity (2 draws)"},
+    {2,
+     2,
+     {false, false},
+     {{1, 1}, {1, 1}},
+     {{0.9, 0.9}, {0.9, 0.9}},
+     {{1, 1}, {0.5, 0.6}},
+     "density              1.0000e+00   9.0000e-01               -10 +- 0 %  [+better]\n"
+     "velocity             1.0000e+00   9.0000e-01               -10 +- 0 %  [+better]\n",
+     "CPU time           b/a = 0.6 (0.5 to 0.6)\n",
+     "b is better in density by 10 +- 0 %, velocity by 10 +- 0 % (2 draws); b takes 0.6 times the "
+     "CPU time (0.5 to 0.6)"},
+    {2,
+     1,
+     {false, false},
+     {{1, 1}},
+     {{1.1, 1.1000000001}},
+     {{1, 1}, {0.5, 1}},
+     "density              1.0000e+00   1.1000e+00 +10.000000 +- 0.000000 %  [-worse]\n",
+     "CPU time           b/a = 1 (0.5 to 1)\n",
+     "b is worse in density by 10.000000 +- 0.000000 % (2 draws)"},
+};
+
+/* Expands "[-worse]" into what is printed in the colour of bad news, and so + good, . faint, *
+ * bold. */
+static void dressed(const char *of, bool color, char *text)
+{
+    const struct table_style style = table_style(color);
+    for (; *of; of++)
+        if (*of == '[')
+            of++, text = stpcpy(text, *of == '-'   ? style.bad
+                                      : *of == '+' ? style.good
+                                      : *of == '.' ? style.faint
+                                                   : style.bold);
+        else if (*of == ']')
+            text = stpcpy(text, style.end);
+        else
+            *text++ = *of;
+    *text = '\0';
+}
+
+static void printed(const struct comparison *c, bool color, char text[4096])
+{
+    fflush(stdout);
+    const int before = dup(1);
+    FILE *file = tmpfile();
+    assert_non_null(file);
+    dup2(fileno(file), 1);
+    options.color = color;
+    print_all(c, &options);
+    fflush(stdout);
+    dup2(before, 1);
+    close(before);
+    rewind(file);
+    text[fread(text, 1, 4095, file)] = '\0';
+    fclose(file);
+}
+
+static void is_real(const json_t *object, const char *key, double value)
+{
+    const json_t *found = json_object_get(object, key);
+    if (isnan(value))
+        assert_true(!found || json_is_null(found) || !strcmp(json_string_value(found), "nan"));
+    else if (json_real_value(found) != value)
+        fail_msg("%s: %.17g", key, json_real_value(found));
+}
+
+static void is_text(const json_t *object, const char *key, const char *value)
+{
+    assert_string_equal(json_string_value(json_object_get(object, key)), value);
+}
+
+/* The document says what the struct says. */
+static void is_document(const struct comparison *c, bool pictures)
+{
+    json_t *document = compare_json(c, pictures);
+    const json_t *cpu = json_object_get(document, "cpu"),
+                 *figures = json_object_get(document, "comparisons"),
+                 *sides = json_object_get(document, "sides");
+    is_text(document, "command", "compare");
+    is_text(document, "case", "sod");
+    is_text(document, "verdict", c->verdict);
+    assert_int_equal(json_integer_value(json_object_get(document, "dim")), 1);
+    assert_int_equal(json_integer_value(json_object_get(document, "draws")), c->draws);
+    assert_true(json_is_null(cpu) == isnan(c->cpu));
+    is_real(cpu, "ratio", c->cpu);
+    is_real(cpu, "low", c->cpu_low);
+    is_real(cpu, "high", c->cpu_high);
+    assert_int_equal(json_array_size(figures), c->sides[0].count);
+    for (size_t k = 0; k < c->sides[0].count; k++) {
+        const json_t *one = json_array_get(figures, k);
+        is_text(one, "name", c->sides[0].figures[k]);
+        is_text(one, "verdict", paired_verdicts[c->of[k].verdict]);
+        is_real(one, "a", c->of[k].a);
+        is_real(one, "b", c->of[k].b);
+        is_real(one, "change", c->of[k].change);
+        is_real(one, "half", c->of[k].half);
+        assert_true(json_is_null(json_object_get(one, "half")) == isnan(c->of[k].half));
+        assert_int_equal(json_integer_value(json_object_get(one, "draws")), c->of[k].n);
+    }
+    assert_int_equal(json_array_size(sides), 2);
+    for (size_t s = 0; s < 2; s++) {
+        const json_t *one = json_array_get(sides, s), *first = json_object_get(one, "first");
+        is_text(one, "name", c->sides[s].name);
+        is_text(one, "of", c->sides[s].text);
+        is_text(one, "kind", c->sides[s].is_snapshot ? "snapshot" : "runs");
+        assert_true(json_is_object(json_object_get(one, "settings")));
+        assert_int_equal(json_integer_value(json_object_get(first, "n")), 7 + s);
+        assert_true(!!json_object_get(first, "profile") == pictures);
+    }
+    json_decref(document);
+}
+
+TEST(what_is_said)
+{
+    static const char *const names[] = {"density", "velocity"};
+    static const char frame[] =
+        "[*a]  its words, n=100\n[*b]  others, n=110\n\n"
+        "[*error                         a            b                  b/a - 1  b is]\n%s"
+        "[.geometric means, of fields L1, of values |found - exact|; +- is half of the interval "
+        "that holds all of them with 95 %% (Student, pairs of draws)]\n%s\n[*";
+    static struct comparison c;
+    static char text[4096], markup[4096], expected[4096];
+    for (size_t row = 0; row < sizeof planted / sizeof *planted; row++) {
+        memset(&c, 0, sizeof c);
+        c.draws = planted[row].draws;
+        for (int s = 0; s < 2; s++) {
+            struct side *side = &c.sides[s];
+            side->name = s ? "b" : "a", side->text = s ? "others" : "its words";
+            side->is_snapshot = planted[row].snapshot[s], side->count = planted[row].figures;
+            strcpy(side->first.asked.file.name, "sod");
+            side->first.asked.file.dimension = 1;
+            side->result = json_pack("{s:i, s:i}", "n", 7 + s, "profile", 3);
+            for (size_t k = 0; k < side->count; k++) side->figures[k] = (char *)names[k];
+            for (size_t r = 0; r < c.draws; r++) {
+                side->n[r] = 100 + 10 * (size_t)s + r;
+                side->cpu_s[r] = planted[row].cpu[s][r];
+                for (size_t k = 0; k < side->count; k++)
+                    side->error[k][r] = s ? planted[row].b[k][r] : planted[row].a[k][r];
+            }
+        }
+        conclude(&c);
+        assert_string_equal(c.verdict, planted[row].verdict);
+        for (size_t k = 0; k < planted[row].figures; k++) {
+            const struct paired of =
+                paired_compare(c.draws, planted[row].a[k], planted[row].b[k],
+                               planted[row].snapshot[0] != planted[row].snapshot[1],
+                               0.05 / (double)planted[row].figures);
+            assert_int_equal(of.n, c.of[k].n);
+            assert_true(of.half == c.of[k].half || (isnan(of.half) && isnan(c.of[k].half)));
+        }
+        for (int color = 0; color < 2; color++) {
+            is_document(&c, color);
+            snprintf(markup, sizeof markup, frame, planted[row].table, planted[row].times);
+            dressed(markup, color, expected);
+            printed(&c, color, text);
+            if (strncmp(text, expected, strlen(expected)) != 0)
+                fail_msg("row %zu: got:\n%s\nand not:\n%s", row, text, expected);
+            /* table_wrap puts some of its blanks at the ends of lines */
+            for (char *at = text; (at = strchr(at, '\n'));) *at = ' ';
+            char *said = text + strlen(expected);
+            assert_true(strncmp(said, c.verdict, strlen(c.verdict)) == 0);
+            assert_string_equal(said + strlen(c.verdict) + 1, table_style(color).end);
+        }
+        for (int s = 0; s < 2; s++) json_decref(c.sides[s].result);
+    }
+}
+
+/* ---- what is drawn ---- */
+
+static void take(struct comparison *c, const char *a, const char *b)
+{
+    const char *const texts[] = {a, b};
+    struct error error = {0};
+    memset(c, 0, sizeof *c);
+    for (int s = 0; s < 2; s++) {
+        c->sides[s].name = s ? "b" : "a", c->sides[s].text = texts[s];
+        if (take_side(&c->sides[s], 1, &error)) fail_msg("%s: %s", texts[s], error.message);
+    }
+}
+
+/* The draw has the errors of a run of its number of particles, or of this seed, if it is above 0.
+ */
+static void is_run(const struct comparison *c, int s, size_t r, double seed)
+{
+    const struct side *side = &c->sides[s];
+    struct run_settings asked = side->asked;
+    struct run run;
+    struct run_result result;
+    struct error error = {0};
+    char text[32];
+    snprintf(text, sizeof text, "%.0f", seed > 0 ? seed : (double)side->n[r]);
+    assert_int_equal(settings_set(&asked.settings, seed > 0 ? SETTING_seed : SETTING_n, text,
+                                  SOURCE_USER, NULL, &error),
+                     STATUS_OK);
+    assert_int_equal(run_resolve(&run, &asked, &error), STATUS_OK);
+    assert_int_equal(run_execute(&run, &result, &error), STATUS_OK);
+    assert_int_equal(result.n, side->n[r]);
+    assert_true(side->cpu_s[r] >= 0);
+    if (r == 0) assert_int_equal(json_integer_value(json_object_get(side->result, "n")), result.n);
+    size_t k = 0;
+    for (int f = 0; f < FIELDS; f++)
+        if (problem_knows(result.problem.problem, (enum field)f)) {
+            assert_string_equal(side->figures[k], field_family.members[f]->name);
+            assert_true(side->error[k++][r] == result.errors[f].l1);
+        }
+    for (size_t i = 0; i < result.functional_count; i++)
+        if (result.problem.problem->fieldless && isfinite(result.functionals[i].exact)) {
+            assert_string_equal(side->figures[k], result.functionals[i].name);
+            assert_true(side->error[k++][r] ==
+                        fabs(result.functionals[i].value - result.functionals[i].exact));
+        }
+    assert_int_equal(side->count, k);
+    assert_true(k > 0);
+    run_free(&result);
+}
+
+/* Numbers of particles of the draws that stay; each error is that of a run of this number. */
+TEST(draws)
+{
+#define SHORT  " t_end=0.01"
+#define COARSE " eta=1.5 kernel=cubic_spline t_end=0.001"
+    static const struct {
+        const char *a, *b;
+        size_t asked, draws, n[2][9];
+        double seed[2]; /* of the first draw; 0: n is drawn */
+    } rows[] = {
+        {"sod n=40" SHORT, "sod n=81 eta=3" SHORT, 3, 3, {{40, 41, 39}, {81, 83, 79}}, {0}},
+        {"sod n=8" SHORT, "sod n=40" SHORT, 1, 1, {{8}, {40}}, {0}},
+        {"gresho n=8^2" COARSE,
+         "gresho n=81 alpha=0" COARSE,
+         5,
+         5,
+         {{64, 81, 49, 100, 36}, {81, 100, 64, 121, 49}},
+         {0}},
+        {"gresho lattice=hexagonal n=100" COARSE,
+         "gresho lattice=hexagonal n=100 alpha=0" COARSE,
+         9,
+         8,
+         {{90, 120, 80, 132, 56, 168, 208, 36}, {90, 120, 80, 132, 56, 168, 208, 36}},
+         {0}},
+        {"gresho lattice=hexagonal n=100" COARSE,
+         "gresho n=100" COARSE,
+         9,
+         9,
+         {{90, 120, 80, 132, 56, 168, 56, 208, 36}, {100, 121, 81, 144, 64, 169, 49, 196, 36}},
+         {0}},
+        {"sound_wave n=10 jitter=0.1" SHORT,
+         "sound_wave n=10" SHORT,
+         3,
+         3,
+         {{10, 10, 10}, {10, 11, 9}},
+         {1, 0}},
+        {"sound_wave n=10" SHORT,
+         "sound_wave n=10 jitter=0.1 seed=4" SHORT,
+         3,
+         3,
+         {{10, 11, 9}, {10, 10, 10}},
+         {0, 4}},
+        {"sound_wave_3d n=7^3" COARSE,
+         "sound_wave_3d n=343 alpha=0" COARSE,
+         3,
+         3,
+         {{343, 512, 216}, {343, 512, 216}},
+         {0}},
+        {"kelvin_helmholtz n=10^2" COARSE,
+         "kelvin_helmholtz n=10^2 jitter=0.1" COARSE,
+         2,
+         2,
+         {{100, 121}, {100, 100}},
+         {0, 1}},
+    };
+    static struct comparison c;
+    struct error error = {0};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        take(&c, rows[k].a, rows[k].b);
+        c.asked = rows[k].asked;
+        if (serialise_out(&c, &options, &error)) fail_msg("%s", error.message);
+        assert_int_equal(c.draws, rows[k].draws);
+        for (int s = 0; s < 2; s++) {
+            for (size_t r = 0; r < c.draws; r++) {
+                assert_int_equal(c.sides[s].n[r], rows[k].n[s][r]);
+                is_run(&c, s, r, rows[k].seed[s] > 0 ? rows[k].seed[s] + (double)r : 0);
+            }
+            json_decref(c.sides[s].result);
+        }
+    }
+}
+
+/* ---- what may be compared ---- */
+
+/* Whether a is a snapshot is planted: such has its case's settings, but for gamma and time. */
+TEST(problems)
+{
+    static const struct {
+        const char *a, *b;
+        bool snapshot;
+        const char *differs; /* NULL: may be compared */
+    } rows[] = {
+        {"sod", "sod kernel=cubic_spline eta=3 n=77 viscosity=none cfl=0.1", false, NULL},
+        {"sod", "sod jitter=0.1 seed=3", false, NULL},
+        {"sod", "sod grade=0.5", false, NULL},
+        {"square", "square equal_masses=yes lattice=hexagonal", false, NULL},
+        {"sod", "lax", false, "a is of the case sod in 1D, b of lax in 1D"},
+        {"sod", "sod_2d", false, "a is of the case sod in 1D, b of sod_2d in 2D"},
+        {"sod", "sod kind=sound_wave", false, "a has kind=riemann, b has kind=sound_wave"},
+        {"sod", "sod gamma=1.5", false, "a has gamma=1.4, b has gamma=1.5"},
+        {"sod", "sod t_end=0.1", false, "a has t_end=0.2, b has t_end=0.1"},
+        {"sod", "sod lo=-2", false, "a has lo=-1, b has lo=-2"},
+        {"sod", "sod hi=2", false, "a has hi=1, b has hi=2"},
+        {"sod", "sod window=-0.1,0.1", false, "b has window=-0.1 0.1"},
+        {"sod", "sod boundary=reflecting", false, "b has boundary=reflecting"},
+        {"gresho", "gresho window_radius=0.1", false, "b has window_radius=0.1"},
+        {"gresho", "gresho boost=1", false, "a has boost=0, b has boost=1"},
+        {"hydrostatic", "hydrostatic gravity='0 -2'", false, "b has gravity=0 -2"},
+        {"sod", "sod left='1 0 2'", false, "a has left=1 0 1, b has left=1 0 2"},
+        {"sod", "sod right='1 0 2'", false, "b has right=1 0 2"},
+        {"square", "square contrast=2", false, "a has contrast=4, b has contrast=2"},
+        {"sound_wave", "sound_wave waves=2", false, "a has waves=1, b has waves=2"},
+        {"sod", "sod lo=-2 left='1 0 2' boundary=reflecting", true, NULL},
+        {"sod", "sod gamma=1.5", true, "a has gamma=1.4, b has gamma=1.5"},
+        {"sod t_end=1000000", "sod t_end=999999", true, NULL},
+        {"sod t_end=1000000", "sod t_end=999998", true, "a has t_end=1e+06, b has t_end=999998"},
+        {"sod t_end=1000000", "sod t_end=999999", false, "a has t_end=1e+06, b has t_end=999999"},
+    };
+    static struct comparison c;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        for (int turned = 0; turned <= rows[k].snapshot; turned++) {
+            struct error error = {0};
+            take(&c, rows[k].a, rows[k].b);
+            c.sides[turned].is_snapshot = rows[k].snapshot;
+            assert_int_equal(check_problem(&c, &error), rows[k].differs ? STATUS_BAD_INPUT : 0);
+            if (rows[k].differs && !strstr(error.message, rows[k].differs))
+                fail_msg("%s, %s: %s", rows[k].a, rows[k].b, error.message);
+        }
+}
+
+TEST(dimensions)
+{
+    static struct comparison c;
+    struct error error = {0};
+    take(&c, "sod", "sod");
+    c.sides[1].first.asked.file.dimension = 2; /* of a case file with the same name */
+    assert_int_equal(check_problem(&c, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "a is of the case sod in 1D, b of sod in 2D"));
+}
+
+/* Words of a side, and those that are no words. */
+TEST(words)
+{
+    static const struct {
+        const char *text, *words; /* joined by |; NULL: refused */
+    } rows[] = {{"sod", "sod"},
+                {"  sod   n=40 ", "sod|n=40"},
+                {"sod 'n=4 0' x", "sod|n=4 0|x"},
+                {"a'b c'd \"e 'f\" g", "ab cd|e 'f|g"},
+                {"a ''", "a|"},
+                {"", ""},
+                {"a 'b", NULL},
+                {"a b\"", NULL}};
+    char *words[WORDS_MAX], text[300], joined[300];
+    int count;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        strcpy(text, rows[k].text);
+        assert_int_equal(split(text, words, &count), rows[k].words != NULL);
+        if (!rows[k].words) continue;
+        *joined = '\0';
+        for (int i = 0; i < count; i++)
+            sprintf(joined + strlen(joined), "%s%s", i ? "|" : "", words[i]);
+        assert_string_equal(joined, rows[k].words);
+    }
+    for (int n = WORDS_MAX; n <= WORDS_MAX + 1; n++) {
+        for (int i = 0; i < n; i++) memcpy(text + 2 * i, "a ", 3);
+        assert_int_equal(split(text, words, &count), n <= WORDS_MAX);
+        assert_int_equal(count, WORDS_MAX);
+    }
+}
+
+/* ---- whole calls ---- */
+
+static void call_is(int n, char **sides, enum status expected, const char *says)
+{
+    struct error error = {0};
+    const enum status status = run(&options, n, sides, &error);
+    if (status != expected || !strstr(error.message, says))
+        fail_msg("%s, %s: %d, %s", sides[0], n > 1 ? sides[1] : "-", status, error.message);
+}
+
+TEST(exit_statuses)
+{
+    static const struct {
+        const char *a, *b, *draws;
+        int sides;
+        enum status status;
+        const char *says;
+    } rows[] = {
+        {"sod n=40" SHORT, "sod n=40" SHORT, "1", 2, STATUS_OK, ""},
+        {"sod n=8 t_end=0", "sod n=8 t_end=0", "64", 2, STATUS_OK, ""},
+        {"sod n=40", "sod n=40", "0", 2, STATUS_BAD_INPUT, "integer from 1 to 64"},
+        {"sod n=40", "sod n=40", "65", 2, STATUS_BAD_INPUT, "integer from 1 to 64"},
+        {"sod n=40", "sod n=40", "2.5", 2, STATUS_BAD_INPUT, "integer from 1 to 64"},
+        {"sod n=40", "sod n=40", NULL, 1, STATUS_BAD_INPUT, "two sides are needed"},
+        {"sod n=40", "sod n=40", NULL, 3, STATUS_BAD_INPUT, "two sides are needed"},
+        {"sod n=40" SHORT, "sod n=0", NULL, 2, STATUS_BAD_INPUT, "n=0:"},
+        {"sod n=40" SHORT, "no_case.ini", NULL, 2, STATUS_BAD_INPUT, "no_case.ini"},
+        {"sod n=40", "sod n=40 alpha=0 cfl=20", "1", 2, STATUS_BROKE_DOWN,
+         "b, 'sod n=40 alpha=0 cfl=20', n=40: "},
+        {"sod n=40", "lax n=40", NULL, 2, STATUS_BAD_INPUT, "lax"},
+    };
+    options.speak = 0;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        char *sides[] = {(char *)rows[k].a, (char *)rows[k].b, (char *)rows[k].b};
+        values[0] = rows[k].draws;
+        call_is(rows[k].sides, sides, rows[k].status, rows[k].says);
+    }
+    values[0] = NULL;
+}
