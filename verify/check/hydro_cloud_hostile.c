@@ -3,7 +3,7 @@
  * the oracle: two in one place, one far from all others, all in one cell of the box, most of them
  * in a plane, a density contrast of 1e6, positions at 1e8 box lengths; their rates, and a step.
  * Each particle is judged by its own scales: thin gas beside dense gas, too. (What is
- * refused, such as widths beyond half of the box, the test clouds.py tries.) */
+ * refused, such as widths beyond half of the box, test_cells_workspace tries.) */
 #include <math.h>
 #include <stdio.h>
 
