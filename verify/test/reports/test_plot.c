@@ -8,7 +8,6 @@
 #include <time.h>
 
 #include "layout.h"
-#include "map.h"
 #include "markup.h"
 #include "plot.h"
 #include "process.h"
@@ -139,28 +138,6 @@ TEST(documents)
         fail_msg("%s", message);
     assert_true(size > 1000 && !memcmp(bytes, "\x89PNG", 4));
     free(bytes);
-}
-
-/* The saved script draws the same picture from the saved data. */
-TEST(source)
-{
-    char *script, *data;
-    assert_true(plot_source(&stack, &script, &data));
-    assert_non_null(strstr(script, "'stack-of_2.dat' index 7"));
-    assert_non_null(strstr(script, "set output 'stack-of_2.svg'"));
-    assert_non_null(strstr(data, "800 0.0013"));
-    assert_non_null(strstr(data, "400 NaN"));
-    free(script);
-    free(data);
-}
-
-TEST(formats)
-{
-    enum plot_format format;
-    assert_true(plot_format_of("a/b.svg", &format) && format == PLOT_SVG);
-    assert_true(plot_format_of("b.c.png", &format) && format == PLOT_PNG);
-    assert_false(plot_format_of("svg", &format));
-    assert_false(plot_format_of("a.pdf", &format));
 }
 
 static enum process_status shell(const char *command, const char *input, size_t size, int seconds,
@@ -335,55 +312,7 @@ TEST(gap)
     free(svg);
 }
 
-/* Each particle is in one cell, also on an edge between cells and on the box's own; those outside,
- * beside the slice, or nowhere are in none. */
-TEST(map_counts)
-{
-    static const double at[3][8] = {{0, 0.5, 1, 0.25, 0.25, 0.5, -0.1, NAN},
-                                    {0, 0.5, 1, 0.25, 0.75, 0, 0.5, 0.5},
-                                    {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5}};
-    static const size_t cell[] = {0, 4, 8, 0, 6, 1, 9, 9};
-    struct error error = {0};
-    static const double h[] = {1, 1, 1, 1, 1, 1, 1, 1};
-    struct snapshot s = {.n = 8, .x = {at[0], at[1]}, .h = h};
-    const struct domain square = {.dim = 2, .hi = {1, 1}}, box = {.dim = 3, .hi = {1, 1, 1}};
-    struct map grid;
-    assert_int_equal(map_create(&grid, &square, &s, MAP_CELLS, &error), STATUS_OK);
-    assert_int_equal(grid.nx, 3); /* the root of 8, rounded */
-    assert_int_equal(grid.ny, 3);
-    size_t counted = 0;
-    for (size_t k = 0; k < grid.nx * grid.ny; k++) counted += grid.count[k];
-    assert_int_equal(counted, grid.seen);
-    assert_int_equal(grid.seen, 6);
-    for (size_t i = 0; i < s.n; i++) assert_int_equal(grid.cell[i], cell[i]);
-    map_free(&grid);
-    /* a slice as thick as two distances: all of a box of 2^3, its upper end excepted */
-    s.x[2] = at[0];
-    assert_int_equal(map_create(&grid, &box, &s, MAP_CELLS, &error), STATUS_OK);
-    assert_int_equal(grid.seen, 5);
-    map_free(&grid);
-}
-
-/* A cell has the mean of its particles, an empty one that of its nearest neighbours. */
-TEST(map_means)
-{
-    static const double at[2][4] = {{0.1, 0.2, 0.9, 0.8}, {0.1, 0.2, 0.9, 0.1}};
-    static const double values[] = {1, 3, 8, 5}, h[] = {1, 1, 1, 1};
-    struct error error = {0};
-    const struct snapshot s = {.n = 4, .x = {at[0], at[1]}, .h = h};
-    const struct domain square = {.dim = 2, .hi = {1, 1}};
-    struct map grid;
-    double z[4];
-    assert_int_equal(map_create(&grid, &square, &s, MAP_CELLS, &error), STATUS_OK);
-    assert_int_equal(grid.nx * grid.ny, 4);
-    map_mean(&grid, values, z);
-    const double expected[] = {2, 5, 5, 8}; /* (2 + 5 + 8)/3 where none is */
-    for (size_t k = 0; k < 4; k++) assert_true(fabs(z[k] - expected[k]) <= 1e-14);
-    map_free(&grid);
-}
-
-/* An image is a bare matrix, and the script says where its cells are; a unit is as long on both
- * axes; panels beside each other do not overlap. */
+/* A unit of an image is as long on both axes; panels beside each other do not overlap. */
 TEST(images)
 {
     static const double left[] = {0.5, 1.5, 2.5}, up[] = {1, 3}, z[] = {-1, 2, 3, 4, NAN, 6};
@@ -398,13 +327,6 @@ TEST(images)
                               .panels = two,
                               .panel_count = 2,
                               .beside = true};
-    char *script, *data;
-    assert_true(plot_source(&plot, &script, &data));
-    assert_non_null(strstr(script, "index 1 matrix using (0.5 + 1*$1):(1 + 2*$2):3 with image"));
-    assert_non_null(strstr(script, "set cbrange [-6:6]"));
-    assert_non_null(strstr(data, "\n -1 2 3\n 4 NaN 6\n"));
-    free(script);
-    free(data);
     struct layout layout;
     layout_make(&layout, &plot);
     for (int k = 0; k < 2; k++) {
@@ -419,29 +341,4 @@ TEST(images)
     assert_int_equal(occurrences(svg, " href=\"data:image/png;base64,"), 2);
     assert_null(strstr(svg, "xlink"));
     free(svg);
-}
-
-/* Beside a low map the colour bar has ticks as far apart as their labels are high; a high one's are
- * gnuplot's own. */
-TEST(low_color_bars)
-{
-    static const double at[] = {0.5, 1.5}, values[] = {0, 1, 0.25, 0.75};
-    const struct plot_heat square = {
-        .nx = 2, .ny = 2, .x = at, .y = at, .z = values, .image = true};
-    const struct plot_panel panel = {.x_label = "x", .y_label = "y", .heat = &square};
-    for (int tall = 0; tall < 2; tall++) {
-        const struct plot plot = {.name = "bar",
-                                  .title = "bar",
-                                  .panels = &panel,
-                                  .panel_count = 1,
-                                  .beside = true,
-                                  .width = 400,
-                                  .height = tall ? 500 : 140};
-        char *script, *data;
-        assert_true(plot_source(&plot, &script, &data));
-        assert_non_null(strstr(script, "set cbtics autofreq"));
-        assert_int_equal(!strstr(script, "set cbtics 0.5\n"), tall);
-        free(script);
-        free(data);
-    }
 }
