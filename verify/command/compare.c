@@ -242,17 +242,15 @@ static enum status one_snapshot(struct side *side, const struct side *other, boo
             error_set(error, STATUS_CHECK_FAILED, "%.200s: %.280s", side->text, judged.verdict);
     if (!status) {
         side->first = judged.run;
-        status = read_figures(side, &judged.result, 0, error);
-        for (size_t k = 0; k < side->count; k++)
-            for (size_t r = 1; r < STUDY_REPLICATES_MAX; r++)
-                side->error[k][r] = side->error[k][0], side->cpu_s[r] = (double)NAN;
-        for (size_t r = 1; r < STUDY_REPLICATES_MAX; r++) side->n[r] = side->n[0];
+        for (size_t r = 0; r < STUDY_REPLICATES_MAX && !status; r++)
+            status = read_figures(side, &judged.result, r, error);
     }
     judge_free(&judged);
     return status;
 }
 
-/* A lattice may come out the same for two numbers of particles: that is one draw, not two. */
+/* A lattice may come out the same for two numbers of particles, as two snapshots always do: that is
+ * one draw, not two. */
 static bool seen(const struct comparison *c, size_t r)
 {
     for (int s = 0; s < 2; s++)
@@ -268,20 +266,19 @@ static enum status serialise_out(struct comparison *c, const struct options *opt
 {
     struct progress progress;
     enum status status = STATUS_OK;
+    double done = 0;
     for (int s = 0; s < 2 && !status; s++) {
         struct side *side = &c->sides[s];
         if (side->is_snapshot)
             status = one_snapshot(side, &c->sides[!s], options_value(options, "allow-far"), error);
     }
     if (!status) status = check_problem(c, error);
-    const bool both = c->sides[0].is_snapshot && c->sides[1].is_snapshot;
-    const size_t asked = both ? 1 : c->asked;
     progress_begin(&progress, "compare", options->quiet);
-    for (size_t r = 0; r < asked && !status; r++) {
+    for (size_t r = 0; r < c->asked && !status; r++) {
         for (int s = 0; s < 2 && !status; s++) {
             struct side *side = &c->sides[s];
-            if (!side->is_snapshot) status = one_run(side, r, asked, c->draws, error);
-            progress_update(&progress, (double)(2 * r) + s + 1, 2 * (double)asked);
+            if (!side->is_snapshot) status = one_run(side, r, c->asked, c->draws, error);
+            progress_update(&progress, ++done, 2 * (double)c->asked);
         }
         if (!status && !seen(c, c->draws)) c->draws++;
     }
@@ -307,7 +304,7 @@ static void say_change(char *text, size_t size, const struct paired *of, bool si
 {
     const double change = 100 * (sign ? of->change : fabs(of->change)), half = 100 * of->half;
     const double step = isnan(half) ? fabs(change) / 10 : half;
-    const int places = step > 0 && step < 10 ? (int)fmin(6, ceil(1 - log10(step))) : 0;
+    const int places = step > 0 ? (int)fmax(0, fmin(6, ceil(1 - log10(step)))) : 0;
     say(text, size, sign ? "%+.*f" : "%.*f", places, change);
     if (!isnan(half)) say(text, size, " +- %.*f", places, half);
     say(text, size, " %%");
@@ -329,11 +326,15 @@ static void conclude(struct comparison *c)
     for (size_t k = 0; k < count; k++)
         c->of[k] = paired_compare(c->draws, c->sides[0].error[k], c->sides[1].error[k], single,
                                   LEVEL / (double)count);
-    for (size_t r = 0; r < c->draws; r++) ratio[r] = c->sides[1].cpu_s[r] / c->sides[0].cpu_s[r];
+    bool timed = true; /* a clock may be too coarse for one of them */
+    for (size_t r = 0; r < c->draws; r++) {
+        ratio[r] = c->sides[1].cpu_s[r] / c->sides[0].cpu_s[r];
+        timed = timed && isfinite(ratio[r]);
+    }
     list_sort(ratio, c->draws);
-    c->cpu = ratio[c->draws / 2], c->cpu_low = ratio[0], c->cpu_high = ratio[c->draws - 1];
-    for (size_t r = 0; r < c->draws; r++) /* a clock may be too coarse for one of them */
-        if (!isfinite(ratio[r])) c->cpu = c->cpu_low = c->cpu_high = (double)NAN;
+    c->cpu = timed ? ratio[c->draws / 2] : (double)NAN;
+    c->cpu_low = timed ? ratio[0] : (double)NAN;
+    c->cpu_high = timed ? ratio[c->draws - 1] : (double)NAN;
     for (size_t v = 0; v < PAIRED_VERDICTS; v++) {
         size_t said = 0;
         for (size_t k = 0; k < count; k++) {

@@ -9,8 +9,27 @@
 #include <string.h>
 #include <unistd.h>
 
-/* the command's own text, of which the parts are asked */
+#include "near.h"
+
+/* the command's own text, of which the parts are asked; how far it is, it tells this file */
+#define progress_update told_update
+#define progress_end    told_end
 #include "compare.c"
+
+static double told;
+static int told_count, told_ends;
+
+void told_update(struct progress *progress, double done, double total)
+{
+    assert_non_null(progress);
+    told = done / total, told_count++;
+}
+
+void told_end(struct progress *progress)
+{
+    assert_non_null(progress);
+    told_ends++;
+}
 
 static const char *values[3];
 static struct options options = {
@@ -132,6 +151,15 @@ static const struct {
      "density              1.0000e+00   1.1000e+00 +10.000000 +- 0.000000 %  [-worse]\n",
      "CPU time           b/a = 1 (0.5 to 1)\n",
      "b is worse in density by 10.000000 +- 0.000000 % (2 draws)"},
+    {2,
+     1,
+     {false, false},
+     {{1, 1}},
+     {{1, 1.000023}},
+     {{0, 1}, {0, 1}},
+     "density              1.0000e+00   1.0000e+00        +0.001 +- 0.015 %  [.no different]\n",
+     "CPU time           too short for this clock\n",
+     "no difference can be told in density (2 draws)"},
 };
 
 /* Expands "[-worse]" into what is printed in the colour of bad news, and so + good, . faint, *
@@ -241,17 +269,18 @@ TEST(what_is_said)
             struct side *side = &c.sides[s];
             side->name = s ? "b" : "a", side->text = s ? "others" : "its words";
             side->is_snapshot = planted[row].snapshot[s], side->count = planted[row].figures;
-            strcpy(side->first.asked.file.name, "sod");
-            side->first.asked.file.dimension = 1;
             side->result = json_pack("{s:i, s:i}", "n", 7 + s, "profile", 3);
-            for (size_t k = 0; k < side->count; k++) side->figures[k] = (char *)names[k];
             for (size_t r = 0; r < c.draws; r++) {
                 side->n[r] = 100 + 10 * (size_t)s + r;
                 side->cpu_s[r] = planted[row].cpu[s][r];
-                for (size_t k = 0; k < side->count; k++)
+                for (size_t k = 0; k < planted[row].figures; k++)
                     side->error[k][r] = s ? planted[row].b[k][r] : planted[row].a[k][r];
             }
         }
+        for (size_t k = 0; k < planted[row].figures; k++) c.sides[0].figures[k] = (char *)names[k];
+        strcpy(c.sides[0].first.asked.file.name, "sod"); /* of both, and so is all that b lacks */
+        c.sides[0].first.asked.file.dimension = 1;
+        c.sides[1].count = 0;
         conclude(&c);
         assert_string_equal(c.verdict, planted[row].verdict);
         for (size_t k = 0; k < planted[row].figures; k++) {
@@ -309,7 +338,7 @@ static void is_run(const struct comparison *c, int s, size_t r, double seed)
     assert_int_equal(run_resolve(&run, &asked, &error), STATUS_OK);
     assert_int_equal(run_execute(&run, &result, &error), STATUS_OK);
     assert_int_equal(result.n, side->n[r]);
-    assert_true(side->cpu_s[r] >= 0);
+    assert_true(side->cpu_s[r] >= 0); /* planted: NaN */
     if (r == 0) assert_int_equal(json_integer_value(json_object_get(side->result, "n")), result.n);
     size_t k = 0;
     for (int f = 0; f < FIELDS; f++)
@@ -376,6 +405,12 @@ TEST(draws)
          3,
          {{343, 512, 216}, {343, 512, 216}},
          {0}},
+        {"gresho jitter=0.1 n=100" COARSE,
+         "gresho lattice=hexagonal n=100" COARSE,
+         7,
+         7,
+         {{100, 100, 100, 100, 100, 100, 100}, {90, 120, 80, 132, 56, 168, 56}},
+         {1, 0}},
         {"kelvin_helmholtz n=10^2" COARSE,
          "kelvin_helmholtz n=10^2 jitter=0.1" COARSE,
          2,
@@ -388,7 +423,11 @@ TEST(draws)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         take(&c, rows[k].a, rows[k].b);
         c.asked = rows[k].asked;
+        for (size_t r = 0; r < c.asked; r++)
+            c.sides[0].cpu_s[r] = c.sides[1].cpu_s[r] = (double)NAN;
+        told_count = told_ends = 0;
         if (serialise_out(&c, &options, &error)) fail_msg("%s", error.message);
+        assert_true(told_count == (int)(2 * rows[k].asked) && told_ends == 1 && told == 1);
         assert_int_equal(c.draws, rows[k].draws);
         for (int s = 0; s < 2; s++) {
             for (size_t r = 0; r < c.draws; r++) {
@@ -398,6 +437,90 @@ TEST(draws)
             json_decref(c.sides[s].result);
         }
     }
+}
+
+/* Draws 1 to 4 of a and b in turn. */
+TEST(seen_before)
+{
+    static const size_t n[2][5] = {{4, 9, 4, 4, 9}, {1, 2, 2, 1, 2}};
+    static struct comparison c;
+    take(&c, "sod", "sod");
+    memcpy(c.sides[0].n, n[0], sizeof n[0]);
+    memcpy(c.sides[1].n, n[1], sizeof n[1]);
+    for (size_t r = 0; r < 5; r++) assert_int_equal(seen(&c, r), r > 2);
+}
+
+/* Of a snapshot there is one draw, which stands for any number of them. */
+TEST(snapshots)
+{
+    static struct comparison c;
+    struct error error = {0};
+    struct run_result result;
+    char path[] = "sphproof_compare_XXXXXX.csv";
+    const int file = mkstemps(path, 4);
+    assert_true(file >= 0);
+    close(file);
+    take(&c, "gresho n=144 kernel=cubic_spline eta=1.7 t_end=0.01", path);
+    assert_true(c.sides[1].is_snapshot && !c.sides[0].is_snapshot);
+    assert_int_equal(run_execute(&c.sides[0].first, &result, &error), STATUS_OK);
+    assert_int_equal(run_write_snapshot(&result, path, &error), STATUS_OK);
+    c.asked = 3;
+    if (serialise_out(&c, &options, &error)) fail_msg("%s", error.message);
+    assert_int_equal(c.draws, 3);
+    const struct side *side = &c.sides[1];
+    assert_int_equal(side->count, FIELDS);
+    for (size_t r = 0; r < STUDY_REPLICATES_MAX; r++) {
+        assert_int_equal(side->n[r], 144);
+        assert_true(isnan(side->cpu_s[r]));
+        for (int f = 0; f < FIELDS; f++)
+            near_relative(side->error[f][r], result.errors[f].l1, 1e-6);
+    }
+    for (int s = 0; s < 2; s++) json_decref(c.sides[s].result);
+    take(&c, path, path);
+    c.asked = 3;
+    assert_int_equal(serialise_out(&c, &options, &error), STATUS_OK);
+    assert_int_equal(c.draws, 1);
+    for (int s = 0; s < 2; s++) json_decref(c.sides[s].result);
+    run_free(&result);
+    remove(path);
+}
+
+TEST(files)
+{
+    static const struct {
+        const char *name;
+        bool file, is;
+    } rows[] = {{"a.csv", true, true},
+                {"a.csv", false, false},
+                {"x.ini", true, false},
+                {".ini", true, true},
+                {"xini", true, true},
+                {"a.ini.gz", true, true},
+                {"a long name.ini", true, false}};
+    char folder[] = "sphproof_compare_XXXXXX";
+    assert_non_null(mkdtemp(folder));
+    assert_false(is_file(folder));
+    assert_int_equal(chdir(folder), 0);
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        FILE *file = rows[k].file ? fopen(rows[k].name, "w") : NULL;
+        if (file) fclose(file);
+        assert_int_equal(is_file(rows[k].name), rows[k].is);
+        remove(rows[k].name);
+    }
+    assert_int_equal(chdir(".."), 0);
+    rmdir(folder);
+}
+
+/* Draws that are refused: of fewer than 4 particles; by the solver; of a case that is not known. */
+TEST(refused_draws)
+{
+    static struct comparison c;
+    struct error error = {0};
+    take(&c, "gresho n=2^2", "gresho n=6^2");
+    assert_int_equal(one_run(&c.sides[0], 2, 3, 0, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "n=1:"));
+    assert_int_equal(one_run(&c.sides[1], 0, 1, 0, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "beyond half the box"));
 }
 
 /* ---- what may be compared ---- */
@@ -453,6 +576,8 @@ TEST(dimensions)
     static struct comparison c;
     struct error error = {0};
     take(&c, "sod", "sod");
+    assert_int_equal(take_side(&c.sides[1], 3, &error), STATUS_OK);
+    assert_int_equal(c.sides[1].asked.threads, 3);
     c.sides[1].first.asked.file.dimension = 2; /* of a case file with the same name */
     assert_int_equal(check_problem(&c, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "a is of the case sod in 1D, b of sod in 2D"));
@@ -464,7 +589,7 @@ TEST(words)
     static const struct {
         const char *text, *words; /* joined by |; NULL: refused */
     } rows[] = {{"sod", "sod"},
-                {"  sod   n=40 ", "sod|n=40"},
+                {"  sod   n=40   ", "sod|n=40"},
                 {"sod 'n=4 0' x", "sod|n=4 0|x"},
                 {"a'b c'd \"e 'f\" g", "ab cd|e 'f|g"},
                 {"a ''", "a|"},
@@ -487,6 +612,14 @@ TEST(words)
         assert_int_equal(split(text, words, &count), n <= WORDS_MAX);
         assert_int_equal(count, WORDS_MAX);
     }
+}
+
+TEST(room)
+{
+    char text[12] = "12|45|78|01";
+    strcpy(text, "12");
+    say(text, 8, "%s", "3456789");
+    assert_memory_equal(text, "1234567\0|01", 12);
 }
 
 /* ---- whole calls ---- */
@@ -527,4 +660,18 @@ TEST(exit_statuses)
         call_is(rows[k].sides, sides, rows[k].status, rows[k].says);
     }
     values[0] = NULL;
+}
+
+/* What cannot be written. */
+TEST(unwritable)
+{
+    static struct comparison c;
+    struct error error = {0};
+    const struct options to_file = {
+        .command = &command_compare, .values = values, .json = "no/such.json"};
+    assert_int_equal(tell(&to_file, &c, &error), STATUS_ENVIRONMENT);
+    values[2] = "no/such.html";
+    assert_int_equal(tell(&options, &c, &error), STATUS_ENVIRONMENT);
+    assert_non_null(strstr(error.message, "no/such.html"));
+    values[2] = NULL;
 }
