@@ -69,7 +69,7 @@ static bool name_stride(const struct start_gas *gas, unsigned fields, char *text
     size_t first = 0, stride = 1;
     while (first < n && !(gas->wrong[first] & fields)) first++;
     while (first + stride < n && !(gas->wrong[first + stride] & fields)) stride++;
-    if (stride < 2 || first + stride >= n) return false;
+    if (stride < 2) return false;
     for (size_t i = 0; i < n; i++)
         if (((gas->wrong[i] & fields) != 0) != (i >= first && (i - first) % stride == 0))
             return false;
@@ -275,9 +275,9 @@ static bool velocity_cause(const struct start_gas *gas, char *text, size_t size)
     }
     for (int d = 0; d < dim && first < gas->snapshot->n; d++)
         more[d] = gas->snapshot->v[d][first] - gas->exact[first].v[d];
-    const double factor = square > 0 ? product / square : 1;
+    const double factor = product / square; /* NaN, which fits nothing, where all rests */
     if (fits_velocity(gas, same, 0, none, false)) return snprintf(text, size, "it is 0") > 0;
-    for (int k = 0; k < (dim == 1 ? 0 : dim == 2 ? 1 : 3); k++)
+    for (int k = 0; k < dim * (dim - 1) / 2; k++)
         if (fits_velocity(gas, turns[k], 1, none, false))
             return snprintf(text, size, "%s are exchanged", turned[k]) > 0;
     if (fits_velocity(gas, same, factor, none, false))

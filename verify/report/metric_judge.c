@@ -61,8 +61,8 @@ static enum metric_verdict judge_less(double a, double b, double noise, double f
 {
     if (a <= floor && b <= floor) return VERDICT_SAME;
     const double base = fmax(a, floor);
-    const double change = base > 0 ? (b - base) / base : (b > 0 ? (double)INFINITY : 0);
-    if (fabs(b - a) <= noise * base || change == 0) return VERDICT_SAME;
+    const double change = (b - base) / base; /* infinite where there was nothing */
+    if (fabs(b - a) <= noise * base) return VERDICT_SAME;
     if (change < 0) return VERDICT_BETTER;
     *amount = change;
     return VERDICT_WORSE;

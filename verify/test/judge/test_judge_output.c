@@ -147,6 +147,21 @@ TEST(documents)
         json_decref(document);
     }
     json_decref(gates);
+    gates = json_array();
+    for (size_t silent = 1; silent <= 2; silent++) { /* so many say nothing: then all do */
+        judged[silent - 1].silent = judged[silent - 1].passes = true;
+        json_t *document = judge_json(judged, 2, gates, false);
+        const json_t *findings = at(document, "findings", NULL);
+        assert_int_equal(json_array_size(findings), 1 + silent);
+        for (size_t k = 0; k < silent; k++)
+            assert_string_equal(json_string_value(at(json_array_get(findings, k), "status", NULL)),
+                                "undetermined");
+        if (silent == 2)
+            assert_string_equal(json_string_value(at(json_array_get(findings, 2), "message", NULL)),
+                                "nothing could be compared");
+        json_decref(document);
+    }
+    json_decref(gates);
     assert_string_equal(note(&judged[0], "kernel")->value, "not identifiable");
     assert_string_equal(note(&judged[0], "kernel")->evidence, judged[0].conventions.why);
     assert_string_equal(note(&judged[0], "precision")->value, "float64");

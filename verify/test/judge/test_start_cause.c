@@ -1,0 +1,298 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Planted particles of which something is wrong: how many they are, where they stand and what their
+ * values are, in words. (Whole snapshots: damages.py and the transcripts.) */
+#include "test.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "near.h"
+#include "start_cause.h"
+
+enum { N = 20 };
+
+static struct problem kind;
+static struct prepared problem = {.problem = &kind, .gamma = 1.4};
+static double x[N][3], v[3][N], m[N], rho[N], u[N], P[N];
+static struct problem_state exact[N];
+static unsigned wrong[N];
+static struct snapshot snapshot = {.n = N, .m = m, .rho = rho, .u = u, .P = P};
+static struct start_gas gas = {
+    .problem = &problem, .snapshot = &snapshot, .exact = exact, .x = x, .wrong = wrong};
+
+/* No two numbers are alike. A state of speed `speed`, and particles that have it. */
+static void plant(int dim, double speed)
+{
+    problem.domain.dim = dim;
+    gas.speed = speed, gas.volume = 0.25, gas.mass = 0.3, gas.gases = 0;
+    for (int i = 0; i < N; i++) {
+        exact[i] = (struct problem_state){1 + 0.037 * i, {0}, 2 - 0.051 * i, 0};
+        exact[i].u = exact[i].P / (0.4 * exact[i].rho);
+        for (int d = 0; d < 3; d++) {
+            snapshot.v[d] = v[d];
+            x[i][d] = i + 0.1 * d;
+            exact[i].v[d] =
+                d < dim ? speed * (0.3 + 0.1 * ((i * (3 + d)) % 7)) * (d == 1 ? -1 : 1) : 0;
+            v[d][i] = exact[i].v[d];
+        }
+        m[i] = exact[i].rho * gas.volume, rho[i] = exact[i].rho, u[i] = exact[i].u,
+        P[i] = exact[i].P;
+        wrong[i] = 0;
+    }
+}
+
+TEST(shares)
+{
+    static const struct {
+        size_t part, n;
+        const char *words;
+    } rows[] = {{20, 20, "all"},          {1, 20, "one"},         {1, 1, "one"},
+                {3, 4, "three quarters"}, {2, 3, "two thirds"},   {1000, 2000, "half"},
+                {2, 6, "a third"},        {25, 100, "a quarter"}, {2, 10, "a fifth"},
+                {2, 16, "an eighth"},     {2, 20, "a tenth"},     {103, 1000, "a tenth"},
+                {971, 10000, "a tenth"},  {1031, 10000, "10 %"},  {969, 10000, "9.7 %"},
+                {4, 10, "40 %"},          {19, 20, "95 %"},       {3, 1000, "0.3 %"}};
+    char text[64];
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        start_share(rows[k].part, rows[k].n, text, sizeof text);
+        assert_string_equal(text, rows[k].words);
+    }
+}
+
+/* What is wrong along x, a letter each; what y and the radius are is none of a row's words. */
+TEST(places)
+{
+    static const struct {
+        const char *map, *words;
+        int dim;
+        bool circular;
+    } rows[] = {
+        {"########------------", ", at x < 7.5", 1, false},
+        {"--------############", ", at x > 7.5", 1, false},
+        {"----####------------", ", at 3.5 < x < 7.5", 1, false},
+        {"-------------------#", ", at x > 18.5", 1, false},
+        {"#-------------------", ", at x < 0.5", 1, false},
+        {"####################", "", 1, false},
+        {"-#-#-#-#-#-#-#-#-#-#", ", each second in the file", 1, false},
+        {"#-#-#-#-#-#-#-#-#-#-", ", each second in the file", 1, false},
+        {"--#--#--#--#--#--#--", ", each third in the file", 1, false},
+        {"---#---#---#---#---#", ", each 4th in the file", 1, false},
+        {"-#-#-#-#-#-#-#-#-#--", ", scattered over the box", 1, false},
+        {"#------------------#", ", each 19th in the file", 1, false},
+        {"##----------------##", ", scattered over the box", 1, false},
+        {"-#--#---------------", ", scattered over the box", 1, false},
+        {"----####------------", ", at 3.5 < x < 7.5", 3, true},
+    };
+    char text[128];
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        plant(rows[k].dim, 1);
+        kind.circular = rows[k].circular;
+        for (int i = 0; i < N; i++) /* a second field is wrong everywhere, and not asked for */
+            wrong[i] = (rows[k].map[i] == '#' ? 1u << START_MASS : 0) | 1u << START_ENERGY;
+        start_place(&gas, 1u << START_MASS, text, sizeof text);
+        if (strcmp(text, rows[k].words) != 0) fail_msg("%s: '%s'", rows[k].map, text);
+    }
+}
+
+/* Along y, z, the radius and the rows alone. */
+TEST(ways)
+{
+    static const struct {
+        int dim;
+        bool circular;
+        const char *words;
+    } rows[] = {{2, false, ", at y < 7.5"},
+                {3, false, ", at z > 7.5"},
+                {2, true, ", at r < 7.5"},
+                {2, false, ", at 3.5 < row < 11.5"},
+                {1, false, ", scattered over the box"}};
+    char text[128];
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        plant(rows[k].dim, 1);
+        kind.circular = rows[k].circular;
+        for (int i = 0; i < N; i++) {
+            const int turn = 7 * i % N;
+            x[i][0] = k == 2 ? 0 : turn, x[i][1] = k == 0 || k == 2 ? i : turn;
+            x[i][2] = i;
+            if (k == 2) /* in four directions in turn */
+                x[i][0] = i % 2 ? 0 : i % 4 ? -i : i, x[i][1] = i % 2 ? i % 4 == 1 ? i : -i : 0;
+            wrong[i] = (k == 1 ? i > 7 : k == 3 ? i > 3 && i < 12 : k == 4 ? i > 3 : i < 8) ? 1 : 0;
+        }
+        start_place(&gas, 1, text, sizeof text);
+        if (strcmp(text, rows[k].words) != 0) fail_msg("row %zu: '%s'", k, text);
+    }
+    kind.circular = false;
+}
+
+static void cause_is(const char *of, enum start_field field, int dim, const char *words)
+{
+    char text[256] = "";
+    for (int i = 0; i < N; i++) wrong[i] |= i % 3 ? 1u << field : 0;
+    const bool found = start_cause(&gas, field, text, sizeof text);
+    if (found != (*words != '\0') || (found && strcmp(text, words) != 0))
+        fail_msg("%s in %dD: '%s'", of, dim, text);
+}
+
+/* Every third particle is right. */
+TEST(velocities)
+{
+    static const struct {
+        const char *of;
+        int least;         /* dimension */
+        const char *words; /* "": no cause is found */
+    } rows[] = {{"rest", 1, "it is 0"},
+                {"mirror", 1, "it has the other sign"},
+                {"double", 1, "it is 2 times the case's"},
+                {"nearly mirror", 1, "it is -1.002 times the case's"},
+                {"nearer mirror", 1, "it is -0.998 times the case's"},
+                {"momentum", 1, "it is rho v, a momentum"},
+                {"odd", 1, ""},
+                {"no vx", 2, ""},
+                {"xy", 2, "x and y are exchanged"},
+                {"xz", 3, "x and z are exchanged"},
+                {"yz", 3, "y and z are exchanged"}};
+    static const char *const more[] = {"it is the case's and 0.5", "it is the case's and 0.5, 0.25",
+                                       "it is the case's and 0.5, 0.25, 0.125"};
+    const double speeds[] = {1, 1e-4};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        for (int dim = rows[k].least; dim <= 3; dim++)
+            for (size_t s = 0; s < 2; s++) {
+                plant(dim, speeds[s]);
+                for (int i = 0; i < N; i++) {
+                    const double *w = exact[i].v;
+                    if (i % 3 == 0) continue;
+                    for (int d = 0; d < dim; d++)
+                        v[d][i] = k == 0   ? 0
+                                  : k == 1 ? -w[d]
+                                  : k == 2 ? 2 * w[d]
+                                  : k == 3 ? -1.002 * w[d]
+                                  : k == 4 ? -0.998 * w[d]
+                                  : k == 5 ? w[d] * exact[i].rho
+                                  : k == 6 ? w[d] * (1 + 0.1 * i)
+                                  : k == 7 ? (d ? w[d] : 0)
+                                  : k == 8 ? w[d == 0   ? 1
+                                               : d == 1 ? 0
+                                                        : 2]
+                                  : k == 9 ? w[2 - d]
+                                           : w[d ? 3 - d : 0];
+                }
+                cause_is(rows[k].of, START_VELOCITY, dim, rows[k].words);
+            }
+    for (int dim = 1; dim <= 3; dim++) {
+        plant(dim, 1);
+        for (int i = 0; i < N; i++)
+            for (int d = 0; d < dim; d++) v[d][i] += i % 3 ? ldexp(0.5, -d) : 0;
+        cause_is("a sum", START_VELOCITY, dim, more[dim - 1]);
+    }
+}
+
+TEST(scalars)
+{
+    static const struct {
+        const char *of;
+        enum start_field field;
+        const char *words;
+    } rows[] = {{"P", START_ENERGY, "it is the pressure"},
+                {"P/rho", START_ENERGY, "it is P/rho, a temperature"},
+                {"P/rho^gamma", START_ENERGY, "it is P/rho^gamma, an entropy"},
+                {"rho u", START_ENERGY, "it is rho u, the energy of a volume"},
+                {"u + v^2/2", START_ENERGY, "it is the total energy, u + v^2/2"},
+                {"3 rho", START_ENERGY, "it is the mass, or another multiple of the density"},
+                {"1.25 u", START_ENERGY, "it is 1.25 times the case's"},
+                {"0", START_ENERGY, "it is 0 times the case's"},
+                {"u + 0.5", START_ENERGY, "it is 0.5 more than the case's"},
+                {"u - 0.5", START_ENERGY, "it is 0.5 less than the case's"},
+                {"odd", START_ENERGY, ""},
+                {"rho", START_MASS, "it is the density"},
+                {"u", START_MASS, "it is the internal energy"},
+                {"1.25 m", START_MASS, "it is 1.25 times the case's"},
+                {"m + 0.5", START_MASS, "it is 0.5 more than the case's"},
+                {"odd", START_MASS, ""},
+                {"1.25 P", START_PRESSURE, "it is 1.25 times (gamma - 1) rho u"},
+                {"P + 0.5", START_PRESSURE, "it is 0.5 more than (gamma - 1) rho u"}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        plant(2, 1);
+        for (int i = 0; i < N; i++) {
+            const struct problem_state *e = &exact[i];
+            const double values[] = {e->P,
+                                     e->P / e->rho,
+                                     e->P / pow(e->rho, 1.4),
+                                     e->rho * e->u,
+                                     e->u + 0.5 * (e->v[0] * e->v[0] + e->v[1] * e->v[1]),
+                                     3 * e->rho,
+                                     1.25 * e->u,
+                                     0,
+                                     e->u + 0.5,
+                                     e->u - 0.5,
+                                     e->u * (1 + 0.1 * i),
+                                     e->rho,
+                                     e->u,
+                                     1.25 * m[i],
+                                     m[i] + 0.5,
+                                     m[i] * (1 + 0.1 * i),
+                                     1.25 * P[i],
+                                     P[i] + 0.5};
+            double *of[START_FIELDS] = {NULL, u, m, P};
+            if (i % 3) of[rows[k].field][i] = values[k];
+        }
+        cause_is(rows[k].of, rows[k].field, 2, rows[k].words);
+    }
+}
+
+/* Of 20 that are wrong one may be otherwise, and not two; of one that is wrong no sum is told. */
+TEST(most_of_them)
+{
+    for (int otherwise = 0; otherwise <= 2; otherwise++) {
+        for (int field = START_VELOCITY; field <= START_ENERGY; field++)
+            for (int sum = 0; sum <= 1; sum++) {
+                plant(1, 1);
+                for (int i = 0; i < N; i++) {
+                    double *value = field == START_ENERGY ? &u[i] : &v[0][i];
+                    *value = i >= N - otherwise ? 9 + i : sum ? *value + 0.5 : 1.25 * *value;
+                    wrong[i] = 1u << field;
+                }
+                cause_is("most", (enum start_field)field, 1,
+                         otherwise == 2 || (field == START_VELOCITY && !sum && otherwise) ? ""
+                         : !sum                    ? "it is 1.25 times the case's"
+                         : field == START_VELOCITY ? "it is the case's and 0.5"
+                                                   : "it is 0.5 more than the case's");
+            }
+    }
+}
+
+/* Masses of gas of two densities are those that are said, of any other density times volume. */
+TEST(masses)
+{
+    plant(1, 1);
+    gas.gases = 2;
+    gas.of[0].rho = 1, gas.of[0].mass = 7;
+    gas.of[1].rho = 3, gas.of[1].mass = 5;
+    assert_true(start_mass(&gas, 1) == 7 && start_mass(&gas, 3) == 5);
+    assert_true(start_mass(&gas, 3 * (1 + 0.9e-9)) == 5 && start_mass(&gas, 2) == 0.5);
+    near_relative(start_mass(&gas, 3 * (1 + 1.1e-9)), 0.75, 1e-8);
+    gas.volume = 0;
+    assert_true(start_mass(&gas, 2) == 0.3);
+    assert_true(start_relative(3, 2) == 0.5 && start_relative(1, 2) == 0.5);
+    assert_true(start_relative(1e-300, 0) == 1 && start_relative(0, 0) == 0);
+}
+
+TEST(differences)
+{
+    for (int dim = 1; dim <= 3; dim++) {
+        plant(dim, 2);
+        for (int d = 0; d < 3; d++) v[d][4] += d == 0 ? 2 : d == 1 ? 3 : 6;
+        u[4] *= 1.25, m[4] *= 0.75, P[4] = 3 * 0.4 * rho[4] * u[4];
+        near_relative(start_off(&gas, START_VELOCITY, 4, &exact[4]),
+                      sqrt(dim == 1   ? 4
+                           : dim == 2 ? 13
+                                      : 49) /
+                          2,
+                      1e-14);
+        near_relative(start_off(&gas, START_ENERGY, 4, &exact[4]), 0.25, 1e-13);
+        near_relative(start_off(&gas, START_MASS, 4, &exact[4]), 0.25, 1e-13);
+        near_relative(start_off(&gas, START_PRESSURE, 4, &exact[4]), 2, 1e-13);
+        for (int field = 0; field < START_FIELDS; field++)
+            near_below(start_off(&gas, (enum start_field)field, 5, &exact[5]), 1e-15);
+    }
+}
