@@ -44,14 +44,15 @@ static void include_cells(struct layout_axis *axis, const double *centres, size_
     }
 }
 
-/* Adds a margin; gives a sensible range where there is no data or no extent. */
 /* Values that differ by less than this, relatively, cannot be told apart in a plot, or in a script
  * whose limits have ten digits. */
 static const double one_value = 1e-8;
 
+/* The range that is asked for, if the axis has it; else that of the data with a margin, and a
+ * sensible one where there is no data or no extent. */
 static void finish(struct layout_axis *axis, double min, double max, double air)
 {
-    if (min < max) {
+    if (min < max && !(axis->log && min <= 0)) {
         axis->min = min;
         axis->max = max;
         return;

@@ -133,9 +133,7 @@ static void plot_waves(struct page_writer *writer, const json_t *waves)
 /* Growth over eta and wavenumber. */
 static void plot_map(struct page_writer *writer, const json_t *map)
 {
-    double *eta = malloc((2 * POINTS + MAP_MAX) * sizeof *eta);
-    if (!eta) return;
-    double *kappa = eta + POINTS, *growth = kappa + POINTS;
+    static double eta[POINTS], kappa[POINTS], growth[MAP_MAX];
     const size_t nx = value_reals(json_object_get(map, "eta"), eta, POINTS);
     const size_t ny = value_reals(json_object_get(map, "kappa"), kappa, POINTS);
     const size_t n = value_reals(json_object_get(map, "growth"), growth, MAP_MAX);
@@ -156,7 +154,6 @@ static void plot_map(struct page_writer *writer, const json_t *map)
         page_plot(writer, &plot,
                   "Cubic spline with the Integral Approach's gradient: empty is stable; the first "
                   "waves to grow are the shortest.");
-    free(eta);
 }
 
 /* --- maps --------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 #include "script.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "layout.h"
@@ -111,7 +112,7 @@ static const char *superscript(char *buffer, int exponent)
 {
     static const char *const digit[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
     char *end = buffer;
-    int size = exponent < 0 ? -exponent : exponent, power = 1;
+    int size = abs(exponent), power = 1;
     if (exponent < 0) end = stpcpy(end, "⁻");
     while (size / power >= 10) power *= 10;
     for (; power; power /= 10) end = stpcpy(end, digit[size / power % 10]);

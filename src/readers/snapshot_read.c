@@ -95,18 +95,16 @@ static enum status run_errand(const void *context, json_t **reply, struct error 
 static enum status take_results(const char *path, FILE *results, struct snapshot_file *file,
                                 struct error *error)
 {
-    bool there[SNAPSHOT_COLUMNS];
     rewind(results);
     bool sound = fread(file, sizeof *file, 1, results) == 1 && file->n <= SNAPSHOT_ROWS_MAX &&
                  file->gas <= file->n && file->notes.count <= SNAPSHOT_NOTES_MAX;
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++) {
-        there[c] = file->column[c] != NULL;
+        const bool there = file->column[c] != NULL;
         file->column[c] = NULL;
-    }
-    for (int c = 0; c < SNAPSHOT_COLUMNS && sound; c++)
-        if (there[c])
+        if (there && sound)
             sound = snapshot_file_make(file, (enum snapshot_column)c) &&
                     fread(file->column[c], sizeof(double), file->n, results) == file->n;
+    }
     return sound ? STATUS_OK
                  : error_set(error, STATUS_ENVIRONMENT, "no memory for what %.200s holds", path);
 }

@@ -71,19 +71,15 @@ static enum status refuse_compressed(const struct snapshot_source *source, struc
 
 static enum status read_all(struct snapshot_source *source, stream from, struct error *error)
 {
-    enum { CHUNK = 1 << 16 };
-    size_t room = 0;
+    enum { CHUNK = 1 << 20 };
     for (;;) {
         if (source->size >> 20 >= SOURCE_MEGABYTES_MAX)
             return error_set(error, STATUS_BAD_INPUT, "%.200s: too large; allowed: %d megabytes",
                              source->path, SOURCE_MEGABYTES_MAX);
-        if (source->size + CHUNK > room) {
-            room = 2 * room + CHUNK;
-            unsigned char *bytes = realloc(source->bytes, room + 1);
-            if (!bytes)
-                return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
-            source->bytes = bytes;
-        }
+        unsigned char *bytes = realloc(source->bytes, source->size + CHUNK + 1);
+        if (!bytes)
+            return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
+        source->bytes = bytes;
         const long got = stream_read(from, source->bytes + source->size, CHUNK);
         if (got < 0)
             return error_set(error, STATUS_BAD_INPUT,

@@ -114,20 +114,30 @@ static void add_array(struct document *d, int a)
     add(d, "</DataArray>\n");
 }
 
+/* Letters as their numbers, of which those that are none are left out. */
+static const struct {
+    const char *name, *numbers;
+    int count;
+} fields[] = {{"boundary", "111 112 101 110", 4},
+              {"keys", "110 61 51", 3},
+              {"case", "115 31 111 32 100 255 256", 7},
+              {"box", "-1 4000 -1 4000 -1 4000", 6},
+              {"ndims", "3", 1},
+              {"gamma", "1.5", 1},
+              {"TimeValue", "0.25", 1},
+              {"another", "7", 1}};
+
 static void write_out(struct document *d)
 {
     add(d, "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" byte_order=\"%s\"%s>\n",
         d->big ? "BigEndian" : "LittleEndian", d->wide ? " header_type=\"UInt64\"" : "");
-    add(d,
-        "<UnstructuredGrid><FieldData>\n"
-        "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
-        "format=\"ascii\">0.25</DataArray>\n"
-        "<DataArray type=\"Float64\" Name=\"gamma\" NumberOfTuples=\"1\" "
-        "format=\"ascii\">1.5</DataArray>\n"
-        "<DataArray type=\"Float64\" Name=\"box\" NumberOfTuples=\"6\" "
-        "format=\"ascii\">-1 4000 -1 4000 -1 4000</DataArray>\n"
-        "</FieldData><Piece NumberOfPoints=\"%d\">\n<Points>",
-        ROWS);
+    add(d, "<UnstructuredGrid><FieldData>\n");
+    for (size_t k = 0; k < sizeof fields / sizeof *fields; k++)
+        add(d,
+            "<DataArray type=\"Float64\" Name=\"%s\" NumberOfTuples=\"%d\" "
+            "format=\"ascii\">%s</DataArray>\n",
+            fields[k].name, fields[k].count, fields[k].numbers);
+    add(d, "</FieldData><Piece NumberOfPoints=\"%d\">\n<Points>", ROWS);
     add_array(d, 0);
     add(d, "</Points><PointData>\n");
     for (int a = 1; a < ARRAYS; a++) add_array(d, a);
@@ -160,6 +170,10 @@ TEST(every_form)
         assert_true(file.time.known && file.time.value == 0.25);
         assert_true(file.gamma.known && file.gamma.value == 1.5);
         assert_true(file.boxed && file.placed && file.corner[2] == -1 && file.box[2] == 4001);
+        assert_int_equal(file.dim, 3);
+        assert_string_equal(file.case_name, "so d\xff");
+        assert_string_equal(file.keys, "n=3");
+        assert_string_equal(file.boundary, "open");
         assert_true((file.precision[1] > 1e-8) == d.single);
         snapshot_file_free(&file);
     }

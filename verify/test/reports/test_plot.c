@@ -140,6 +140,34 @@ TEST(documents)
     free(bytes);
 }
 
+/* A logarithmic axis takes no range that it cannot have: it has that of the data. */
+TEST(ranges_of_logarithms)
+{
+    static const struct {
+        double min, max;
+        bool taken;
+    } rows[] = {{0.5, 10, true}, {0, 10, false}, {-1, 1, false}, {-5, -2, false}, {3, 3, false}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        for (int across = 0; across < 2; across++) {
+            struct plot_panel panel = {
+                .x_log = true, .y_log = true, .series = series, .series_count = 1};
+            const struct plot drawn = {.name = "range", .panels = &panel, .panel_count = 1};
+            char *of_data, *script, *data, range[64];
+            assert_true(plot_source(&drawn, &of_data, &data));
+            free(data);
+            *(across ? &panel.x_min : &panel.y_min) = rows[k].min;
+            *(across ? &panel.x_max : &panel.y_max) = rows[k].max;
+            assert_true(plot_source(&drawn, &script, &data));
+            snprintf(range, sizeof range, "set %crange [%g:%g]\n", across ? 'x' : 'y', rows[k].min,
+                     rows[k].max);
+            assert_int_equal(occurrences(script, range), rows[k].taken);
+            assert_int_equal(strcmp(script, of_data) == 0, !rows[k].taken);
+            free(of_data);
+            free(script);
+            free(data);
+        }
+}
+
 static enum process_status shell(const char *command, const char *input, size_t size, int seconds,
                                  struct buffer *output, char *message, size_t n)
 {
