@@ -113,7 +113,7 @@ static void print_trace(const struct trace *trace, const struct table_style *sty
 {
     enum { SHOWN = 6 };
     printf("\n%s  how regular particles stand: time%s", style->bold, style->end);
-    const size_t step = trace->looks > SHOWN ? (trace->looks - 1 + SHOWN - 2) / (SHOWN - 1) : 1;
+    const size_t step = (trace->looks + SHOWN - 3) / (SHOWN - 1);
     size_t rows[TRACE_LOOKS + 2], count = 0;
     for (size_t k = 0; k + 1 < trace->looks; k += step) rows[count++] = k;
     if (trace->looks) rows[count++] = trace->looks - 1;

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "near.h"
+#include "printed.h"
 
 /* the command's own text, of which the parts are asked; how far it is, it tells this file */
 #define progress_update told_update
@@ -162,41 +163,6 @@ static const struct {
      "no difference can be told in density (2 draws)"},
 };
 
-/* Expands "[-worse]" into what is printed in the colour of bad news, and so + good, . faint, *
- * bold. */
-static void dressed(const char *of, bool color, char *text)
-{
-    const struct table_style style = table_style(color);
-    for (; *of; of++)
-        if (*of == '[')
-            of++, text = stpcpy(text, *of == '-'   ? style.bad
-                                      : *of == '+' ? style.good
-                                      : *of == '.' ? style.faint
-                                                   : style.bold);
-        else if (*of == ']')
-            text = stpcpy(text, style.end);
-        else
-            *text++ = *of;
-    *text = '\0';
-}
-
-static void printed(const struct comparison *c, bool color, char text[4096])
-{
-    fflush(stdout);
-    const int before = dup(1);
-    FILE *file = tmpfile();
-    assert_non_null(file);
-    dup2(fileno(file), 1);
-    options.color = color;
-    print_all(c, &options);
-    fflush(stdout);
-    dup2(before, 1);
-    close(before);
-    rewind(file);
-    text[fread(text, 1, 4095, file)] = '\0';
-    fclose(file);
-}
-
 static void is_real(const json_t *object, const char *key, double value)
 {
     const json_t *found = json_object_get(object, key);
@@ -294,8 +260,11 @@ TEST(what_is_said)
         for (int color = 0; color < 2; color++) {
             is_document(&c, color);
             snprintf(markup, sizeof markup, frame, planted[row].table, planted[row].times);
-            dressed(markup, color, expected);
-            printed(&c, color, text);
+            printed_dress(markup, color, expected);
+            options.color = color;
+            const struct printed printed = printed_begin();
+            print_all(&c, &options);
+            printed_end(&printed, text, sizeof text);
             if (strncmp(text, expected, strlen(expected)) != 0)
                 fail_msg("row %zu: got:\n%s\nand not:\n%s", row, text, expected);
             /* table_wrap puts some of its blanks at the ends of lines */

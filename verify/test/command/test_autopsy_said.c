@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * sphproof autopsy: what is printed of planted figures, and ladders that are refused. (Whole calls:
+ * the transcripts.) */
+#include "test.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "printed.h"
+/* the command's own text, of which the parts are asked */
+#include "autopsy.c"
+
+static const struct table_style none = {"", "", "", "", ""};
+
+/* At most six columns of times: five as far apart as can be, and the last. */
+TEST(looks)
+{
+    static const struct {
+        size_t looks;
+        const char *shown;
+    } rows[] = {{0, ""},
+                {1, "0"},
+                {2, "0 1"},
+                {5, "0 1 2 3 4"},
+                {6, "0 1 2 3 4 5"},
+                {7, "0 2 4 6"},
+                {8, "0 2 4 6 7"},
+                {11, "0 2 4 6 8 10"},
+                {12, "0 3 6 9 11"},
+                {16, "0 3 6 9 12 15"},
+                {17, "0 4 8 12 16"}};
+    static struct trace trace;
+    for (size_t i = 0; i < TRACE_LOOKS + 2; i++) {
+        trace.looked[i] = (double)i;
+        trace.seen[i].spread = 1 + (double)i, trace.seen[i].gradient = 0.01 * (double)i;
+    }
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        char text[2048], expected[3][512] = {"", "", ""}, all[2048];
+        const char *at = rows[k].shown;
+        for (char *end; *at; at = end) {
+            const double look = strtod(at, &end);
+            sprintf(expected[0] + strlen(expected[0]), " %8.3g", look);
+            sprintf(expected[1] + strlen(expected[1]), " %8.2e", 1 + look);
+            sprintf(expected[2] + strlen(expected[2]), " %8.2e", 0.01 * look);
+        }
+        snprintf(all, sizeof all, "\n  how regular particles stand: time%s\n  %-33s%s\n  %-33s%s\n",
+                 expected[0], "distances to nearest neighbours:", expected[1],
+                 "E0, h |sum V grad W|:", expected[2]);
+        trace.looks = rows[k].looks;
+        const struct printed printed = printed_begin();
+        print_trace(&trace, &none);
+        printed_end(&printed, text, sizeof text);
+        assert_string_equal(text, all);
+    }
+}
+
+/* A part has the letters of the bar of which it has more than the first half. */
+TEST(bars)
+{
+    static const struct {
+        double first, last; /* letters of the parts 0 and 2 */
+        int shown[2];
+    } rows[] = {{3.45, BAR - 3.45, {3, BAR}},
+                {3.55, BAR - 3.55, {4, BAR}},
+                {3.45, 0, {3, 3}},
+                {BAR + 2, 3, {BAR, BAR}}};
+    static struct autopsy_level level;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        char text[128], expected[128] = "  ";
+        level.share[0] = rows[k].first / BAR, level.share[2] = rows[k].last / BAR;
+        memset(expected + 2, letters[2], (size_t)rows[k].shown[1]);
+        memset(expected + 2, letters[0], (size_t)rows[k].shown[0]);
+        const struct printed printed = printed_begin();
+        print_bar(&level);
+        printed_end(&printed, text, sizeof text);
+        assert_string_equal(text, expected);
+    }
+}
+
+TEST(powers)
+{
+    static struct autopsy_level level;
+    char text[2048], line[256];
+    for (size_t k = 0; k < AUTOPSY_TERMS; k++)
+        level.power[k] = (struct autopsy_power){(double)k, -0.5, k == 1 ? 0 : 2. * (double)(k + 1)};
+    const struct printed printed = printed_begin();
+    print_power(&level, &none);
+    printed_end(&printed, text, sizeof text);
+    for (size_t k = 0; k < AUTOPSY_TERMS; k++) {
+        snprintf(line, sizeof line, "\n  %-44s %10.2e %10.2e %10.1e\n",
+                 autopsy_term_family.members[k]->label, (double)k, -0.5,
+                 ((double)k - 0.5) / (2. * AUTOPSY_TERMS));
+        assert_int_equal(strstr(text, line) != NULL, k != 1);
+    }
+}
+
+TEST(ladders)
+{
+    static const char *values[4];
+    static const struct options options = {.command = &command_autopsy, .values = values};
+    struct run_settings settings;
+    size_t ladder[CASE_LADDER_MAX], count;
+    struct error error = {0};
+    char with_n[] = "n=24^2", *words[] = {with_n};
+    char four[] = "16^2,20^2,24^2,32^2", three[] = "16^2,20^2,24^2";
+    assert_int_equal(run_prepare(&settings, "yee", 0, NULL, &error), STATUS_OK);
+    assert_int_equal(take_ladder(&options, &settings, ladder, &count, &error), STATUS_OK);
+    assert_int_equal(count, settings.file.ladder_count);
+    assert_memory_equal(ladder, settings.file.ladder, count * sizeof *ladder);
+    values[0] = four;
+    assert_int_equal(take_ladder(&options, &settings, ladder, &count, &error), STATUS_OK);
+    assert_true(count == 4 && ladder[0] == 256 && ladder[3] == 1024);
+    values[0] = three;
+    assert_int_equal(take_ladder(&options, &settings, ladder, &count, &error), STATUS_BAD_INPUT);
+    values[0] = NULL;
+    settings.file.ladder_count = 0;
+    assert_int_equal(take_ladder(&options, &settings, ladder, &count, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "has no ladder"));
+    assert_int_equal(run_prepare(&settings, "yee", 1, words, &error), STATUS_OK);
+    assert_int_equal(take_ladder(&options, &settings, ladder, &count, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "exclude each other"));
+}
