@@ -61,7 +61,7 @@ def includes(source, files, layers, troubles):
             names = INCLUDE.findall(f.read())
         graph[file] = set()
         for name in names:
-            at = [f for f in files if f.endswith("/" + name)]
+            at = [f for f in files if f.endswith("/" + name.replace("../", ""))]
             own = [f for f in at if layer_of(f, layers) == layer_of(file, layers)] or at
             if name in GENERATED:
                 continue

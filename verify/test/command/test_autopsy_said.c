@@ -8,7 +8,7 @@
 
 #include "printed.h"
 /* the command's own text, of which the parts are asked */
-#include "autopsy.c"
+#include "../../command/autopsy.c"
 
 static const struct table_style none = {"", "", "", "", ""};
 

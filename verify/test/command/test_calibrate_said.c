@@ -7,7 +7,7 @@
 
 #include "printed.h"
 /* the command's own text, of which the parts are asked */
-#include "calibrate.c"
+#include "../../command/calibrate.c"
 
 static const char *values[8];
 static struct options options = {.command = &command_calibrate, .values = values};
