@@ -6,7 +6,6 @@
 #include <stdlib.h>
 
 #include "gases.h"
-#include "lattice.h"
 #include "near.h"
 
 /* ---- the gas ---- */
@@ -45,22 +44,6 @@ TEST(gases_meet_in_the_middle)
     assert_true(p.window.lo[0] == 0 && p.window.hi[0] == 2 && p.window.lo[1] == -2 &&
                 p.window.hi[1] == 2);
     assert_true(prepared_of(&s, 1, "window=-0.75 0.5").window.lo[0] == -0.75);
-}
-
-TEST(gases_that_cannot_be_are_refused)
-{
-    prepared_refused(1, "left=0 0 1", "left=\"0 0 1\": rho v P with rho > 0 and P > 0");
-    prepared_refused(1, "right=1 0 0", "right=\"1 0 0\": rho v P with rho > 0 and P > 0");
-    for (int side = 0; side < 2; side++) { /* no number that a key can have */
-        struct prepared p;
-        struct settings s;
-        struct error error;
-        assert_int_equal(prepared_try(&p, &s, 1, "n=10", &error), STATUS_OK);
-        s.value[side ? SETTING_right : SETTING_left].real[1] = (double)NAN;
-        assert_int_equal(problem_prepare(&p, &s, 1, &error), STATUS_BAD_INPUT);
-        assert_string_equal(error.message,
-                            "no exact solution: density, velocity and pressure must be finite");
-    }
 }
 
 /* With graded masses spacings are equal either side of the contact, within 2/3 and 3/2. */
@@ -188,85 +171,5 @@ TEST(particles_stand_on_a_line)
         const size_t last = graded ? 3 : 2;
         assert_true(initial.x[0][last] < 0 && initial.x[0][last + 1] > 0);
         free(initial.storage);
-    }
-}
-
-TEST(no_memory_is_said)
-{
-    /* graded masses are counted from the jumps alone, or this would take for ever */
-    static const char *const keys[] = {"left=1 0 1|right=1 0 2", "left=1 0 1|right=1 0 2",
-                                       "left=1 0 1|right=1 0 2|grade=0.5"};
-    for (int k = 0; k < 3; k++) {
-        struct settings s;
-        struct initial initial = {0};
-        struct error error = {0};
-        const struct prepared p = prepared_of(&s, k == 1 ? 2 : 1, keys[k]);
-        s.value[SETTING_n].real[0] = 0x1p53;
-        assert_int_equal(p.problem->fill(&p, &s, &initial, &error), STATUS_ENVIRONMENT);
-        assert_non_null(strstr(error.message, "no memory"));
-        assert_null(initial.storage);
-    }
-}
-
-/* ---- particles in two and three dimensions ---- */
-
-/* Each gas has the lattice of its half. */
-static void check_cloud(const struct prepared *p, const struct settings *s)
-{
-    const struct gases gases = gases_of(p->gamma, s);
-    const struct initial initial = prepared_filled(p, s);
-    const double n = settings_real(s, SETTING_n), left = gases.left.rho,
-                 right = gases.right.rho / settings_real(s, SETTING_mass_ratio);
-    const size_t n_left = (size_t)fmin(fmax(round(n * left / (left + right)), 1), n - 1);
-    const enum lattice kind = (enum lattice)settings_choice(s, SETTING_lattice);
-    size_t at = 0;
-    for (int side = 0; side < 2; side++) {
-        const struct riemann_state *gas = side ? &gases.right : &gases.left;
-        struct domain half = p->domain;
-        struct lattice_plan plan;
-        struct error error;
-        double *x[3], volume = 1;
-        *(side ? half.lo : half.hi) = 0.5 * (p->domain.lo[0] + p->domain.hi[0]);
-        assert_int_equal(
-            lattice_plan_make(&plan, &half, kind, side ? (size_t)n - n_left : n_left, &error), 0);
-        for (int d = 0; d < 3; d++) {
-            x[d] = malloc(plan.n * sizeof(double));
-            if (d < half.dim) volume *= domain_length(&half, d);
-        }
-        assert_int_equal(
-            lattice_points(&plan, (unsigned long)settings_real(s, SETTING_seed), x, &error), 0);
-        assert_true(at + plan.n <= initial.n);
-        for (size_t i = 0; i < plan.n; i++, at++) {
-            for (int d = 0; d < half.dim; d++) {
-                assert_true(initial.x[d][at] == x[d][i]);
-                assert_true(initial.v[d][at] == (d ? 0 : gas->v));
-            }
-            near_relative(initial.m[at], gas->rho * volume / (double)plan.n, 1e-14);
-            near_relative(initial.u[at], gas->P / ((p->gamma - 1) * gas->rho), 1e-14);
-            assert_true(initial.rho[at] == gas->rho);
-        }
-        for (int d = 0; d < 3; d++) free(x[d]);
-    }
-    assert_int_equal(at, initial.n);
-    free(initial.storage);
-}
-
-TEST(each_gas_has_a_lattice)
-{
-    static const struct {
-        int dim;
-        const char *keys;
-    } rows[] = {
-        {2, "lo=-1 0|hi=2 0.5|n=300|left=1 0.5 1|right=0.125 -0.5 0.1"},
-        {2, "lo=-1 0|hi=2 0.5|n=300|left=1 0 1|right=0.7 0 2|mass_ratio=0.4"},
-        {2, "n=4|left=1e6 0 1|right=1 0 1"},
-        {2, "n=4|left=1 0 1|right=1e6 0 1"},
-        {2, "n=100|left=1 0 1|right=0.5 0 1|lattice=random|seed=3"},
-        {3, "lo=-1 0 0|hi=1 0.5 0.5|n=400|left=1 0.5 1|right=0.25 0.25 0.1|lattice=fcc"},
-    };
-    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        struct settings s;
-        const struct prepared p = prepared_of(&s, rows[k].dim, rows[k].keys);
-        check_cloud(&p, &s);
     }
 }

@@ -11,8 +11,6 @@
 #include "gases.h"
 #include "near.h"
 
-enum { MOST = 64 }; /* particles of a tube made by hand */
-
 /* ---- tubes drawn at random ---- */
 
 static double between(gsl_rng *random, double a, double b)
@@ -123,51 +121,6 @@ TEST(windows_are_free_until_waves_come)
              -c * (1 + 1e-9));
     const struct prepared away = prepared_of(&s, 1, keys);
     assert_true(away.problem->holds(&away, 0.874 / c) && !away.problem->holds(&away, 0.876 / c));
-}
-
-/* A sound wave from the left end travels through the tube's own waves with v + c of the exact
- * solution, in small steps: no window may be called free once it has entered it. */
-TEST(no_sound_comes_into_free_windows)
-{
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-    int vacuums = 0, inside = 0;
-    for (int i = 0; i < 100; i++) {
-        struct settings s;
-        struct prepared p = drawn(random, &s);
-        const struct gases gases = gases_of(p.gamma, &s);
-        const double middle = p.window.centre[0],
-                     dt = 1e-3 / (1 + fabs(gases.left.v) + sound(p.gamma, &gases.left));
-        double x = p.domain.lo[0], t = 0;
-        for (int step = 0; step < 4000 && x < 0.4 && x >= p.domain.lo[0]; step++) {
-            const struct riemann_state gas = riemann_sample(&gases.main, x, middle, t);
-            if (!(gas.rho > 0)) break;
-            x += dt * (gas.v + sound(p.gamma, &gas));
-            t += dt;
-            p.window.lo[0] = p.window.hi[0] = x - 5e-3;
-            if (step % 50 == 0 && x > p.domain.lo[0] + 0.01) {
-                assert_false(p.problem->holds(&p, t));
-                inside++;
-                vacuums += gases.main.vacuum && x > middle + gases.main.left_head * t;
-            }
-        }
-    }
-    gsl_rng_free(random);
-    assert_true(inside > 1000 && vacuums > 20);
-}
-
-TEST(what_is_not_free_is_said)
-{
-    struct settings s;
-    struct error error = {0};
-    const struct prepared p = prepared_of(&s, 1, "window=-0.75 0.5|left=1 0 1|right=1 0 1");
-    assert_int_equal(problem_check_time(&p, 0.5, &error), STATUS_BAD_INPUT);
-    char words[300];
-    const double longest = 0.25 / sqrt(1.4) * (1 - 1e-3);
-    snprintf(words, sizeof words,
-             "t_end=0.5: the box is periodic, and waves of the mirrored tube at its ends reach the "
-             "window [-0.75, 0.5] at t = %.4g; allowed: t_end <= %.4g, or a narrower window",
-             longest, longest);
-    assert_string_equal(error.message, words);
 }
 
 /* ---- the shock ---- */
@@ -335,73 +288,6 @@ TEST(regions_lie_between_waves)
 }
 
 /* ---- gas that is still ---- */
-
-static double foremost(double a, double b)
-{
-    return isnan(a) ? b : isnan(b) || a > b ? a : b;
-}
-
-static double stillness(const struct prepared *p, const struct gases *gases,
-                        const struct snapshot *s)
-{
-    const double middle = p->window.centre[0];
-    double widest = 0, moved = (double)NAN;
-    for (size_t i = 0; i < s->n; i++)
-        if (s->h[i] > widest) widest = s->h[i];
-    for (size_t i = 0; i < s->n; i++) {
-        const bool right = s->x[0][i] > middle;
-        const struct riemann_state *gas = right ? &gases->right : &gases->left;
-        /* ways of the tube's wave towards its end, and of the mirrored tube's towards the middle */
-        const double ways[2] = {
-            s->time * (right ? foremost(gases->main.right_head, gases->main.right_tail)
-                             : foremost(-gases->main.left_head, -gases->main.left_tail)),
-            s->time * (right ? foremost(-gases->mirror.left_head, -gases->mirror.left_tail)
-                             : foremost(gases->mirror.right_head, gases->mirror.right_tail))};
-        const double places[2] = {fabs(s->x[0][i] - middle), right ? p->domain.hi[0] - s->x[0][i]
-                                                                   : s->x[0][i] - p->domain.lo[0]};
-        bool far = true;
-        for (int k = 0; k < 2; k++) {
-            const double ahead = places[k] - ways[k];
-            far &= ahead > 12 * s->h[i] && ahead > 0.25 * fabs(ways[k]) && ahead > 2 * widest;
-        }
-        const double part = fabs(s->v[0][i] - gas->v) / sound(p->gamma, gas);
-        if (far && !(part <= moved)) moved = part;
-    }
-    return moved;
-}
-
-TEST(still_gas_is_far_from_waves)
-{
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-    int found = 0, none = 0;
-    for (int i = 0; i < 1000; i++) {
-        struct settings s;
-        const struct prepared p = drawn(random, &s);
-        const struct gases gases = gases_of(p.gamma, &s);
-        double x[MOST], v[MOST], h[MOST];
-        for (int k = 0; k < MOST; k++) {
-            x[k] = between(random, -1.5, 0.5);
-            v[k] = between(random, -2, 2);
-            h[k] = (i % 5 ? 0.005 : 0.1) * between(random, 0.5, 1);
-        }
-        if (i % 2) h[0] *= 40;
-        const struct snapshot of = {.n = MOST - 1, /* one behind them, wider and faster than all */
-                                    .x = {x},
-                                    .v = {v},
-                                    .h = h,
-                                    .time = i % 7 ? 0.2 * gsl_rng_uniform(random) : 0};
-        h[MOST - 1] = 9;
-        v[MOST - 1] = 99;
-        const double want = stillness(&p, &gases, &of), have = p.problem->regions->still(&p, &of);
-        if (isnan(want))
-            assert_true(isnan(have));
-        else
-            near_relative(have, want, 1e-13);
-        found += !isnan(want), none += isnan(want);
-    }
-    gsl_rng_free(random);
-    assert_true(found > 100 && none > 100);
-}
 
 /* A particle exactly at the limit is not far enough, and one a little further on is. */
 TEST(still_gas_begins_at_its_limits)
