@@ -5,13 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "case_state.h"
 #include "fold.h"
 #include "html.h"
-#include "page_cloud.h"
 #include "page_part.h"
-#include "page_study.h"
-#include "page_time.h"
-#include "case_state.h"
 #include "value.h"
 
 enum { QUANTITIES = 4, PRESSURE = 2, ENERGY = 3 };

@@ -7,7 +7,6 @@
 #include "case_state.h"
 #include "html.h"
 #include "page_part.h"
-#include "page_study.h"
 #include "value.h"
 
 static bool is_code(const json_t *document)

@@ -7,7 +7,6 @@
 
 #include "html.h"
 #include "page.h"
-#include "page_cloud.h"
 #include "page_part.h"
 #include "style.h"
 #include "value.h"

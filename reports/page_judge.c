@@ -8,7 +8,6 @@
 
 #include "html.h"
 #include "page.h"
-#include "page_cloud.h"
 #include "page_part.h"
 #include "value.h"
 

@@ -3,10 +3,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "case_state.h"
 #include "html.h"
 #include "page_part.h"
-#include "page_study.h"
-#include "case_state.h"
 #include "value.h"
 
 static bool is_cloud(const json_t *document)

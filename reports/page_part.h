@@ -37,4 +37,40 @@ void page_kernels(struct page_writer *writer, const json_t *kernels);
 void page_checks(struct page_writer *writer, const json_t *verify);
 void page_detection(struct page_writer *writer, const json_t *verify);
 
+/* Convergence of one case, from its studies (converge documents): errors over n with fitted and
+ * reference slopes, orders and gates. */
+void page_study(struct page_writer *writer, const char *case_name, const json_t *const *documents,
+                size_t count);
+
+/* The order of the quantity that the case is judged by first, or NULL. */
+const json_t *page_study_main(const json_t *document);
+
+/* The quantity of an order, such as "L1(density)". */
+void page_study_name(struct buffer *to, const json_t *order);
+
+/* The error of that first quantity at the finest level. */
+double page_study_finest(const json_t *document);
+
+/* The entry of a converge document for a field and a norm, or NULL. */
+const json_t *page_study_order(const json_t *document, const char *field, const char *norm);
+
+/* Which region of the flow the L1 error of density comes from in these studies, how fast each part
+ * falls, and whether still gas has stayed still; nothing where it is not known. */
+void page_budget(struct page_writer *writer, const json_t *const *documents, size_t count);
+
+/* Runs of a case through time: momentum, angular momentum and energy against their start; how
+ * regular their particles stand. */
+void page_time(struct page_writer *writer, const char *case_name, const json_t *const *runs,
+               size_t count);
+
+/* Pictures of the runs (run documents) of one case: maps of the first run, maps of all errors on
+ * one colour scale (of all densities where there is no exact solution), and all runs over the exact
+ * curve. all_maps: every map of every run, on common colour scales, in place of those of the first
+ * run. The element <div class="figures"> is left open, so that the caller can add figures. */
+void page_cloud_plots(struct page_writer *writer, const char *case_name, const json_t *const *runs,
+                      size_t count, bool all_maps);
+
+/* Errors, conservation and cost, and scalars beside their exact values. */
+void page_cloud_tables(struct buffer *to, const json_t *const *runs, size_t count);
+
 #endif

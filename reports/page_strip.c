@@ -6,10 +6,9 @@
 #include <string.h>
 
 #include "base64.h"
+#include "case_state.h"
 #include "html.h"
 #include "page_part.h"
-#include "page_study.h"
-#include "case_state.h"
 #include "value.h"
 
 enum { WIDTH = 150, HEIGHT = 84, MARGIN = 3, DOTS = 220, COLORS = 64 };

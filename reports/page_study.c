@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "page_study.h"
+#include "page_part.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "html.h"
-#include "page_budget.h"
 #include "value.h"
 
 enum { LEVELS = 64, PLOTTED = 3 };

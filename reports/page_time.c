@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "page_time.h"
+#include "page_part.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -12,7 +12,6 @@
 #include "process.h"
 #include "script.h"
 #include "style.h"
-#include "svg.h"
 
 enum { PATIENCE = 30 }; /* seconds for one plot */
 

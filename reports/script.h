@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The gnuplot script and the data of a plot. Internal to plots. */
+ * The gnuplot script and the data of a plot, and what makes its SVG fit into a page. Internal to
+ * plots. */
 #ifndef SPHPROOF_SCRIPT_H
 #define SPHPROOF_SCRIPT_H
 
-#include "plot.h"
 #include "buffer.h"
+#include "plot.h"
 
 enum script_terminal { SCRIPT_SVG, SCRIPT_PNG };
 
@@ -15,5 +16,11 @@ void script_data(struct buffer *to, const struct plot *plot);
  * quotes; NULL: the data stand in the script. */
 void script_make(struct buffer *to, const struct plot *plot, enum script_terminal terminal,
                  const char *output, const char *data);
+
+/* Appends raw as an <svg class="plot"> element: prolog, filters and empty groups dropped; ids and
+ * references to them prefixed; colours of the style replaced by currentColor with a class (the
+ * colour itself stays as a fallback where no style sheet is); title (escaped here) for readers who
+ * cannot see it. False: raw is not an SVG document. */
+bool svg_adapt(struct buffer *to, const char *raw, const char *prefix, const char *title);
 
 #endif

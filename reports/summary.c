@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "summary.h"
+#include "verdict.h"
 
 #include "html.h"
-#include "page_study.h"
+#include "page_part.h"
 #include "value.h"
 
 static void failures(struct buffer *to, const json_t *list)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "svg.h"
+#include "script.h"
 
 #include <ctype.h>
 #include <stdio.h>

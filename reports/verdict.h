@@ -34,4 +34,8 @@
  * memory. */
 json_t *verdict_make(const json_t *results);
 
+/* The results with their verdict in a few lines of Markdown, for a pull request or a terminal.
+ * Malloced; NULL: no memory. */
+char *summary_text(const json_t *results);
+
 #endif

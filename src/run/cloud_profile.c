@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cloud_profile.h"
+#include "run_output.h"
 
 #include <math.h>
 #include <stdint.h>

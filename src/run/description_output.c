@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "description_output.h"
+#include "run_output.h"
 
 #include <math.h>
 #include <stdbool.h>

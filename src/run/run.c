@@ -13,9 +13,7 @@
 #include "initial_create.h"
 #include "problem_list.h"
 #include "problem_prepare.h"
-#include "run_keep.h"
-#include "run_measure.h"
-#include "run_simulate.h"
+#include "run_part.h"
 #include "slab.h"
 #include "snapshot_writer.h"
 

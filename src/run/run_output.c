@@ -6,12 +6,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "description_output.h"
 #include "judged.h"
 #include "result.h"
-#include "settings_output.h"
+#include "run_output.h"
 #include "snapshot_writer.h"
-#include "trace_output.h"
 
 static void set_number(json_t *object, const char *name, double value)
 {

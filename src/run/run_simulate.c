@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "run_simulate.h"
+#include "run_part.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -7,8 +7,6 @@
 
 #include "growth.h"
 #include "initial.h"
-#include "run_keep.h"
-#include "run_measure.h"
 
 /* Sums at the end against t = 0. */
 static void measure_conservation(struct run_result *result, const struct conservation *start,

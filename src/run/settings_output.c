@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "settings_output.h"
+#include "run_output.h"
 
 #include "own_reference.h"
 #include "problem_list.h"

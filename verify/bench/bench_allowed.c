@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "bench_allowed.h"
+#include "bench_possible.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "bench_allowed.h"
 #include "initial.h"
 #include "initial_create.h"
 #include "solver.h"

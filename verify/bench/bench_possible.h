@@ -3,6 +3,7 @@
 #ifndef SPHPROOF_BENCH_POSSIBLE_H
 #define SPHPROOF_BENCH_POSSIBLE_H
 
+#include "initial.h"
 #include "run.h"
 
 enum { BENCH_ROWS = 32, BENCH_COLUMNS = 64 };
@@ -14,7 +15,7 @@ struct bench_shares {
      * exact solution; or, where that has no waves with an edge, particles whose velocity and
      * density change more slowly than a coarse threshold. */
     double possible;
-    /* What the promise of sleep allows by whatever rule, from a run without skips: bench_allowed.h;
+    /* What the promise of sleep allows by whatever rule, from a run without skips: bench_allowed();
      * NaN: the run has no tolerance of sleep. */
     double allowed;
     double tolerance; /* of sleep: sleep.h; 0: the run has none */
@@ -34,5 +35,13 @@ bool bench_shares_enough(const struct bench_shares *shares);
 
 /* Runs it, with or without skips as its keys say. STATUS_*: as run_execute. */
 enum status bench_possible(const struct run *run, struct bench_shares *shares, struct error *error);
+
+/* Runs it without skips. The share of particle updates after which velocity, density and internal
+ * energy of the particle, and of all within a smoothing length of it, are still those of the start
+ * to a tolerance, of c, rho and the energy that belongs to c: the particle's own sound speed or
+ * `sound`, whichever is more. Sums differ from those of the start by what such neighbours do, so
+ * anything less would leave out more than the tolerance. STATUS_*: as run_execute. */
+enum status bench_allowed(const struct run *run, const struct initial *initial, double tolerance,
+                          double sound, double *share, struct error *error);
 
 #endif

@@ -6,7 +6,7 @@
 #include "bench_scaling.h"
 #include "picture.h"
 #include "result.h"
-#include "settings_output.h"
+#include "run_output.h"
 
 static json_t *exponent_json(const char *of, const struct order_fit *fit)
 {

@@ -9,10 +9,13 @@
 #ifndef SPHPROOF_PRECISION_H
 #define SPHPROOF_PRECISION_H
 
+#include <jansson.h>
+
 #include "bench.h"
 #include "pool.h"
 #include "run.h"
 #include "sweep.h"
+#include "table.h"
 
 enum { PRECISION_TARGETS = 3, PRECISION_SHORT = 96 };
 extern const double precision_targets[PRECISION_TARGETS]; /* relative to the signal */
@@ -111,5 +114,16 @@ void precision_front(size_t n, const double *cost, const double *error, bool *on
  * between neighbouring points, never beyond the ends; the first point's own cost where already
  * that one is good enough. NaN: not reached. */
 double precision_cost_of(size_t n, const double *cost, const double *error, double target);
+
+/* Schemes by figure of merit, the front, the cheapest ways. */
+void precision_print(const struct precision *precision, const struct table_style *style);
+
+/* Error against CPU time, curves named at their ends: both references and the schemes with points
+ * on the front, as many as there are colours; all others as points. STATUS_ENVIRONMENT. */
+enum status precision_plot(const struct precision *precision, const char *path,
+                           struct error *error);
+
+/* "case", "points", "schemes", "cheapest", "excluded" ... of a result document. */
+void precision_add_json(const struct precision *precision, json_t *document);
 
 #endif

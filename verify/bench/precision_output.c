@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "precision_output.h"
+#include "precision.h"
 
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
@@ -9,7 +9,7 @@
 
 #include "picture.h"
 #include "result.h"
-#include "settings_output.h"
+#include "run_output.h"
 
 static double merit_of(const struct precision_scheme *scheme)
 {

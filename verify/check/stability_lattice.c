@@ -6,7 +6,7 @@
 
 #include "check.h"
 #include "lattice_waves.h"
-#include "stress_noise.h"
+#include "stress_part.h"
 
 /* What the greatest frequency of a wave is compared with: sound, of (gamma P/rho)^(1/2). */
 struct lattice_subject {

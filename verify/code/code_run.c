@@ -9,17 +9,15 @@
 #include <unistd.h>
 
 #include "buffer.h"
-#include "cloud_profile.h"
 #include "code_call.h"
 #include "code_check.h"
 #include "code_process.h"
 #include "code_snapshot.h"
 #include "output.h"
 #include "places.h"
-#include "profile.h"
 #include "result.h"
+#include "run_output.h"
 #include "slab.h"
-#include "trace_output.h"
 #include "value.h"
 
 /* A run on its way. */

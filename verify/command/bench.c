@@ -13,7 +13,6 @@
 #include "output.h"
 #include "picture.h"
 #include "precision.h"
-#include "precision_output.h"
 #include "progress.h"
 #include "result.h"
 #include "sharing.h"

@@ -8,7 +8,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "cloud_profile.h"
 #include "command.h"
 #include "judge.h"
 #include "list.h"
@@ -16,10 +15,9 @@
 #include "page.h"
 #include "paired.h"
 #include "problem_list.h"
-#include "profile.h"
 #include "progress.h"
 #include "result.h"
-#include "settings_output.h"
+#include "run_output.h"
 #include "study.h"
 #include "table.h"
 #include "text.h"

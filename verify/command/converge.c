@@ -9,7 +9,7 @@
 #include "code_run.h"
 #include "command.h"
 #include "result.h"
-#include "settings_output.h"
+#include "run_output.h"
 #include "sharing.h"
 #include "study.h"
 #include "table.h"

@@ -24,7 +24,6 @@
 #include "output.h"
 #include "result.h"
 #include "slurm.h"
-#include "slurm_share.h"
 
 enum { TRIES = 3, SHOWN = 10, LINE = 400 };
 

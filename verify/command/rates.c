@@ -7,7 +7,6 @@
 #include <sys/stat.h>
 
 #include "command.h"
-#include "description_output.h"
 #include "initial.h"
 #include "initial_create.h"
 #include "output.h"
@@ -15,7 +14,7 @@
 #include "rate_check.h"
 #include "result.h"
 #include "run.h"
-#include "settings_output.h"
+#include "run_output.h"
 #include "snapshot_csv.h"
 #include "text.h"
 

@@ -16,10 +16,9 @@
 #include "page.h"
 #include "result.h"
 #include "sharing.h"
-#include "summary.h"
 #include "text.h"
-#include "verdict.h"
 #include "value.h"
+#include "verdict.h"
 
 enum { PATH_LENGTH = 4096 };
 

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cloud_profile.h"
 #include "map.h"
 #include "picture.h"
+#include "run_output.h"
 #include "value.h"
 
 enum { PLOT_POINTS_EXACT = 1001 };

@@ -8,6 +8,7 @@
 #include "engine.h"
 #include "pool.h"
 #include "progress.h"
+#include "suite.h"
 
 /* --jobs is the command's own: its fallbacks differ. */
 #define SHARING_OPTIONS                                                                            \
@@ -55,5 +56,14 @@ enum status sharing_list(const struct sharing *sharing, const struct pool *pool,
  * for, says what it was, and *whole becomes false: there is nothing to judge. */
 enum status sharing_run(struct sharing *sharing, struct pool *pool, const char *what,
                         const struct options *options, bool *whole, struct error *error);
+
+/* Was any option given that asks for it? */
+bool verify_shares_wanted(const struct options *options);
+
+/* As suite_run of the chosen ones of all checks. *whole becomes false, and there is no suite, where
+ * only a share was asked for or a list. STATUS_BAD_INPUT: options exclude each other;
+ * STATUS_ENVIRONMENT, STATUS_BROKE_DOWN: a check gave no result. */
+enum status verify_shares_run(struct suite *suite, const struct suite_choice *choice,
+                              const struct options *options, bool *whole, struct error *error);
 
 #endif

@@ -7,6 +7,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "cache.h"
+#include "command.h"
 #include "status.h"
 
 enum { SLURM_WORDS_MAX = 64 };
@@ -32,5 +34,20 @@ enum status slurm_cancel(const char *name, struct error *error);
 
 /* Cancels a task that Slurm holds. */
 enum status slurm_cancel_task(const struct slurm_task *task, struct error *error);
+
+struct slurm_share {
+    const struct options *options; /* of this command */
+    const struct cache *cache;
+    int jobs, of;              /* processes of each; number of shares */
+    const char *name, *folder; /* of the array; of the logs */
+    const char *which;         /* numbers of the shares: 1,3-5 */
+};
+
+/* Submits; *job: the number of the array. */
+enum status slurm_share_submit(const struct slurm_share *share, long *job, struct error *error);
+
+/* Where the task of a share writes what it says. */
+void slurm_share_log(const char *folder, const char *name, long job, int share, char *path,
+                     size_t size);
 
 #endif

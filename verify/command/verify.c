@@ -8,7 +8,6 @@
 
 #include "check_registry.h"
 #include "command.h"
-#include "headline.h"
 #include "output.h"
 #include "progress.h"
 #include "result.h"
@@ -17,7 +16,6 @@
 #include "suite_output.h"
 #include "text.h"
 #include "user_figures.h"
-#include "verify_shares.h"
 
 enum { FOLDER_LENGTH = 1000 };
 

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "initial_create.h"
 #include "list.h"
 #include "plugin_kernel.h"
-#include "initial_create.h"
 
 enum { SINC_ORDER = 5 };
 

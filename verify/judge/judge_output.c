@@ -3,13 +3,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cloud_profile.h"
 #include "gates.h"
 #include "judge.h"
-#include "profile.h"
 #include "result.h"
-#include "settings_output.h"
-#include "trace_output.h"
+#include "run_output.h"
 #include "value.h"
 
 static json_t *kernel_json(const struct judged *judged)

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "judge_tube.h"
+#include "judge.h"
 #include "problem_list.h"
 
 static enum status set_real(struct settings *settings, enum setting key, double value,

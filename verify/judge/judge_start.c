@@ -8,7 +8,7 @@
 
 #include "list.h"
 #include "problem_list.h"
-#include "start_cause.h"
+#include "start_gas.h"
 
 /* Above this a difference is none of rounding. */
 #define WRONG    1e-4

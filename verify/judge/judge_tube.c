@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "judge_tube.h"
+#include "judge.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "start_cause.h"
+#include "start_gas.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "code_cost.h"
+#include "report_piece.h"
 
 #include <math.h>
 #include <string.h>

@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "metric_rule.h"
 #include "value.h"
 
 enum { PATH_MAX_LENGTH = 1536, NAME_MAX_LENGTH = 900, KEYS_MAX = 64 };

@@ -71,4 +71,19 @@ enum metric_verdict metric_judge(const struct metric *old, const struct metric *
 /* Is a the worse one of two metrics of one kind? For those without better or worse: no. */
 bool metric_worse(const struct metric *a, const struct metric *b);
 
+struct metric_rule {
+    /* inside: a name on the way to the figure, "" for anywhere. name: the figure's own; "*x" ends
+     * in x, "x*" begins with x. The first rule that fits counts. */
+    const char *inside, *name;
+    enum { RULE_FIGURE, RULE_LEFT_OUT } use; /* left out: a context, or judged elsewhere */
+    enum metric_kind kind;
+    double noise, floor;
+};
+
+/* The rule for a member of the object at path; NULL: there is none. */
+const struct metric_rule *metric_rule(const char *path, const char *name);
+
+/* Is name one of the path's parts outside brackets? */
+bool metric_passes(const char *path, const char *name);
+
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "metric_rule.h"
+#include "metric.h"
 
 #include <string.h>
 

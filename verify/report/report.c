@@ -11,7 +11,6 @@
 #include "check_registry.h"
 #include "claims.h"
 #include "clock.h"
-#include "code_cost.h"
 #include "gates.h"
 #include "list.h"
 #include "pairing.h"

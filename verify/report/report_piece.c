@@ -9,16 +9,14 @@
 #include "bench_skips.h"
 #include "certificate.h"
 #include "check_registry.h"
-#include "cloud_profile.h"
 #include "league.h"
-#include "precision_output.h"
+#include "precision.h"
 #include "problem_list.h"
-#include "profile.h"
 #include "result.h"
 #include "run_job.h"
+#include "run_output.h"
 #include "suite.h"
 #include "suite_output.h"
-#include "trace_output.h"
 #include "value.h"
 
 static enum status compute_run(const struct report_piece *piece, json_t **document,

@@ -5,6 +5,8 @@
 #ifndef SPHPROOF_REPORT_PIECE_H
 #define SPHPROOF_REPORT_PIECE_H
 
+#include <jansson.h>
+
 #include "pool.h"
 #include "run.h"
 
@@ -37,5 +39,9 @@ enum status report_piece_add(struct pool *pool, struct report_piece *piece, stru
 
 /* Adds the checks of a verify document to another one. */
 void report_piece_join(json_t *verify, json_t *part);
+
+/* Adds to results "bench": a document for each case of results' "studies", "schemes" and "points"
+ * as those of `sphproof bench` have them, as far as levels say it. */
+void code_cost_add(json_t *results);
 
 #endif

@@ -6,11 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stress_amplify.h"
-#include "stress_cloud.h"
-#include "stress_linear.h"
-#include "stress_outcome.h"
-#include "stress_run.h"
+#include "stress_part.h"
 
 enum { STEPS_QUICK = 30000, STEPS_NIGHTLY = 3000000 };
 /* Steps times n^2, which is what they cost where few particles see all: about a minute. */

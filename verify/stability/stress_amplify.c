@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "stress_amplify.h"
+#include "stress_part.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-#include "stress_outcome.h"
 
 #define MOVED "1e-13" /* of the spacing: a little more than what positions are rounded by */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "stress_cloud.h"
+#include "stress_part.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,9 +9,6 @@
 #include "cases.h"
 #include "lattice_waves.h"
 #include "problem_list.h"
-#include "stress_noise.h"
-#include "stress_outcome.h"
-#include "stress_run.h"
 
 /* ---- columns: the cases that there are ---- */
 

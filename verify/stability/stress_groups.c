@@ -2,8 +2,7 @@
  * The maps of the stress test. A new one is an entry here. */
 #include "integrator.h"
 #include "kernel.h"
-#include "stress_cloud.h"
-#include "stress_tubes.h"
+#include "stress_part.h"
 
 #define ENTRIES(...) ((const struct stress_entry[]){__VA_ARGS__, {NULL, NULL, false}})
 #define SEED                                                                                       \

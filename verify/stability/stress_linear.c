@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "stress_linear.h"
+#include "stress_part.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,8 +8,6 @@
 #include "measure.h"
 #include "result.h"
 #include "stability.h"
-#include "stress_noise.h"
-#include "stress_outcome.h"
 
 #define ETA_MAX 9.5
 enum { WAVES = 64, ETAS = 86, BISECTIONS = 7 };

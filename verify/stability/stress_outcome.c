@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "stress_outcome.h"
+#include "stress_part.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "stress_run.h"
+#include "stress_part.h"
 
 #include <math.h>
 #include <stdio.h>
-
-#include "stress_outcome.h"
 
 static bool watch_steps(void *context, double time, uint64_t steps)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "stress_tubes.h"
+#include "stress_part.h"
 
 #include <gsl/gsl_rng.h>
 #include <math.h>

@@ -5,8 +5,7 @@
 #include <stdio.h>
 
 #include "result.h"
-#include "settings_output.h"
-#include "trace_output.h"
+#include "run_output.h"
 
 #define MEMBER(name, label)                                                                        \
     &(const struct member)                                                                         \

@@ -7,7 +7,7 @@
 
 #include "cache.h"
 #include "result.h"
-#include "settings_output.h"
+#include "run_output.h"
 
 char *run_job_key(const struct run *run, const char *kind, struct error *error)
 {

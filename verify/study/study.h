@@ -121,4 +121,9 @@ size_t study_neighbour(size_t n, size_t replicates, size_t r);
  * there are any, to a converge document. */
 void study_add_json(const struct study *study, json_t *document);
 
+/* Those of combination c, in order, up to the first that broke down: result->status says so.
+ * STATUS_ENVIRONMENT and others: a run is missing. */
+enum status study_read_levels(struct study *study, size_t c, const struct pool *pool,
+                              struct error *error);
+
 #endif

@@ -7,7 +7,7 @@
 #include "gates.h"
 #include "measure.h"
 #include "problem_list.h"
-#include "study_read.h"
+#include "study.h"
 #include "viscosity.h"
 
 /* An order lost to the lattice sums shows a relative error of this many floors at most. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "headline.h"
+#include "suite_output.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include "findings.h"
-#include "headline.h"
 #include "output.h"
 #include "plot.h"
 #include "result.h"

@@ -5,12 +5,13 @@
 #define SPHPROOF_SUITE_OUTPUT_H
 
 #include <jansson.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 #include "suite.h"
 
 /* One line a check (its figure nearest to its bound), with details failures figure by figure, then
- * mutants, and at the end what failed, see headline.h. */
+ * mutants, and at the end what failed (headline_list). */
 void suite_output_table(const struct suite *suite, FILE *stream, bool color, bool details);
 
 /* Adds checks, mutants and summary to document. */
@@ -28,5 +29,17 @@ enum status suite_output_junit(const struct suite *suite, const char *path, stru
  * needed; what an earlier run left there of a check that ran now is taken away. */
 enum status suite_output_failures(const struct suite *suite, const char *folder, FILE *stream,
                                   struct error *error);
+
+/* What failed, in a line for each member: a wrong kernel fails in dozens of figures, and they are
+ * one fault. A member is what a figure's subject begins with, up to its first comma or colon.
+ * [{"rank", "group", "check", "member", "headline", "property", "place", "value", "bound", "ratio",
+ * "figures", "also": [checks], "command", "data"}]: one for each member that failed and each mutant
+ * that was missed, what is most specific and fails most clearly first. check, value, bound, place
+ * are those of the figure that says most; data: the name of its files (suite_output_failures),
+ * without their endings. New reference; NULL: no memory. */
+json_t *headline_list(const struct suite *suite);
+
+/* For people: each headline, and below it how far over the bound, where, and what else fails. */
+void headline_print(const json_t *headlines, FILE *stream, bool color);
 
 #endif

@@ -14,7 +14,6 @@
 #include "checkpoint.h"
 #include "findings.h"
 #include "gas.h"
-#include "headline.h"
 #include "initial_create.h"
 #include "initial_fill.h"
 #include "line/line.h"

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "description_output.h"
+#include "run_output.h"
 #include "solver.h"
 
 static const struct description *described; /* until a condition is < 0 */

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "near.h"
-#include "start_cause.h"
+#include "start_gas.h"
 
 enum { N = 20 };
 

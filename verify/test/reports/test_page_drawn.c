@@ -11,7 +11,6 @@
 #include "made_document.h"
 #include "markup.h"
 #include "page.h"
-#include "summary.h"
 #include "verdict.h"
 
 enum { PAGES = 100 };

@@ -12,7 +12,6 @@
 #include "layout.h"
 #include "made_document.h"
 #include "script.h"
-#include "svg.h"
 
 enum { PLOTS = 250, PICTURES = 200, PANELS = 3, SERIES = 4, POINTS = 12, KEPT_TOGETHER = 10 };
 

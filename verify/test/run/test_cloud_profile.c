@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cloud_profile.h"
 #include "map.h"
 #include "near.h"
+#include "run_output.h"
 #include "value.h"
 
 enum { FEW = 7, MANY = 4505, CURVE = 201 };

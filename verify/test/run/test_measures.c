@@ -10,7 +10,7 @@
 
 #include "functional.h"
 #include "growth.h"
-#include "run_measure.h"
+#include "run_part.h"
 #include "shells.h"
 #include "value.h"
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "near.h"
-#include "profile.h"
+#include "run_output.h"
 #include "value.h"
 
 enum { N = 4 };

@@ -9,7 +9,7 @@
 #include "near.h"
 #include "problem.h"
 #include "regularity.h"
-#include "trace_output.h"
+#include "run_output.h"
 
 static struct kernel kernel_named(const char *name)
 {

@@ -13,7 +13,7 @@
 #include "initial_create.h"
 #include "near.h"
 #include "run.h"
-#include "run_measure.h"
+#include "run_part.h"
 
 enum { KEYS = 8 };
 

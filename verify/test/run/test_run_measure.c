@@ -10,7 +10,7 @@
 #include "functional.h"
 #include "near.h"
 #include "run.h"
-#include "run_measure.h"
+#include "run_part.h"
 
 enum { N = 7 }; /* and one behind the last, which is none of them */
 static const double x[2][N + 1] = {{-0.9, -0.3, -0.1, 0.15, 0.3, 0.45, 0.8, 0.2},

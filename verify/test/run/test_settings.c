@@ -7,14 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "plugin_kernel.h"
 #include "certificate.h"
 #include "integrator.h"
 #include "near.h"
+#include "plugin_kernel.h"
 #include "problem.h"
 #include "problem_prepare.h"
+#include "run_output.h"
 #include "settings.h"
-#include "settings_output.h"
 
 static void resolve(struct settings *settings, struct scheme *scheme, int n, ...)
 {

@@ -9,7 +9,7 @@
 
 #include "near.h"
 #include "run.h"
-#include "trace_output.h"
+#include "run_output.h"
 #include "value.h"
 
 static void run(struct run_result *result, struct trace *trace, const char *name, int n,

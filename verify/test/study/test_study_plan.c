@@ -10,7 +10,7 @@
 
 #include "near.h"
 #include "run_job.h"
-#include "settings_output.h"
+#include "run_output.h"
 #include "study.h"
 #include "value.h"
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "headline.h"
+#include "suite_output.h"
 #include "value.h"
 
 enum { MOST = 9 };

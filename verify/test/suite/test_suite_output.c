@@ -10,7 +10,6 @@
 #include <unistd.h>
 
 #include "buffer.h"
-#include "headline.h"
 #include "suite_output.h"
 
 static const char *folder;
