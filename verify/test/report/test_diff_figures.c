@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a diff says of figures of every kind, both ways round, of wholes and their parts, and in
- * which order, on documents that are drawn. */
+ * What a diff says of figures of every kind, both ways round. (Wholes and their parts, and in which
+ * order all is told: test_diff_drawn.) */
 #include "test.h"
 
 #include <stdio.h>
@@ -90,7 +90,7 @@ TEST(each_kind)
     json_decref(none);
 }
 
-/* ---- the order of what is told ---- */
+/* ---- lists ---- */
 
 static const char *path_of(const struct difference *d)
 {
@@ -99,30 +99,11 @@ static const char *path_of(const struct difference *d)
 
 /* Two of one rank, and one that says none (0). */
 static const struct {
-    const char *group, *name, *path;
+    const char *group, *name;
     int rank;
-} checks[] = {{"kernels", "derivative", "checks[kernels, derivative,", 150},
-              {"kernels", "support", "checks[kernels, support,", 101},
-              {"norms", "sum", "checks[norms, sum,", 650},
-              {"hydro", "rates", "checks[hydro, rates,", 101},
-              {"gradients", "order", "checks[gradients, order,", 250},
-              {"none", "such", "checks[none, such,", 0}};
+} checks[] = {{"kernels", "derivative", 150}, {"kernels", "support", 101}, {"norms", "sum", 650},
+              {"hydro", "rates", 101},        {"gradients", "order", 250}, {"none", "such", 0}};
 enum { CHECKS = sizeof checks / sizeof *checks };
-
-/* What counts, the most first: of two differences the first number that differs decides. */
-static void weights_of(const struct difference *d, double weights[5])
-{
-    static const int verdicts[] = {
-        [VERDICT_VANISHED] = 1, [VERDICT_INCOMPARABLE] = 2, [VERDICT_WORSE] = 3,
-        [VERDICT_BETTER] = 4,   [VERDICT_NEW] = 5,          [VERDICT_SAME] = 6};
-    weights[0] = d->regression ? 0 : verdicts[d->verdict];
-    weights[1] = d->regression ? 1e30 : 0;
-    for (size_t c = 0; d->regression && c < CHECKS; c++)
-        if (checks[c].rank && strstr(path_of(d), checks[c].path)) weights[1] = checks[c].rank;
-    weights[2] = d->new && d->new->kind == READING_TIMING;
-    weights[3] = !(d->new && d->new->headline);
-    weights[4] = -d->amount;
-}
 
 /* Lists of checks and figures of all kinds, drawn: good or bad, there or not, before and after. */
 static void drawn(json_t *document)
@@ -157,35 +138,6 @@ static void drawn(json_t *document)
     }
     json_object_set_new(document, "checks", list);
     json_object_set_new(document, "studies", studies);
-}
-
-TEST(order)
-{
-    size_t seen[READING_VERDICTS + 1] = {0};
-    srand(3);
-    for (int draw = 0; draw < 150; draw++) {
-        json_t *old = json_pack("{s:s, s:f}", "command", "report", "error_l1", 1.),
-               *new = json_deep_copy(old);
-        struct diff diff;
-        drawn(old), drawn(new);
-        differ(old, new, &diff);
-        for (size_t i = 0; i < diff.count; i++) {
-            double before[5], now[5];
-            int k = 0;
-            seen[diff.list[i].regression ? READING_VERDICTS : (int)diff.list[i].verdict]++;
-            if (!i) continue;
-            weights_of(&diff.list[i - 1], before);
-            weights_of(&diff.list[i], now);
-            while (k < 5 && !(before[k] < now[k]) && !(before[k] > now[k])) k++;
-            if (k < 5)
-                assert_true(before[k] < now[k]);
-            else
-                assert_true(strcmp(path_of(&diff.list[i - 1]), path_of(&diff.list[i])) < 0);
-        }
-        diff_free(&diff);
-        json_decref(old), json_decref(new);
-    }
-    for (int v = 0; v <= READING_VERDICTS; v++) assert_true(seen[v] > 100);
 }
 
 /* What vanishes one way is new the other way; what stays stays. */
@@ -223,94 +175,4 @@ TEST(both_ways_round)
         diff_free(&one), diff_free(&other);
         json_decref(old), json_decref(new);
     }
-}
-
-/* ---- what is part of a whole ---- */
-
-static json_t *runs(const char *one, const char *two, const char *verdict)
-{
-    return json_pack("{s:s, s:[{s:s, s:s, s:f, s:{s:f}}, {s:s, s:s, s:f}], s:{s:s}, s:f}",
-                     "command", "report", "runs", "label", "a", "status", one, "error", 1., "cost",
-                     "steps", 7., "label", "ab", "status", two, "error", 1., "verdict", "status",
-                     verdict, "error_l1", 1.);
-}
-
-/* Of a run that broke down its status is compared, before or after, and nothing else of it. */
-TEST(runs_that_break_down)
-{
-    static const char *const words[] = {"ok", "broke_down", "fail"};
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++) {
-            json_t *old = runs(words[i], "ok", "pass"), *new = runs(words[k], "ok", "pass");
-            const bool broken = i == 1 || k == 1;
-            struct diff diff;
-            differ(old, new, &diff);
-            assert_int_equal(diff.left_out, broken ? 2 : 0);
-            assert_int_equal(find(&diff, "runs[a].error") == NULL, broken);
-            assert_int_equal(find(&diff, "runs[a].cost.steps") == NULL, broken);
-            assert_non_null(find(&diff, "runs[a].status"));
-            assert_non_null(find(&diff, "runs[ab].error"));
-            assert_non_null(find(&diff, "error_l1"));
-            diff_free(&diff);
-            json_decref(old), json_decref(new);
-        }
-    /* a document that is one run */
-    json_t *old = run_with(1e-3, 1), *new = run_with(1, 1);
-    struct diff diff;
-    json_object_set_new(old, "status", json_string("ok"));
-    json_object_set_new(new, "status", json_string("broke_down"));
-    assert_int_equal(differ(old, new, &diff), STATUS_CHECK_FAILED);
-    assert_true(diff.count == 1 && diff.left_out == 3 && diff.regressions == 1);
-    diff_free(&diff);
-    json_decref(old), json_decref(new);
-}
-
-/* A whole that fails because a part of it does is no regression of its own. */
-TEST(causes)
-{
-    for (int one = 0; one < 2; one++)
-        for (int verdict = 0; verdict < 2; verdict++) {
-            json_t *old = runs("ok", "ok", "pass"),
-                   *new = runs(one ? "fail" : "ok", "ok", verdict ? "fail" : "pass");
-            struct diff diff;
-            assert_int_equal(differ(old, new, &diff),
-                             one || verdict ? STATUS_CHECK_FAILED : STATUS_OK);
-            assert_int_equal(diff.regressions, one || verdict);
-            assert_int_equal(find(&diff, "verdict.status")->regression, verdict && !one);
-            assert_int_equal(find(&diff, "runs[a].status")->regression, one);
-            diff_free(&diff);
-            json_decref(old), json_decref(new);
-        }
-    /* of a run whose error grew, too, the error is what is told; another run's does not count */
-    for (int own = 0; own < 2; own++) {
-        json_t *old = runs("ok", "ok", "pass"), *new = runs("fail", "ok", "pass");
-        struct diff diff;
-        json_object_set_new(json_array_get(json_object_get(new, "runs"), own ? 0 : 1), "error",
-                            json_real(9));
-        differ(old, new, &diff);
-        assert_int_equal(find(&diff, "runs[a].status")->regression, !own);
-        assert_true(find(&diff, own ? "runs[a].error" : "runs[ab].error")->regression);
-        diff_free(&diff);
-        json_decref(old), json_decref(new);
-    }
-}
-
-/* Beyond the threshold an error is a regression, an order beyond its interval is one anyway. */
-TEST(thresholds)
-{
-    static const double factors[] = {1.04, 1.06, 1.2};
-    for (size_t i = 0; i < 3; i++)
-        for (int t = 0; t < 3; t++) {
-            const double threshold = (double[]){0, 0.05, 0.1}[t];
-            json_t *old = json_pack("{s:s, s:f, s:f}", "command", "run", "error", 1., "order", 2.),
-                   *new = json_pack("{s:s, s:f, s:f}", "command", "run", "error", factors[i],
-                                    "order", 1.97);
-            struct diff diff;
-            struct error error = {0};
-            diff_documents(old, new, threshold, &diff, &error);
-            assert_int_equal(find(&diff, "error")->regression, factors[i] - 1 > threshold);
-            assert_true(find(&diff, "order")->regression);
-            diff_free(&diff);
-            json_decref(old), json_decref(new);
-        }
 }
