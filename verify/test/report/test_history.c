@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The history of a report: the line that a night adds, and histories that are generated, of no
- * night, of as many as are kept and of more, with damaged lines, the same night twice and missing
- * fields; and which way a change is better. */
+ * Histories of a report that are generated: of no night, of as many as are kept and of more, and
+ * of nights that lack a figure; and which way a change is better. (Damaged lines, and what a night
+ * adds: test_diff_drawn.) */
 #include "test.h"
 
 #include <math.h>
@@ -298,69 +298,6 @@ TEST(since_says_which_way)
     unlink(path_of("history"));
 }
 
-/* Which lines are nights, and what is told of those that are not whole. */
-TEST(lines_of_every_kind)
-{
-    static const char *const damaged[] = {
-        "no JSON",
-        "[1, 2]",
-        "{}",
-        "null",
-        "3",
-        "{\"schema\": 1}",
-        "{\"schema\": \"sphproof-history/2\", \"mode\": \"quick\"}",
-        "{\"schema\": \"sphproof-history/1\", \"mode\": \"quick\"",
-        "{\"schema\": \"sphproof-history/1\", \"mode\": \"quick\"} {}",
-        "\xff\xfe",
-        " ",
-    };
-    enum { DAMAGED = sizeof damaged / sizeof *damaged, DRAWS = 40 };
-    static struct night made[NIGHTS_MOST + 1];
-    srand(1);
-    for (int draw = 0; draw < DRAWS; draw++) {
-        const struct night *expected[NIGHTS_MOST + 1];
-        size_t nights = 0, unreadable = 0;
-        const int lines = rand() % 30 + (draw % 4 == 3 ? 130 : 0);
-        FILE *file = fopen(path_of("history"), "w");
-        for (int i = 0; i < lines; i++) {
-            const int kind = rand() % 10;
-            made[i] = usual_night(i);
-            made[i].error *= 1 + 1e-6 * i;
-            if (kind == 0) {
-                fprintf(file, "%s\n", damaged[rand() % DAMAGED]);
-                unreadable++;
-                continue;
-            }
-            if (kind == 1) {
-                fputc('\n', file); /* nothing is no damage */
-                continue;
-            }
-            if (kind == 2) made[i].mode = "nightly";
-            if (kind == 3) made[i].git[0] = '\0';
-            if (kind == 4) made[i].date[0] = '\0';
-            if (kind == 5) made[i].error = (double)NAN;
-            if (kind == 6) made[i].order = (double)NAN;
-            if (kind == 7 && i) made[i] = made[i - 1]; /* once more */
-            write_night(file, &made[i]);
-            if (strcmp(made[i].mode, "quick") == 0) expected[nights++] = &made[i];
-        }
-        if (draw % 3 == 0) { /* the last line was cut off */
-            fputs("{\"schema\": \"sphproof-hi", file);
-            unreadable++;
-        }
-        fclose(file);
-        made[lines] = usual_night(lines);
-        expected[nights++] = &made[lines];
-        json_t *history = told(&made[lines]);
-        const size_t kept = nights < KEPT ? nights : KEPT;
-        same_nights(history, expected + nights - kept, kept);
-        same_since(history, expected + nights - kept, kept);
-        near_absolute(value_member(history, "unreadable"), (double)unreadable, 0);
-        json_decref(history);
-    }
-    unlink(path_of("history"));
-}
-
 /* Nights without a figure do not count where it moves, nor are they a change. */
 TEST(nights_that_lack_a_figure)
 {
@@ -386,72 +323,6 @@ TEST(nights_that_lack_a_figure)
         json_decref(history);
     }
     unlink(path_of("history"));
-}
-
-/* Newest changes first; of one night the larger one, whichever figure's it is. */
-TEST(changes_in_order)
-{
-    for (int larger = 0; larger < 2; larger++) {
-        FILE *file = fopen(path_of("history"), "w");
-        struct night night;
-        for (int i = 0; i < 24; i++) {
-            night = usual_night(i);
-            night.error = (i < 8 ? 1e-3 : 2e-3) * (i < 16 ? 1 : larger ? 1.2 : 3);
-            night.order = i < 16 ? 1 : 2;
-            if (i < 23) write_night(file, &night);
-        }
-        fclose(file);
-        json_t *history = told(&night);
-        const json_t *changes = json_object_get(history, "changes");
-        assert_int_equal(json_array_size(changes), 3);
-        const char *paths[3];
-        for (size_t i = 0; i < 3; i++) {
-            paths[i] = value_text(json_array_get(changes, i), "path");
-            near_absolute(value_member(json_array_get(changes, i), "night"), i < 2 ? 16 : 8, 0);
-        }
-        assert_string_equal(paths[0], larger ? order_path : error_path);
-        assert_string_equal(paths[1], larger ? error_path : order_path);
-        assert_string_equal(paths[2], error_path);
-        json_decref(history);
-    }
-    unlink(path_of("history"));
-}
-
-/* Every check has one figure in a night's line, its worst; what is no headline is not there. A line
- * that was cut off does not harm the one that is added after it. */
-TEST(lines_that_are_added)
-{
-    const struct night night = usual_night(0);
-    struct error error = {0};
-    json_t *results = results_of(&night);
-    json_object_set_new(
-        results, "verify",
-        json_pack("{s:[{s:s, s:s, s:s, s:f, s:f, s:f, s:s}, {s:s, s:s, s:s, s:f, s:f, s:f, s:s}]}",
-                  "checks", "group", "norms", "name", "sum", "subject", "a", "value", 1e-15,
-                  "bound", 1e-13, "floor", 1e-16, "status", "pass", "group", "norms", "name", "sum",
-                  "subject", "b", "value", 5e-14, "bound", 1e-13, "floor", 1e-16, "status",
-                  "pass"));
-    assert_int_equal(history_append(results, path_of("history"), &error), STATUS_OK);
-    json_t *line = json_load_file(path_of("history"), 0, NULL);
-    const json_t *figures = json_object_get(line, "figures");
-    near_relative(value_member(figures, "verify[norms, sum].value_over_bound"), 0.5, 1e-12);
-    near_relative(value_member(figures, error_path), 1e-3, 1e-12);
-    assert_null(json_object_get(figures, "studies[sod, ia].levels[n 400].errors.density.l2"));
-    json_decref(line);
-    FILE *file = fopen(path_of("history"), "a");
-    fputs("{\"schema\": \"sphproof-hist", file);
-    fclose(file);
-    assert_int_equal(history_append(results, path_of("history"), &error), STATUS_OK);
-    json_t *history = told(&night);
-    same_nights(history, (const struct night *const[]){&night, &night, &night}, 3);
-    near_absolute(value_member(history, "unreadable"), 1, 0);
-    json_decref(history);
-    unlink(path_of("history"));
-    history = told(&night); /* before there is any line */
-    same_nights(history, (const struct night *const[]){&night}, 1);
-    json_decref(history);
-    assert_int_equal(history_append(results, path_of("no/history"), &error), STATUS_ENVIRONMENT);
-    json_decref(results);
 }
 
 int main(void)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What one run of a check collects: figures with the time each took, subjects, series, and whether
- * a mutant is found out already. */
+ * What one run of a check collects: figures with the time each took, and whether a mutant is found
+ * out already. */
 #include "test.h"
 
 #include <stdlib.h>
@@ -68,41 +68,4 @@ TEST(decided)
         assert_int_equal(check_decided(&run), mutant);
         clear(&run);
     }
-}
-
-/* As long as somebody wants them. */
-TEST(series)
-{
-    enum { N = 5000 };
-    static double x[N], y[N];
-    struct check_run run = {.check = &check};
-    for (int i = 0; i < N; i++) x[i] = i + 0.5, y[i] = -i - 0.25;
-    check_series(&run, "long", N, x, y);
-    check_series(&run, "none", 0, x, y);
-    check_series(&run, "short", 2, y, x);
-    assert_int_equal(run.series_count, 3);
-    const struct series *s = run.series;
-    assert_true(s[0].check == &check && s[0].n == N && s[1].n == 0 && s[2].n == 2);
-    assert_string_equal(s[0].label, "long");
-    assert_string_equal(s[2].label, "short");
-    assert_memory_equal(s[0].x, x, sizeof x);
-    assert_memory_equal(s[0].y, y, sizeof y);
-    assert_memory_equal(s[2].x, y, 2 * sizeof *y);
-    assert_memory_equal(s[2].y, x, 2 * sizeof *x);
-    clear(&run);
-}
-
-/* Of what has a size a copy is kept, else the pointer alone. */
-TEST(subjects)
-{
-    struct check_run run = {.check = &check};
-    for (int i = 0; i < 100; i++) check_subject(&run, &i, i % 2 ? sizeof i : 0);
-    assert_int_equal(run.subject_count, 100);
-    for (int i = 0; i < 100; i++)
-        if (i % 2)
-            assert_int_equal(*(int *)run.subjects[i].copy, i);
-        else
-            assert_true(!run.subjects[i].copy && run.subjects[i].given);
-    assert_false(run.no_memory);
-    clear(&run);
 }
