@@ -16,9 +16,15 @@ static size_t letters(const char *string)
     return n;
 }
 
+/* Can it stand on the axis? Beyond that the margin of a logarithmic one would overflow. */
+static bool shows(const struct layout_axis *axis, double value)
+{
+    return axis->log ? value > 1e-99 && value < 1e99 : isfinite(value);
+}
+
 static void include(struct layout_axis *axis, double value)
 {
-    if (!isfinite(value) || (axis->log && value <= 0)) return;
+    if (!shows(axis, value)) return;
     if (value < axis->min) axis->min = value;
     if (value > axis->max) axis->max = value;
 }
@@ -52,7 +58,7 @@ static const double one_value = 1e-8;
  * sensible one where there is no data or no extent. */
 static void finish(struct layout_axis *axis, double min, double max, double air)
 {
-    if (min < max && !(axis->log && min <= 0)) {
+    if (min < max && shows(axis, min) && shows(axis, max)) {
         axis->min = min;
         axis->max = max;
         return;

@@ -146,11 +146,15 @@ TEST(ranges_of_logarithms)
     static const struct {
         double min, max;
         bool taken;
-    } rows[] = {{0.5, 10, true}, {0, 10, false}, {-1, 1, false}, {-5, -2, false}, {3, 3, false}};
+    } rows[] = {{0.5, 10, true},     {0, 10, false},         {-1, 1, false},
+                {-5, -2, false},     {3, 3, false},          {1e-98, 1e98, true},
+                {1e-100, 10, false}, {0.5, INFINITY, false}, {0.5, 1e200, false}};
+    static const double far[] = {1e-200, 0.0013, 1e200, 0.5};
+    static const struct plot_series beyond = {.label = "a", .n = 4, .x = far, .y = far};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         for (int across = 0; across < 2; across++) {
             struct plot_panel panel = {
-                .x_log = true, .y_log = true, .series = series, .series_count = 1};
+                .x_log = true, .y_log = true, .series = &beyond, .series_count = 1};
             const struct plot drawn = {.name = "range", .panels = &panel, .panel_count = 1};
             char *of_data, *script, *data, range[64];
             assert_true(plot_source(&drawn, &of_data, &data));
