@@ -153,25 +153,6 @@ static void print_operator(const struct autopsy *autopsy, const struct table_sty
            style->faint, style->end);
 }
 
-static enum status take_ladder(const struct options *options, const struct run_settings *settings,
-                               size_t ladder[CASE_LADDER_MAX], size_t *count, struct error *error)
-{
-    const char *text = options_value(options, "n");
-    const struct case_file *file = &settings->file;
-    if (settings->settings.value[SETTING_n].source == SOURCE_USER)
-        return error_set(error, STATUS_BAD_INPUT,
-                         "autopsy: the key n and a ladder exclude each other; allowed: --n "
-                         "N1,N2,N3,N4,...");
-    if (text) return sweep_ladder(text, ORDER_LEVELS_MIN, file->dimension, ladder, count, error);
-    if (file->ladder_count == 0)
-        return error_set(error, STATUS_BAD_INPUT,
-                         "autopsy: the case %s has no ladder; give one: --n 100,200,400,800",
-                         file->name);
-    memcpy(ladder, file->ladder, sizeof file->ladder);
-    *count = file->ladder_count;
-    return STATUS_OK;
-}
-
 /* files: one for each snapshot, finest last; NULL if the runs were ours. */
 static enum status tell(const struct options *options, const struct run *run,
                         const struct autopsy *autopsy, json_t *files, struct error *error)
@@ -194,10 +175,9 @@ static enum status tell(const struct options *options, const struct run *run,
         printf("\n");
         table_wrap("", autopsy->sentence);
     }
-    if (options->json) status = result_write(document, options->json, error);
-    if (!status && plot) status = autopsy_plot_write(document, plot, error);
-    json_decref(document);
-    return status;
+    if (plot) status = autopsy_plot_write(document, plot, error);
+    const enum status written = options_write(options, document, error);
+    return status ? status : written;
 }
 
 static enum status examine(const struct options *options, int n, char **arguments,
@@ -208,7 +188,7 @@ static enum status examine(const struct options *options, int n, char **argument
     struct autopsy autopsy;
     size_t ladder[CASE_LADDER_MAX], count;
     if (run_prepare(&settings, arguments[0], n - 1, arguments + 1, error) ||
-        take_ladder(options, &settings, ladder, &count, error))
+        options_ladder(options, &settings, ORDER_LEVELS_MIN, ladder, &count, error))
         return error->status;
     settings.threads = options->threads;
     return autopsy_ladder(&settings, ladder, count, &autopsy, &level, error)

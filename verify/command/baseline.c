@@ -125,16 +125,9 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (status == STATUS_OK || status == STATUS_CHECK_FAILED) {
         if (options->speak && baseline) diff_print(&diff, DIFF_THRESHOLD, true, options->color);
         if (options->speak && !baseline) printf("a first baseline: %zu figures\n", diff.count);
-        struct error trouble;
-        json_t *document = options->json ? result_new("baseline") : NULL;
-        if (document) {
-            diff_add_json(&diff, document);
-            if (result_write(document, options->json, &trouble)) {
-                *error = trouble;
-                status = trouble.status;
-            }
-        }
-        json_decref(document);
+        json_t *document = result_new("baseline");
+        diff_add_json(&diff, document);
+        if (options_write(options, document, error)) status = error->status;
         if (options_value(options, "accept") && status <= STATUS_CHECK_FAILED)
             status = accept(options, file, baseline, results, &diff, error);
         diff_free(&diff);

@@ -57,13 +57,6 @@ static enum status read_rules(struct request *request, struct error *error)
     return STATUS_OK;
 }
 
-static enum status write_result(const struct request *request, json_t *document,
-                                struct error *error)
-{
-    return request->options->json ? result_write(document, request->options->json, error)
-                                  : STATUS_OK;
-}
-
 /* --- work-precision --------------------------------------------------------------------------- */
 
 /* The case, sod if none is named; resolutions belong to --n. */
@@ -87,19 +80,6 @@ static enum status prepare_case(const struct request *request, struct code *code
                      "bench: the key n and a ladder exclude each other; allowed: --n N1,N2,...");
 }
 
-static enum status take_ladder(const struct request *request, const struct run_settings *settings,
-                               size_t ladder[CASE_LADDER_MAX], size_t *count, struct error *error)
-{
-    const char *text = options_value(request->options, "n");
-    if (text) return sweep_ladder(text, 1, settings->file.dimension, ladder, count, error);
-    *count = settings->file.ladder_count;
-    memcpy(ladder, settings->file.ladder, sizeof settings->file.ladder);
-    if (*count) return STATUS_OK;
-    return error_set(error, STATUS_BAD_INPUT,
-                     "bench: the case %s has no ladder; give one: --n 100,200,400,800",
-                     settings->file.name);
-}
-
 static enum status present(struct request *request, struct precision *precision, const char *plot,
                            struct error *error)
 {
@@ -107,8 +87,7 @@ static enum status present(struct request *request, struct precision *precision,
     if (!status) {
         json_t *document = result_new("bench");
         precision_add_json(precision, document);
-        status = write_result(request, document, error);
-        json_decref(document);
+        status = options_write(request->options, document, error);
     }
     if (!status && request->options->speak) {
         const struct table_style style = table_style(request->options->color);
@@ -150,7 +129,7 @@ static enum status measure(struct request *request, struct code *code, struct er
     const char *plot = options_value(request->options, "plot");
     if (prepare_case(request, code, &external, &settings, error) ||
         sweep_parse(&sweep, options_value(request->options, "vary"), error) ||
-        take_ladder(request, &settings, ladder, &count, error) ||
+        options_ladder(request->options, &settings, 1, ladder, &count, error) ||
         (plot && picture_probe(plot, error)) ||
         sharing_take(&sharing, request->options, 1, NULL, false, error))
         return error->status;
@@ -206,8 +185,7 @@ static enum status kernels(struct request *request, struct error *error)
         json_t *document = result_new("bench");
         json_object_set_new(document, "points", json_array());
         bench_kernels_add_json(&result, document);
-        status = write_result(request, document, error);
-        json_decref(document);
+        status = options_write(request->options, document, error);
     }
     if (!status && request->options->speak) {
         const struct table_style style = table_style(request->options->color);
@@ -271,8 +249,7 @@ static enum status leave_out(struct request *request, enum bench_part part, cons
         json_t *document = result_new("bench");
         json_object_set_new(document, "points", json_array());
         bench_skips_add_json(&result, false, document);
-        status = write_result(request, document, error);
-        json_decref(document);
+        status = options_write(request->options, document, error);
     }
     if (!status && request->options->speak) {
         const struct table_style style = table_style(request->options->color);
@@ -319,8 +296,7 @@ static enum status scaling(struct request *request, struct error *error)
     if (!status) {
         json_t *document = result_new("bench");
         bench_scaling_add_json(&result, document);
-        status = write_result(request, document, error);
-        json_decref(document);
+        status = options_write(request->options, document, error);
     }
     if (!status && request->options->speak) {
         const struct table_style style = table_style(request->options->color);

@@ -21,15 +21,12 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (options->speak)
         printf("%zu results, %.3g MB; %zu removed\n", census.entries, census.bytes / 1e6,
                census.removed);
-    if (!options->json) return STATUS_OK;
     json_t *document = result_new("cache");
     json_object_set_new(document, "folder", json_string(arguments[0]));
     json_object_set_new(document, "entries", json_integer((json_int_t)census.entries));
     json_object_set_new(document, "removed", json_integer((json_int_t)census.removed));
     json_object_set_new(document, "bytes", json_real(census.bytes));
-    const enum status status = result_write(document, options->json, error);
-    json_decref(document);
-    return status;
+    return options_write(options, document, error);
 }
 
 static const struct command_option own_options[] = {

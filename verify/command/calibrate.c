@@ -44,12 +44,9 @@ static enum status take_out(const struct options *options, const struct code *co
 
 static enum status take_runs(const struct options *options, size_t *runs, struct error *error)
 {
-    const char *text = options_value(options, "runs");
     double number = RUNS;
-    if (text && !(text_integer(text, &number) && number >= 2 && number <= CALIBRATE_RUNS_MAX))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "calibrate: --runs '%.40s': allowed: an integer from 2 to %d", text,
-                         CALIBRATE_RUNS_MAX);
+    if (options_number(options, "runs", true, 2, CALIBRATE_RUNS_MAX, &number, error))
+        return error->status;
     *runs = (size_t)number;
     return STATUS_OK;
 }
@@ -164,9 +161,7 @@ static enum status calibrate_code(const struct options *options, const struct co
         for (size_t c = 0; options->speak && c < calibrate.count; c++)
             print_case(&calibrate, &calibrate.cases[c], options);
         if (options->speak) printf("written: %s\n", out);
-        if (options->json && result_write(document, options->json, &trouble))
-            *error = trouble, status = trouble.status;
-        json_decref(document);
+        if (options_write(options, document, error)) status = error->status;
     }
     calibrate_free(&calibrate);
     pool_free(&pool);

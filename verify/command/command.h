@@ -3,9 +3,11 @@
 #ifndef SPHPROOF_COMMAND_H
 #define SPHPROOF_COMMAND_H
 
+#include <jansson.h>
+#include <stdbool.h>
 #include <stddef.h>
 
-#include "status.h"
+#include "run.h"
 
 /* What stands for an argument that consists of options itself. */
 #define COMMAND_OPTIONS "OPTIONS"
@@ -45,6 +47,22 @@ struct command {
 
 /* The argument of the command's option called name ("" for a flag), NULL where it was not given. */
 const char *options_value(const struct options *options, const char *name);
+
+/* The number that an option gives, between low and high; *value stays where it was not given. */
+enum status options_number(const struct options *options, const char *name, bool whole, double low,
+                           double high, double *value, struct error *error);
+
+/* The same of an option that only has to be above 0. */
+enum status options_positive(const struct options *options, const char *name, double *value,
+                             struct error *error);
+
+/* The numbers of particles that --n gives, at least `least` distinct ones, else the case's own. */
+enum status options_ladder(const struct options *options, const struct run_settings *settings,
+                           size_t least, size_t ladder[CASE_LADDER_MAX], size_t *count,
+                           struct error *error);
+
+/* Writes the document where --json asks for one, and gives it back. NULL: no memory for it. */
+enum status options_write(const struct options *options, json_t *document, struct error *error);
 
 /* Bad usage of this command: STATUS_BAD_INPUT with the message and the synopsis. */
 enum status command_usage(const struct options *options, struct error *error, const char *format,

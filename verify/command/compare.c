@@ -438,11 +438,7 @@ static enum status tell(const struct options *options, const struct comparison *
     const char *html = options_value(options, "html");
     enum status status = STATUS_OK;
     if (options->speak) print_all(c, options);
-    if (options->json) {
-        json_t *document = compare_json(c, false);
-        status = result_write(document, options->json, error);
-        json_decref(document);
-    }
+    if (options->json) status = options_write(options, compare_json(c, false), error);
     return status || !html ? status : write_page(html, c, error);
 }
 
@@ -452,10 +448,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
     const char *text = options_value(options, "draws"), *html = options_value(options, "html");
     if (n != 2)
         return command_usage(options, error, "two sides are needed, each in quotes, not %d", n);
-    if (text && !(text_integer(text, &draws) && draws >= 1 && draws <= STUDY_REPLICATES_MAX))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "compare: --draws '%.40s': allowed: an integer from 1 to %d", text,
-                         STUDY_REPLICATES_MAX);
+    if (options_number(options, "draws", true, 1, STUDY_REPLICATES_MAX, &draws, error))
+        return error->status;
     struct comparison *c = calloc(1, sizeof *c);
     if (!c) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     enum status status = html ? output_probe(html, error) : STATUS_OK;

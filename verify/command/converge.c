@@ -224,27 +224,6 @@ static void print_all(const struct study *study, const struct options *options)
     if (study->suspicion[0]) printf("%ssuspicious: %s%s\n", style.bad, study->suspicion, style.end);
 }
 
-static enum status take_ladder(struct study *study, const struct options *options,
-                               struct error *error)
-{
-    const char *text = options_value(options, "n");
-    const struct case_file *file = &study->settings.file;
-    if (study->settings.settings.value[SETTING_n].source == SOURCE_USER)
-        return error_set(error, STATUS_BAD_INPUT,
-                         "converge: the key n and a ladder exclude each other; allowed: --n "
-                         "N1,N2,N3,N4,...");
-    if (text)
-        return sweep_ladder(text, ORDER_LEVELS_MIN, file->dimension, study->ladder,
-                            &study->level_count, error);
-    if (file->ladder_count == 0)
-        return error_set(error, STATUS_BAD_INPUT,
-                         "converge: the case %s has no ladder; give one: --n 100,200,400,800",
-                         file->name);
-    memcpy(study->ladder, file->ladder, sizeof study->ladder);
-    study->level_count = file->ladder_count;
-    return STATUS_OK;
-}
-
 static enum status take_replicates(struct study *study, const struct options *options,
                                    struct error *error)
 {
@@ -257,11 +236,8 @@ static enum status take_replicates(struct study *study, const struct options *op
                              "converge: --replicates and --vary seed exclude each other");
         replicates = 1;
     }
-    if (text &&
-        !(text_integer(text, &replicates) && replicates >= 1 && replicates <= STUDY_REPLICATES_MAX))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "converge: --replicates '%.40s': allowed: an integer from 1 to %d", text,
-                         STUDY_REPLICATES_MAX);
+    if (options_number(options, "replicates", true, 1, STUDY_REPLICATES_MAX, &replicates, error))
+        return error->status;
     study->replicates = (size_t)replicates;
     return STATUS_OK;
 }
@@ -313,7 +289,9 @@ static enum status converge(const struct options *options, int n, char **argumen
     bool whole;
     if (prepare(options, n, arguments, code, &external, &study.settings, error) ||
         sweep_parse(&study.sweep, options_value(options, "vary"), error) ||
-        take_ladder(&study, options, error) || take_replicates(&study, options, error) ||
+        options_ladder(options, &study.settings, ORDER_LEVELS_MIN, study.ladder, &study.level_count,
+                       error) ||
+        take_replicates(&study, options, error) ||
         sharing_take(&sharing, options, 1, NULL, false, error))
         return error->status;
     study.settings.threads = options->threads;
@@ -329,11 +307,10 @@ static enum status converge(const struct options *options, int n, char **argumen
     const bool sound = status == STATUS_OK || status == STATUS_CHECK_FAILED;
     const bool told = whole && (sound || status == STATUS_BROKE_DOWN);
     if (options->speak && told) print_all(&study, options);
-    if (options->json && told && result_write(document, options->json, &trouble)) {
-        *error = trouble;
-        status = trouble.status;
-    }
-    json_decref(document);
+    if (!told)
+        json_decref(document);
+    else if (options_write(options, document, error))
+        status = error->status;
     study_free(&study);
     return status;
 }

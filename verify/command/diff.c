@@ -49,7 +49,6 @@ static enum status run(const struct options *options, int n, char **arguments, s
     double threshold = DIFF_THRESHOLD;
     json_t *old = NULL, *new = NULL;
     struct diff diff = {.list = NULL};
-    struct error trouble;
     if (n != 2) return command_usage(options, error, "two result documents are needed");
     if (take_threshold(options, &threshold, error)) return error->status;
     enum status status = result_load(&old, arguments[0], error);
@@ -61,12 +60,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
             print_head("new", arguments[1], new);
             diff_print(&diff, threshold, false, options->color);
         }
-        json_t *document = options->json ? diff_json(&diff, old, new, threshold) : NULL;
-        if (document && result_write(document, options->json, &trouble)) {
-            *error = trouble;
-            status = trouble.status;
-        }
-        json_decref(document);
+        if (options_write(options, diff_json(&diff, old, new, threshold), error))
+            status = error->status;
         diff_free(&diff);
     }
     json_decref(old);

@@ -46,16 +46,6 @@ struct judgements {
 
 /* ---- input ---- */
 
-static enum status take_positive(const struct options *options, const char *name, double *value,
-                                 struct error *error)
-{
-    const char *text = options_value(options, name);
-    if (text && !(text_real(text, value) && *value > 0))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "gradient: --%s '%.40s': allowed: a number above 0", name, text);
-    return STATUS_OK;
-}
-
 /* "0:1" for all directions, or one such pair for each. */
 static enum status take_box(const struct options *options, struct request *r, struct error *error)
 {
@@ -109,9 +99,9 @@ static enum status take_request(const struct options *options, int n, char **arg
         plugin_select(&r->kernel, index, SINC_ORDER, r->dim, error))
         return error->status;
     r->tolerance = 1e-9;
-    if (take_positive(options, "eta", &r->eta, error) ||
-        take_positive(options, "h", &r->h, error) ||
-        take_positive(options, "tolerance", &r->tolerance, error))
+    if (options_positive(options, "eta", &r->eta, error) ||
+        options_positive(options, "h", &r->h, error) ||
+        options_positive(options, "tolerance", &r->tolerance, error))
         return error->status;
     if (r->eta > 0 && r->h > 0)
         return error_set(error, STATUS_BAD_INPUT,
@@ -352,15 +342,10 @@ static void print_judgement(const struct point_cloud *pc, const struct judgement
 }
 
 /* null where there is no gradient */
-static json_t *number(double value)
-{
-    return isnan(value) ? json_null() : result_number(value);
-}
-
 static json_t *vector(int dim, double *const *values, size_t i)
 {
     json_t *array = json_array();
-    for (int a = 0; a < dim; a++) json_array_append_new(array, number(values[a][i]));
+    for (int a = 0; a < dim; a++) json_array_append_new(array, result_number_or_null(values[a][i]));
     return array;
 }
 
@@ -414,14 +399,9 @@ static enum status write_answer(const struct options *options, const struct requ
     if (all->count) json_object_set(content, "judgements", judgements);
     json_decref(judgements);
     if (r->boxed) json_object_set_new(content, "box", box_json(r));
-    enum status status;
-    if (!document || !content || json_object_update(document, content))
-        status = error_set(error, STATUS_ENVIRONMENT, "no memory for the result");
-    else
-        status = result_write(document, options->json, error);
-    json_decref(document);
+    if (json_object_update(document, content)) json_decref(document), document = NULL;
     json_decref(content);
-    return status;
+    return options_write(options, document, error);
 }
 
 /* ---- the command ---- */

@@ -41,14 +41,11 @@ static enum status write_document(const struct options *options, const char *for
                                   const char *out, const struct run_settings *settings,
                                   const struct run_result *result, struct error *error)
 {
-    if (!options->json) return STATUS_OK;
     json_t *document = result_new("ic");
     run_add_plan(settings, result, document);
     json_object_set_new(document, "format", json_string(format));
     json_object_set_new(document, "file", json_string(out));
-    const enum status status = result_write(document, options->json, error);
-    json_decref(document);
-    return status;
+    return options_write(options, document, error);
 }
 
 static enum status ask_shape(const struct options *options, struct run_settings *settings,
@@ -56,7 +53,8 @@ static enum status ask_shape(const struct options *options, struct run_settings 
 {
     const char *layers = options_value(options, "as-3d");
     if (layers && slab_ask(settings, layers, "ic: --as-3d", error)) return error->status;
-    return options_value(options, "equal-masses") ? run_ask_equal_masses(settings, error) : STATUS_OK;
+    return options_value(options, "equal-masses") ? run_ask_equal_masses(settings, error)
+                                                  : STATUS_OK;
 }
 
 static enum status write_ic(const struct options *options, int n, char **arguments,

@@ -215,14 +215,8 @@ static enum status write_results(const struct options *options, const json_t *co
                                  struct error *error)
 {
     json_t *document = result_new("judge");
-    enum status status = STATUS_OK;
-    if (!options->json) goto end;
-    if (!document || json_object_update(document, (json_t *)content))
-        status = error_set(error, STATUS_ENVIRONMENT, "no memory for the result");
-    if (!status) status = result_write(document, options->json, error);
-end:
-    json_decref(document);
-    return status;
+    if (json_object_update(document, (json_t *)content)) json_decref(document), document = NULL;
+    return options_write(options, document, error);
 }
 
 /* document: with profiles. */

@@ -25,17 +25,6 @@ struct request {
     const struct options *options;
 };
 
-static enum status take_number(const struct options *options, const char *name, double low,
-                               double high, bool whole, double *value, struct error *error)
-{
-    const char *text = options_value(options, name);
-    if (!text) return STATUS_OK;
-    const bool number = whole ? text_integer(text, value) : text_real(text, value);
-    if (number && *value >= low && *value <= high) return STATUS_OK;
-    return error_set(error, STATUS_BAD_INPUT, "kernel: --%s '%.40s': allowed: %s from %g to %g",
-                     name, text, whole ? "an integer" : "a number", low, high);
-}
-
 /* "0,0.25,1": one number or more, none negative. */
 static enum status take_points(const struct options *options, struct request *request,
                                struct error *error)
@@ -65,12 +54,12 @@ static enum status take_terms(const struct options *options, struct request *req
     if (precision && strcmp(precision, "single") != 0 && strcmp(precision, "double") != 0)
         return error_set(error, STATUS_BAD_INPUT,
                          "kernel: --precision '%.40s': allowed: double, single", precision);
-    if (take_number(options, "samples", 1000, 1e9, true, &samples, error)) return error->status;
-    if (take_number(options, "seed", 0, 1e15, true, &seed, error)) return error->status;
+    if (options_number(options, "samples", true, 1000, 1e9, &samples, error)) return error->status;
+    if (options_number(options, "seed", true, 0, 1e15, &seed, error)) return error->status;
     request->terms = (struct terms){.single = precision && precision[0] == 's',
                                     .samples = (long)samples,
                                     .seed = (uint64_t)seed};
-    return take_number(options, "limit", 1, 1e6, false, &request->limit, error);
+    return options_number(options, "limit", false, 1, 1e6, &request->limit, error);
 }
 
 static enum status take_request(const struct options *options, struct request *request,
@@ -80,9 +69,9 @@ static enum status take_request(const struct options *options, struct request *r
     *request = (struct request){.h = 1, .limit = GUARD_LIMIT, .options = options};
     if (!options_value(options, "dim"))
         return command_usage(options, error, "--dim is needed: 1, 2 or 3");
-    if (take_number(options, "dim", 1, 3, true, &dim, error)) return error->status;
-    if (take_number(options, "sinc_n", 3, 12, true, &sinc_order, error)) return error->status;
-    if (take_number(options, "h", 1e-30, 1e30, false, &request->h, error)) return error->status;
+    if (options_number(options, "dim", true, 1, 3, &dim, error)) return error->status;
+    if (options_number(options, "sinc_n", true, 3, 12, &sinc_order, error)) return error->status;
+    if (options_number(options, "h", false, 1e-30, 1e30, &request->h, error)) return error->status;
     request->dim = (int)dim;
     request->sinc_order = (int)sinc_order;
     if (take_terms(options, request, error)) return error->status;

@@ -90,12 +90,8 @@ static const struct family *keys_of_codes(void)
     return made_family(&made);
 }
 
-static const struct family *words_of_codes(void)
-{
-    static const struct family family = {
-        "code_words", "@WORDS@ of a code file's commands and templates", code_words, CODE_WORDS};
-    return &family;
-}
+static const struct family words_of_codes = {
+    "code_words", "@WORDS@ of a code file's commands and templates", code_words, CODE_WORDS};
 
 static const struct family *checks(void)
 {
@@ -128,62 +124,44 @@ static const struct family *stress(void)
     return made_family(&made);
 }
 
-static const struct family *kernels(void)
-{
-    return &kernel_family;
-}
-
-#define PLAIN(name, from)                                                                          \
-    static const struct family *name##_list(void)                                                  \
-    {                                                                                              \
-        return &from##_family;                                                                     \
-    }
-PLAIN(problem, problem)
-PLAIN(gradient, scheme_gradient)
-PLAIN(formulation, scheme_formulation)
-PLAIN(volume_element, scheme_volume_element)
-PLAIN(integrator, integrator)
-PLAIN(operator, operator)
-PLAIN(viscosity, scheme_viscosity)
-PLAIN(viscosity_form, scheme_viscosity_form)
-PLAIN(balsara, scheme_balsara)
-PLAIN(lattice, settings_lattice)
-PLAIN(energy, scheme_energy)
-PLAIN(pair_width, scheme_pair_width)
-PLAIN(h_method, scheme_h_method)
-PLAIN(field, field)
-PLAIN(norm, field_norm)
-PLAIN(snapshot, snapshot_reader)
-PLAIN(writer, snapshot_writer)
-PLAIN(format, start_format)
-
-static const struct family *(*const lists[])(void) = {cases,
-                                                      problem_list,
-                                                      kernels,
-                                                      gradient_list,
-                                                      operator_list,
-                                                      formulation_list,
-                                                      volume_element_list,
-                                                      integrator_list,
-                                                      viscosity_list,
-                                                      viscosity_form_list,
-                                                      balsara_list,
-                                                      lattice_list,
-                                                      energy_list,
-                                                      pair_width_list,
-                                                      h_method_list,
-                                                      field_list,
-                                                      norm_list,
-                                                      snapshot_list,
-                                                      writer_list,
-                                                      format_list,
-                                                      checks,
-                                                      mutants,
-                                                      stress,
-                                                      keys,
-                                                      keys_of_codes,
-                                                      words_of_codes};
+/* Either of them. */
+static const struct {
+    const struct family *family;
+    const struct family *(*make)(void);
+} lists[] = {
+    {.make = cases},
+    {&problem_family, NULL},
+    {&kernel_family, NULL},
+    {&scheme_gradient_family, NULL},
+    {&operator_family, NULL},
+    {&scheme_formulation_family, NULL},
+    {&scheme_volume_element_family, NULL},
+    {&integrator_family, NULL},
+    {&scheme_viscosity_family, NULL},
+    {&scheme_viscosity_form_family, NULL},
+    {&scheme_balsara_family, NULL},
+    {&settings_lattice_family, NULL},
+    {&scheme_energy_family, NULL},
+    {&scheme_pair_width_family, NULL},
+    {&scheme_h_method_family, NULL},
+    {&field_family, NULL},
+    {&field_norm_family, NULL},
+    {&snapshot_reader_family, NULL},
+    {&snapshot_writer_family, NULL},
+    {&start_format_family, NULL},
+    {.make = checks},
+    {.make = mutants},
+    {.make = stress},
+    {.make = keys},
+    {.make = keys_of_codes},
+    {&words_of_codes, NULL},
+};
 enum { LISTS = sizeof lists / sizeof *lists };
+
+static const struct family *list_at(size_t i)
+{
+    return lists[i].family ? lists[i].family : lists[i].make();
+}
 
 static void print_family(const struct family *family, const struct table_style *style)
 {
@@ -253,7 +231,7 @@ static enum status choose(const char *word, const struct family **chosen, struct
 {
     const char *names[LISTS];
     for (size_t i = 0; i < LISTS; i++) {
-        const struct family *family = lists[i]();
+        const struct family *family = list_at(i);
         names[i] = family->name;
         if (strcmp(word, family->name) == 0) *chosen = family;
     }
@@ -267,7 +245,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     const bool markdown = options_value(options, "markdown"),
                places = options_value(options, "where");
     if (n > 1) return command_usage(options, error, "one family at a time");
-    for (size_t i = 0; i < LISTS; i++) lists[i]();
+    for (size_t i = 0; i < LISTS; i++) list_at(i);
     if (no_memory) return error_set(error, STATUS_ENVIRONMENT, "list: no memory");
     if (n == 1 && choose(arguments[0], &chosen, error)) return error->status;
     const bool only_keys = chosen && strcmp(chosen->name, "keys") == 0;
@@ -276,7 +254,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (places && (n || markdown)) return command_usage(options, error, "--where stands alone");
     json_t *families = json_object(), *installed = places ? where(options->speak) : NULL;
     for (size_t i = 0; i < LISTS && !places; i++) {
-        const struct family *family = lists[i]();
+        const struct family *family = list_at(i);
         if (chosen && chosen != family) continue;
         if (options->speak && !only_keys) print_family(family, &style);
         json_object_set_new(families, family->name, family_json(family));
@@ -284,16 +262,10 @@ static enum status run(const struct options *options, int n, char **arguments, s
     for (int i = 0; i < SETTINGS && only_keys && options->speak && !markdown; i++)
         print_key(&setting_keys[i], &style);
     if (markdown && options->speak) print_keys_markdown();
-    enum status status = STATUS_OK;
-    if (options->json) {
-        json_t *document = result_new("list");
-        json_object_set(document, "families", families);
-        if (places) json_object_set(document, "installed", installed);
-        status = result_write(document, options->json, error);
-        json_decref(document);
-    }
-    json_decref(families), json_decref(installed);
-    return status;
+    json_t *document = result_new("list");
+    json_object_set_new(document, "families", families);
+    if (places) json_object_set_new(document, "installed", installed);
+    return options_write(options, document, error);
 }
 
 static const struct command_option own_options[] = {

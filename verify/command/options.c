@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "plugin_kernel.h"
+#include "result.h"
+#include "sweep.h"
 #include "text.h"
 
 const char *options_value(const struct options *options, const char *name)
@@ -27,6 +29,56 @@ enum status command_usage(const struct options *options, struct error *error, co
     return error_set(error, STATUS_BAD_INPUT, "%s: %s (usage: sphproof %s %s)",
                      options->command->name, what, options->command->name,
                      options->command->synopsis);
+}
+
+enum status options_number(const struct options *options, const char *name, bool whole, double low,
+                           double high, double *value, struct error *error)
+{
+    const char *text = options_value(options, name);
+    if (!text) return STATUS_OK;
+    const bool number = whole ? text_integer(text, value) : text_real(text, value);
+    if (number && *value >= low && *value <= high) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT, "%s: --%s '%.40s': allowed: %s from %g to %g",
+                     options->command->name, name, text, whole ? "an integer" : "a number", low,
+                     high);
+}
+
+enum status options_positive(const struct options *options, const char *name, double *value,
+                             struct error *error)
+{
+    const char *text = options_value(options, name);
+    if (!text || (text_real(text, value) && *value > 0)) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT, "%s: --%s '%.40s': allowed: a number above 0",
+                     options->command->name, name, text);
+}
+
+enum status options_ladder(const struct options *options, const struct run_settings *settings,
+                           size_t least, size_t ladder[CASE_LADDER_MAX], size_t *count,
+                           struct error *error)
+{
+    const char *text = options_value(options, "n"), *name = options->command->name;
+    const struct case_file *file = &settings->file;
+    if (settings->settings.value[SETTING_n].source == SOURCE_USER)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%s: the key n and a ladder exclude each other; allowed: --n %s", name,
+                         least > 1 ? "N1,N2,N3,N4,..." : "N1,N2,...");
+    if (text) return sweep_ladder(text, least, file->dimension, ladder, count, error);
+    memcpy(ladder, file->ladder, sizeof file->ladder);
+    *count = file->ladder_count;
+    if (*count) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "%s: the case %s has no ladder; give one: --n 100,200,400,800", name,
+                     file->name);
+}
+
+enum status options_write(const struct options *options, json_t *document, struct error *error)
+{
+    enum status status = STATUS_OK;
+    if (options->json)
+        status = document ? result_write(document, options->json, error)
+                          : error_set(error, STATUS_ENVIRONMENT, "no memory for the result");
+    json_decref(document);
+    return status;
 }
 
 enum status options_kernel(const struct options *options, int *index, struct error *error)

@@ -198,16 +198,14 @@ static enum status take_case(struct request *r, int n, char **arguments, struct 
 static enum status take_request(const struct options *options, int n, char **arguments,
                                 struct request *r, struct error *error)
 {
-    const char *check = options_value(options, "check"),
-               *tolerance = options_value(options, "tolerance");
+    const char *check = options_value(options, "check");
+    const bool tolerance = options_value(options, "tolerance");
     if (n < 1) return command_usage(options, error, "particles are needed: a file or a case");
     r->source = arguments[0];
     r->tolerance = 1e-9;
     if (tolerance && !check)
         return error_set(error, STATUS_BAD_INPUT, "rates: --tolerance belongs to --check");
-    if (tolerance && !(text_real(tolerance, &r->tolerance) && r->tolerance > 0))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "rates: --tolerance '%.40s': allowed: a number above 0", tolerance);
+    if (options_positive(options, "tolerance", &r->tolerance, error)) return error->status;
     r->from_file = is_csv(r->source) || is_snapshot(r->source);
     enum status status = (r->from_file ? take_file : take_case)(r, n - 1, arguments + 1, error);
     if (!status && check) status = take_theirs(r, check, tolerance, error);
@@ -372,14 +370,9 @@ static enum status write_json(const struct options *options, const struct reques
         json_object_set_new(content, "comparison", comparison_json(check));
         json_object_set_new(content, "status", json_string(check->good ? "pass" : "fail"));
     }
-    enum status status;
-    if (!document || !content || json_object_update(document, content))
-        status = error_set(error, STATUS_ENVIRONMENT, "no memory for the result");
-    else
-        status = result_write(document, options->json, error);
-    json_decref(document);
+    if (json_object_update(document, content)) json_decref(document), document = NULL;
     json_decref(content);
-    return status;
+    return options_write(options, document, error);
 }
 
 /* ---- the command ---- */

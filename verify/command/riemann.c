@@ -68,21 +68,17 @@ static double sample_x(const struct sampling *s, int i)
 
 /* ---- output ---- */
 
-/* A number, null where the quantity does not exist. */
-static json_t *number(double value)
-{
-    return isnan(value) ? json_null() : result_number(value);
-}
-
 static json_t *samples_json(const struct riemann_solution *s, const struct sampling *sampling)
 {
     json_t *samples = json_array();
     for (int i = 0; i < sampling->n; i++) {
         const double x = sample_x(sampling, i);
         const struct riemann_state state = riemann_sample(s, x, sampling->x0, sampling->time);
-        json_array_append_new(samples, json_pack("{s:o, s:o, s:o, s:o}", "x", number(x), "density",
-                                                 number(state.rho), "velocity", number(state.v),
-                                                 "pressure", number(state.P)));
+        json_array_append_new(samples,
+                              json_pack("{s:o, s:o, s:o, s:o}", "x", result_number_or_null(x),
+                                        "density", result_number_or_null(state.rho), "velocity",
+                                        result_number_or_null(state.v), "pressure",
+                                        result_number_or_null(state.P)));
     }
     return samples;
 }
@@ -94,15 +90,19 @@ static json_t *document_make(const struct riemann_solution *s, const struct samp
         "{s:o, s:[o,o,o], s:[o,o,o], s:o, s:o, s:o, s:o, s:b, s:s, s:s, s:{s:o, s:o, s:o, s:o, "
         "s:o}, "
         "s:o, s:o, s:o}",
-        "gamma", number(s->gamma), "left", number(s->left.rho), number(s->left.v),
-        number(s->left.P), "right", number(s->right.rho), number(s->right.v), number(s->right.P),
-        "p_star", number(s->p_star), "v_star", number(s->v_star), "rho_star_left",
-        number(s->rho_star_left), "rho_star_right", number(s->rho_star_right), "underflow",
-        (int)s->underflow, "left_wave", riemann_wave_name(s->left_wave), "right_wave",
-        riemann_wave_name(s->right_wave), "speeds", "left_head", number(s->left_head), "left_tail",
-        number(s->left_tail), "contact", number(s->contact), "right_tail", number(s->right_tail),
-        "right_head", number(s->right_head), "time", number(sampling->time), "x0",
-        number(sampling->x0), "samples", samples_json(s, sampling));
+        "gamma", result_number_or_null(s->gamma), "left", result_number_or_null(s->left.rho),
+        result_number_or_null(s->left.v), result_number_or_null(s->left.P), "right",
+        result_number_or_null(s->right.rho), result_number_or_null(s->right.v),
+        result_number_or_null(s->right.P), "p_star", result_number_or_null(s->p_star), "v_star",
+        result_number_or_null(s->v_star), "rho_star_left", result_number_or_null(s->rho_star_left),
+        "rho_star_right", result_number_or_null(s->rho_star_right), "underflow", (int)s->underflow,
+        "left_wave", riemann_wave_name(s->left_wave), "right_wave",
+        riemann_wave_name(s->right_wave), "speeds", "left_head",
+        result_number_or_null(s->left_head), "left_tail", result_number_or_null(s->left_tail),
+        "contact", result_number_or_null(s->contact), "right_tail",
+        result_number_or_null(s->right_tail), "right_head", result_number_or_null(s->right_head),
+        "time", result_number_or_null(sampling->time), "x0", result_number_or_null(sampling->x0),
+        "samples", samples_json(s, sampling));
     if (!document || !content || json_object_update(document, content)) {
         json_decref(document);
         document = NULL;
@@ -181,11 +181,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
                          gamma, left.rho, left.v, left.P, right.rho, right.v, right.P);
     if (options->speak) print_solution(&solution, &sampling);
     if (!options->json) return STATUS_OK;
-    json_t *document = document_make(&solution, &sampling);
-    const enum status status = document ? result_write(document, options->json, error)
-                                        : error_set(error, STATUS_ENVIRONMENT, "no memory");
-    json_decref(document);
-    return status;
+    return options_write(options, document_make(&solution, &sampling), error);
 }
 
 static const struct command_option own_options[] = {

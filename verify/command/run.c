@@ -221,12 +221,9 @@ static bool show_progress(void *context, double time, uint64_t steps)
 static enum status write_json(const struct options *options, const struct run_settings *settings,
                               const struct run_result *result, struct error *error)
 {
-    if (!options->json) return STATUS_OK;
     json_t *document = result_new("run");
     run_add_json(settings, result, document);
-    const enum status status = result_write(document, options->json, error);
-    json_decref(document);
-    return status;
+    return options_write(options, document, error);
 }
 
 static void remark(const struct options *options, const char *text)
@@ -264,12 +261,9 @@ static enum status explain(const struct options *options, const struct run *run,
         print_plan(&result, &style);
         print_estimate(&result, &style);
     }
-    if (!options->json) return STATUS_OK;
     json_t *document = result_new("run");
     run_add_plan(settings, &result, document);
-    status = result_write(document, options->json, error);
-    json_decref(document);
-    return status;
+    return options_write(options, document, error);
 }
 
 static void print_snapshots(const struct snapshots *snapshots, double t_end)

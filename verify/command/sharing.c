@@ -28,17 +28,14 @@ static enum status take_engine(struct sharing *sharing, const struct options *op
                                const char *folder, bool force, struct error *error)
 {
     const char *name = options_value(options, "engine");
-    const char *tasks = options_value(options, "engine-tasks");
     double number = 0;
     sharing->engine = engine_find(name ? name : "local", error);
     if (!sharing->engine) return error->status;
-    if (tasks && !(text_integer(tasks, &number) && number >= 1 && number <= ENGINE_TASKS_MAX))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "%s: --engine-tasks '%.40s': allowed: an integer from 1 to %d",
-                         options->command->name, tasks, ENGINE_TASKS_MAX);
+    if (options_number(options, "engine-tasks", true, 1, ENGINE_TASKS_MAX, &number, error))
+        return error->status;
     sharing->tasks = (int)number;
     if (!sharing->engine->compute)
-        return tasks || options_value(options, "engine-options")
+        return sharing->tasks || options_value(options, "engine-options")
                    ? error_set(error, STATUS_BAD_INPUT,
                                "%s: --engine-options and --engine-tasks need --engine slurm",
                                options->command->name)
@@ -69,13 +66,9 @@ static enum status check_build(const struct sharing *sharing, const struct optio
 enum status sharing_take(struct sharing *sharing, const struct options *options, int jobs,
                          const char *folder, bool force, struct error *error)
 {
-    const char *text = options_value(options, "jobs");
     double number = jobs;
     *sharing = (struct sharing){.list = options_value(options, "list") != NULL};
-    if (text && !(text_integer(text, &number) && number >= 1 && number <= JOBS_MAX))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "%s: --jobs '%.40s': allowed: an integer from 1 to %d",
-                         options->command->name, text, JOBS_MAX);
+    if (options_number(options, "jobs", true, 1, JOBS_MAX, &number, error)) return error->status;
     sharing->pool.jobs = number >= 1 ? (int)number : 1;
     if (take_share(&sharing->pool.share, options, error)) return error->status;
     if (!folder) folder = options_value(options, "cache");

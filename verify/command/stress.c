@@ -93,10 +93,8 @@ static enum status serialise_out(struct stress *stress, struct pool *pool, struc
     json_t *document = result_new("stress");
     const size_t wrong = stress_judge(stress, pool, document);
     if (options->speak) print_all(document, wrong, options);
-    if (options->json) status = result_write(document, options->json, error);
-    if (!status && wrong) status = STATUS_CHECK_FAILED;
-    json_decref(document);
-    return status;
+    status = options_write(options, document, error);
+    return !status && wrong ? STATUS_CHECK_FAILED : status;
 }
 
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)

@@ -71,14 +71,11 @@ static enum status write_results(const struct suite *suite, const struct options
 {
     const char *junit = options_value(options, "junit");
     enum status status = junit ? suite_output_junit(suite, junit, error) : STATUS_OK;
-    if (options->json && !status) {
-        json_t *document = result_new("verify");
-        suite_output_json(suite, document);
-        json_object_set_new(document, "failures", headline_list(suite));
-        status = result_write(document, options->json, error);
-        json_decref(document);
-    }
-    return status;
+    if (status || !options->json) return status;
+    json_t *document = result_new("verify");
+    suite_output_json(suite, document);
+    json_object_set_new(document, "failures", headline_list(suite));
+    return options_write(options, document, error);
 }
 
 static void keep_failures(const struct suite *suite, const struct options *options)

@@ -104,19 +104,24 @@ TEST(ladders)
     char with_n[] = "n=24^2", *words[] = {with_n};
     char four[] = "16^2,20^2,24^2,32^2", three[] = "16^2,20^2,24^2";
     assert_int_equal(run_prepare(&settings, "yee", 0, NULL, &error), STATUS_OK);
-    assert_int_equal(take_ladder(&options, &settings, ladder, &count, &error), STATUS_OK);
+    assert_int_equal(options_ladder(&options, &settings, ORDER_LEVELS_MIN, ladder, &count, &error),
+                     STATUS_OK);
     assert_int_equal(count, settings.file.ladder_count);
     assert_memory_equal(ladder, settings.file.ladder, count * sizeof *ladder);
     values[0] = four;
-    assert_int_equal(take_ladder(&options, &settings, ladder, &count, &error), STATUS_OK);
+    assert_int_equal(options_ladder(&options, &settings, ORDER_LEVELS_MIN, ladder, &count, &error),
+                     STATUS_OK);
     assert_true(count == 4 && ladder[0] == 256 && ladder[3] == 1024);
     values[0] = three;
-    assert_int_equal(take_ladder(&options, &settings, ladder, &count, &error), STATUS_BAD_INPUT);
+    assert_int_equal(options_ladder(&options, &settings, ORDER_LEVELS_MIN, ladder, &count, &error),
+                     STATUS_BAD_INPUT);
     values[0] = NULL;
     settings.file.ladder_count = 0;
-    assert_int_equal(take_ladder(&options, &settings, ladder, &count, &error), STATUS_BAD_INPUT);
+    assert_int_equal(options_ladder(&options, &settings, ORDER_LEVELS_MIN, ladder, &count, &error),
+                     STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "has no ladder"));
     assert_int_equal(run_prepare(&settings, "yee", 1, words, &error), STATUS_OK);
-    assert_int_equal(take_ladder(&options, &settings, ladder, &count, &error), STATUS_BAD_INPUT);
+    assert_int_equal(options_ladder(&options, &settings, ORDER_LEVELS_MIN, ladder, &count, &error),
+                     STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "exclude each other"));
 }
