@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Slurm's answers and how they are read: recorded from Slurm 22.05 (two nodes on one host), and
- * answers that are none. Scripts in a folder of their own stand for its commands. */
+ * Slurm's answers and how they are read: recorded from Slurm 22.05 (two nodes on one host). Scripts
+ * in a folder of their own stand for its commands. (What is done with answers, and with none:
+ * test_engine_slurm_calls.) */
 #include "test.h"
 
 #include <stdio.h>
@@ -132,39 +133,7 @@ TEST(recorded_answers)
     queue_is("", NULL, 0); /* nothing of this name */
 }
 
-/* Lines that are none are left out, the others are read; the last one may have no end. */
-TEST(odd_answers)
-{
-    const struct expected two[] = {{1, 1, true, "RUNNING", "None"}, {1, 2, true, "RUNNING", "x y"}};
-    queue_is("1 1 RUNNING None\n\nsqueue: hello\n1 2\n1 2 RUNNING x y\n", two, 2);
-    queue_is("\n\n", NULL, 0);
-    queue_is("x 1 RUNNING None\n", NULL, 0);
-}
-
-TEST(no_queue)
-{
-    struct slurm_task *found;
-    struct error error;
-    size_t count = 7;
-    command_says("squeue", "", "slurm_load_jobs error: Unable to contact slurm controller", 1);
-    assert_int_equal(slurm_queue("name", &found, &count, &error), STATUS_ENVIRONMENT);
-    assert_string_equal(error.message,
-                        "--engine slurm: squeue failed (exit status 1): slurm_load_jobs error: "
-                        "Unable to contact slurm controller");
-    assert_true(found == NULL && count == 0);
-    command_says("squeue", "1 1 RUNNING None\n", "", 3); /* what a failure prints is no answer */
-    assert_int_equal(slurm_queue("name", &found, &count, &error), STATUS_ENVIRONMENT);
-    assert_string_equal(error.message,
-                        "--engine slurm: squeue failed (exit status 3): it says nothing");
-    assert_true(found == NULL && count == 0);
-    assert_int_equal(remove(path_of("squeue")), 0);
-    assert_int_equal(slurm_queue("name", &found, &count, &error), STATUS_ENVIRONMENT);
-    assert_non_null(strstr(error.message, "--engine slurm: no command squeue: No such file"));
-    assert_non_null(strstr(error.message, "(sbatch, squeue and scancel are needed, on a machine "
-                                          "that may submit jobs)"));
-}
-
-/* ---- submitting and cancelling ---- */
+/* ---- submitting ---- */
 
 TEST(submissions)
 {
@@ -201,23 +170,6 @@ TEST(submissions)
             assert_non_null(strstr(error.message, rows[i].error));
         }
     }
-}
-
-TEST(cancelling)
-{
-    const struct slurm_task task = {.job = 12, .index = 3};
-    struct error error = {0};
-    command_says("scancel", "", "", 0);
-    assert_int_equal(slurm_cancel("name", &error), STATUS_OK);
-    assert_string_equal(told("scancel"), "[--name=name]");
-    assert_int_equal(slurm_cancel_task(&task, &error), STATUS_OK);
-    assert_string_equal(told("scancel"), "[12_3]");
-    command_says("scancel", "", "scancel: error: Kill job error", 1);
-    assert_int_equal(slurm_cancel("name", &error), STATUS_ENVIRONMENT);
-    assert_string_equal(error.message, "--engine slurm: scancel failed (exit status 1): scancel: "
-                                       "error: Kill job error");
-    assert_int_equal(slurm_cancel_task(&task, NULL), STATUS_ENVIRONMENT);
-    assert_int_equal(slurm_cancel("name", NULL), STATUS_ENVIRONMENT);
 }
 
 int main(void)

@@ -1,20 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Certificates against what is known of the kernels: exact second moments, sign and size of the
  * transform (from an independent computation with exact rational arithmetic), class, onset of
- * pairing (Dehnen & Aly 2012 and relaxation runs); and the numbers of `sphproof kernel --json`. */
+ * pairing (Dehnen & Aly 2012 and relaxation runs). */
 #include "test.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <jansson.h>
 
 #include "certificate.h"
 #include "near.h"
-
-static const char *program, *folder;
 
 struct known {
     const char *name;
@@ -73,53 +66,4 @@ TEST(test_known)
             assert_true(isnan(certificate.pairing));
         certificate_free(&certificate);
     }
-}
-
-static double number(const json_t *object, const char *key)
-{
-    const json_t *value = json_object_get(object, key);
-    if (!json_is_number(value)) fail_msg("no number '%s'", key);
-    return json_number_value(value);
-}
-
-TEST(test_json)
-{
-    char path[4096], command[8192];
-    snprintf(path, sizeof path, "%s/certificate.json", folder);
-    snprintf(command, sizeof command,
-             "'%s' kernel wendland_c4 --dim 2 --h 0.25 --at 0.5,0,1,1.5 --json '%s' --quiet "
-             ">/dev/null",
-             program, path);
-    assert_int_equal(system(command), 0);
-    json_t *document = json_load_file(path, 0, NULL);
-    assert_non_null(document);
-    const json_t *values = json_object_get(document, "values");
-    assert_int_equal(json_array_size(values), 4);
-    static const double q[] = {0.5, 0, 1, 1.5};
-    struct kernel kernel;
-    assert_int_equal(kernel_select(&kernel, "wendland_c4", 5, NULL), STATUS_OK);
-    for (size_t i = 0; i < 4; i++) {
-        const json_t *value = json_array_get(values, i);
-        assert_true(number(value, "q") == q[i] && number(value, "r") == 0.25 * q[i]);
-        assert_true(number(value, "w") == kernel_value(&kernel, 0.25 * q[i], 0.25, 2));
-        assert_true(number(value, "dw_dr") == kernel_dr(&kernel, 0.25 * q[i], 0.25, 2));
-        assert_true(number(value, "dw_dh") == kernel_dh(&kernel, 0.25 * q[i], 0.25, 2));
-    }
-    assert_int_equal(json_integer_value(json_object_get(document, "class")), 4);
-    assert_string_equal(json_string_value(json_object_get(document, "kernel")), "wendland_c4");
-    near_relative(number(document, "normalisation"), 1, 1e-13);
-    near_relative(number(json_object_get(document, "moments"), "second_over_h2"), 7. / 132, 1e-13);
-    const json_t *fourier = json_object_get(document, "fourier");
-    assert_true(json_is_null(json_object_get(fourier, "first_negative_k")));
-    near_relative(number(fourier, "min"), 4.83e-11, 0.01);
-    assert_true(json_array_size(json_object_get(document, "checks")) > 40);
-    json_decref(document);
-}
-
-int main(int argc, char **argv)
-{
-    if (argc != 3) return 2;
-    program = argv[1];
-    folder = argv[2];
-    return test_run(NULL, NULL);
 }
