@@ -267,10 +267,14 @@ TEST(dimensions)
                 write_items(path_of("d.hdf5"), items, layouts[0].count);
                 const enum status status = snapshot_read(path_of("d.hdf5"), &here, &file, &error);
                 const int dim = varies == 1 ? 1 : varies == 3 ? 2 : varies == 7 ? 3 : 0;
+                const int fixed = varies & 1 ? 1 : 0, beyond = varies & 2 && !fixed ? 1 : 2;
+                char says[64];
+                snprintf(says, sizeof says, "positions differ along %c but not along %c;",
+                         "xyz"[beyond], "xyz"[fixed]);
                 assert_int_equal(status, dim && v >= dim ? STATUS_OK : STATUS_BAD_INPUT);
                 if (status)
                     assert_non_null(strstr(error.message, !varies ? "all particles are at one place"
-                                                          : !dim  ? "positions differ along"
+                                                          : !dim  ? says
                                                           : v < 2 ? "no vy"
                                                                   : "no vz"));
                 else

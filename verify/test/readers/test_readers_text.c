@@ -191,9 +191,10 @@ TEST(remarks)
                             file.box[d] == ends[k].length[d]);
             snapshot_file_free(&file);
         }
-    static const char *const boxes[] = {"# box = 0\n", "# box = -1\n", "# box = 1 0\n",
-                                        "# box = 1 2 -3\n"};
-    for (int k = 0; k < 4; k++) { /* along the directions that there are */
+    static const char *const boxes[] = {"# box = 0\n", "# box = 0 1 1\n", "# box = -1\n",
+                                        "# box = 1 0\n", "# box = 1 2 -3\n"};
+    for (size_t k = 0; k < sizeof boxes / sizeof *boxes;
+         k++) { /* along the directions that there are */
         static char text[TEXT_MAX];
         struct table t = table_of(3, true);
         snprintf(t.head, sizeof t.head, "%s", boxes[k]);
