@@ -41,7 +41,7 @@ static double down(const struct frame *f, double y)
 static void path(struct buffer *to, const char *class, const struct frame *f, const double *x,
                  const double *y, size_t n, size_t most, bool joined)
 {
-    const size_t stride = n > most ? (n + most - 1) / most : 1;
+    const size_t stride = (n + most - 1) / most;
     double last_x = -1, last_y = -1;
     bool pen = false;
     buffer_format(to, "<path class=\"%s\" d=\"", class);
