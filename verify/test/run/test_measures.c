@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What runs are measured by, on hand-made particles and by hand: windows, shells, growth, means and
- * error budgets. */
+ * What runs are measured by, on hand-made particles and by hand: windows and shells. (Growth, means
+ * and error budgets: whole runs, test_mode and the transcripts.) */
 #include "test.h"
 
 #include "near.h"
@@ -8,11 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "functional.h"
-#include "growth.h"
 #include "run_part.h"
 #include "shells.h"
-#include "value.h"
 
 TEST(test_window)
 {
@@ -54,151 +51,10 @@ TEST(test_window)
     }
 }
 
-TEST(test_growth)
-{
-    struct growth growth = {0};
-    const double t[] = {1, 2, 4, 5}, y[] = {0.5, 1.5, 2, 4};
-    for (int k = 0; k < 4; k++) {
-        assert_true(isnan(growth_rate(&growth)) == (k < 3));
-        growth_see(&growth, t[k], exp(y[k]));
-    }
-    near_relative(growth_rate(&growth), 7.5 / 10, 1e-14); /* means 3 and 2 */
-    struct growth none = growth;
-    growth_see(&none, 6, 0);
-    assert_true(isnan(growth_rate(&none)));
-    growth_see(&growth, 6, -1);
-    assert_true(isnan(growth_rate(&growth)));
-}
-
-/* A problem without one: P = 2 + x, and two regions that meet at x = 1. */
-static double seen_reach, seen_time;
-
-static void sample(const struct prepared *p, const double x[3], double t, struct problem_state *s)
-{
-    (void)p;
-    *s = (struct problem_state){.rho = 1, .P = 2 + x[0] + t, .u = 10 + 4 * x[0] - t};
-}
-
-static size_t region_at(const struct prepared *p, const double x[3], double reach, double t)
-{
-    (void)p;
-    seen_reach = reach, seen_time = t;
-    return (size_t) !(x[0] < 1);
-}
-
-static double still(const struct prepared *p, const struct snapshot *s)
-{
-    (void)p;
-    return 0.25 * (double)s->n;
-}
-
-static const struct regions regions = {{"left", "right", NULL}, region_at, still};
-
-static const struct problem problem = {.sample = sample, .regions = &regions};
-
-enum { N = 5 }; /* and one behind them */
-
-static const double x[3][N + 1] = {
-    {0, 0.5, 1, 2, 2.5, 1.5}, {0, 1, 0, 1, 0, 1.5}, {0, 0, 2, 0, 1, 1.5}};
-static const double v[3][N + 1] = {
-    {1, 2, 3, 4, 5, 1.5}, {0, 1, 2, 3, 4, 1.5}, {5, 4, 3, 2, 1, 1.5}};
-static const double m[N + 1] = {1, 2, 3, 4, 50, 1.5}, rho[N + 1] = {1, 2, 1, 4, 9, 1.5},
-                          u[N + 1] = {3, 1, 4, 1, 90, 1.5}, P[N + 1] = {1, 2, 4, 8, 90, 1.5},
-                          h[N + 1] = {1, 2, 3, 4, 5, 1.5},
-                          volume[N + 1] = {0.5, 1, 2, 0.25, 70, 1.5};
-
-static const struct snapshot snapshot = {.n = N,
-                                         .x = {x[0], x[1], x[2]},
-                                         .v = {v[0], v[1], v[2]},
-                                         .m = m,
-                                         .rho = rho,
-                                         .u = u,
-                                         .P = P,
-                                         .h = h,
-                                         .volume = volume,
-                                         .time = 0};
-
-static struct prepared prepared_in(int dim)
-{
-    return (struct prepared){.problem = &problem,
-                             .domain = {dim, {-4, -4, -4}, {4, 4, 4}},
-                             .window = {.dim = dim, .lo = {0, 0, 0}, .hi = {2, 2, 2}},
-                             .boundary = {BOUNDARY_OPEN, BOUNDARY_OPEN, BOUNDARY_OPEN},
-                             .gamma = 1.5};
-}
-
-/* Means over the first four particles: the fifth is not in the window. */
-TEST(test_functionals)
-{
-    const double V = 0.5 + 1 + 2 + 0.25;
-    for (int dim = 1; dim <= 3; dim++) {
-        const struct prepared p = prepared_in(dim);
-        near_relative(functional_window_mean(&p, &snapshot, P), (0.5 + 2 + 8 + 2) / V, 1e-15);
-        near_relative(functional_mean_pressure.measure(&p, &snapshot), 12.5 / V, 1e-15);
-        near_relative(functional_mean_internal_energy.measure(&p, &snapshot),
-                      (1.5 + 1 + 8 + 0.25) / V, 1e-15);
-        assert_true(functional_mean_pressure.present(&p) == (dim == 1));
-        assert_true(functional_mean_internal_energy.present(&p) == (dim == 1));
-        double sum = 0;
-        for (int i = 0; i < 4; i++) {
-            double squares = 0;
-            for (int d = 0; d < dim; d++) squares += v[d][i] * v[d][i];
-            sum += volume[i] * squares * rho[i] / (1.5 * P[i]);
-        }
-        near_relative(functional_velocity_rms.measure(&p, &snapshot), sqrt(sum / V), 1e-15);
-        assert_true(functional_velocity_rms.exact(&p, 1) == 0);
-    }
-    const struct prepared p = prepared_in(1);
-    near_relative(functional_mean_pressure.exact(&p, 0.5), 3.5, 1e-10);
-    near_relative(functional_mean_internal_energy.exact(&p, 0.5), 13.5, 1e-10);
-}
-
-TEST(test_budget)
-{
-    struct prepared p = prepared_in(1);
-    static const double exact[FIELDS][N] = {
-        {2, 2, 2, 2, 2}, {0, 0, 0, 0, 0}, {0, 3, 4, 6, 0}, {4, 4, 4, 4, 4}};
-    const double *const values[] = {exact[0], exact[1], exact[2], exact[3]};
-    struct budget budget;
-    run_measure_budget(&p, &snapshot, values, &budget);
-    /* of the volumes 0.25, 1, 2, 0.125 and 2 lie in the window */
-    static const double expected[2][FIELDS] = {{0.25, 2.25, 1.25, 3.25},
-                                               {16.25, 16.5, 180.25, 172.375}};
-    for (int r = 0; r < 2; r++)
-        for (int f = 0; f < FIELDS; f++)
-            near_relative(budget.l1[r][f], expected[r][f] / 5.375, 1e-15);
-    assert_true(seen_reach == BUDGET_REACH * 5 && seen_time == 0);
-    assert_true(budget.still == 1.25 && budget.regions == &regions);
-
-    json_t *json = run_budget_json(&budget);
-    for (int r = 0; r < 2; r++)
-        for (int f = 0; f < FIELDS; f++)
-            near_relative(value_inner(json, regions.names[r], field_family.members[f]->name),
-                          budget.l1[r][f], 1e-15);
-    assert_true(value_member(json, "still") == 1.25);
-    json_decref(json);
-
-    budget.still = NAN;
-    json = run_budget_json(&budget);
-    assert_true(json_is_null(json_object_get(json, "still")));
-    assert_int_equal(json_object_size(json), 3);
-    assert_int_equal(json_object_size(json_object_get(json, "right")), FIELDS);
-    json_decref(json);
-    struct problem none = problem;
-    none.regions = NULL;
-    p.problem = &none;
-    run_measure_budget(&p, &snapshot, values, &budget);
-    assert_true(!budget.regions && isnan(budget.still));
-    json = run_budget_json(&budget);
-    assert_true(json_is_null(json));
-    json_decref(json);
-}
-
 TEST(test_shells)
 {
-    struct prepared p = prepared_in(2);
-    p.domain = (struct domain){2, {-1, -2}, {1, 2}};
-    p.window = (struct window){.dim = 2, .lo = {-1, -1}, .hi = {1, 1}};
+    const struct prepared p = {.domain = {2, {-1, -2}, {1, 2}},
+                               .window = {.dim = 2, .lo = {-1, -1}, .hi = {1, 1}}};
     /* four in the window, 1/4 apart; beyond it a large one, and one beyond all shells */
     const double px[] = {0.1, 0, 0.3, -0.5, 0, 1, 0.2}, py[] = {0, 0.2, 0.4, 0, -1.5, 0, 0.2},
                  mass[] = {1, 2, 3, 4, 5, 6, 7},
