@@ -60,7 +60,8 @@ TEST(bars)
     static const struct {
         double first, last; /* letters of the parts 0 and 2 */
         int shown[2];
-    } rows[] = {{3.45, BAR - 3.45, {3, BAR}},
+    } rows[] = {{2.5, BAR - 2.5, {2, BAR}},
+                {3.45, BAR - 3.45, {3, BAR}},
                 {3.55, BAR - 3.55, {4, BAR}},
                 {3.45, 0, {3, 3}},
                 {BAR + 2, 3, {BAR, BAR}}};
