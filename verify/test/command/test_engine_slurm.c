@@ -112,36 +112,6 @@ TEST(thrice)
     }
 }
 
-/* Shares that all end badly at the same time, each in another way. */
-TEST(many)
-{
-    srand(26);
-    for (int draw = 0; draw < 24; draw++) {
-        size_t expected[SHARES + 1] = {0}; /* submissions of each share */
-        bool lost = false;
-        again();
-        made.backwards = draw % 2;
-        for (int s = 1; s <= SHARES; s++)
-            for (int t = 0; t < 3; t++) {
-                const int r = rand() % (ROWS - 2);
-                made.fates[s][t] = rows[r].fate;
-                if (expected[s] > 0 && expected[s] <= (size_t)t) continue; /* it is over */
-                if (!rows[r].state || rows[r].given_up) {
-                    lost = lost || rows[r].given_up;
-                    expected[s] = (size_t)t + 1;
-                } else if (t == 2) {
-                    expected[s] = 3;
-                    lost = true;
-                } else {
-                    expected[s] = 0;
-                }
-            }
-        assert_int_equal(compute_all(), lost ? STATUS_ENVIRONMENT : STATUS_OK);
-        for (int s = 1; s <= SHARES; s++) assert_int_equal(made.tries[s], expected[s]);
-        assert_int_equal(lacking() > 0, lost);
-    }
-}
-
 /* Messages about a share describe its last task. */
 TEST(one_after_the_other)
 {

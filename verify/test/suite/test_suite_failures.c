@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What is left of checks that fail: the numbers that gnuplot is given to draw (by a program of that
- * name that writes them down), files that come and go; and what a table says of one figure. */
+ * name that writes them down), and files that come and go. */
 #include "test.h"
 
 #include <math.h>
@@ -130,59 +130,6 @@ TEST(drawings)
     one.failed = 0;
     assert_int_equal(suite_output_failures(&one, out, NULL, NULL), STATUS_OK);
     assert_int_equal(access(out, F_OK), -1);
-}
-
-/* Nowhere to write: the folder that cannot be made is named, and what stands in a file's place. */
-TEST(nowhere_to_write)
-{
-    struct figure figures[] = {FIGURE(&first, 2, 1, FINDING_FAIL),
-                               FIGURE(&second, 2, 1, FINDING_FAIL)};
-    const struct suite suite = {.figures = figures, .figure_count = 2, .failed = 2};
-    struct error error;
-    char said[512], out[256];
-    snprintf(out, sizeof out, "%s/no/folder", place);
-    snprintf(said, sizeof said, "verify: cannot make the folder '%s': No such file or directory",
-             out);
-    assert_int_equal(suite_output_failures(&suite, out, NULL, &error), STATUS_ENVIRONMENT);
-    assert_string_equal(error.message, said);
-    snprintf(out, sizeof out, "%s/made", place);
-    assert_int_equal(mkdir(out, 0777), 0);
-    assert_int_equal(mkdir(path_of("made/a-first.json"), 0777), 0); /* a folder, not a file */
-    FILE *stream = fopen(path_of("told"), "w");
-    assert_non_null(stream);
-    assert_int_equal(suite_output_failures(&suite, out, stream, &error), STATUS_ENVIRONMENT);
-    fclose(stream);
-    assert_string_equal(text_of("told"), ""); /* and nobody goes on after it */
-    assert_int_equal(access(path_of("made/a-second.json"), F_OK), -1);
-}
-
-/* ---- tables ---- */
-
-static const char *table_of(size_t n, struct figure *figures)
-{
-    const struct suite suite = {.figures = figures, .figure_count = n};
-    FILE *stream = fopen(path_of("table"), "w");
-    assert_non_null(stream);
-    suite_output_table(&suite, stream, false, true);
-    fclose(stream);
-    return text_of("table");
-}
-
-TEST(tables)
-{
-    struct figure exact[] = {FIGURE(&first, 0, 1, FINDING_PASS),
-                             FIGURE(&first, 0.5, 1, FINDING_PASS)};
-    const char *text = table_of(1, exact); /* the second one is not of this suite */
-    assert_non_null(strstr(text, "  ok    first                                  0         1 "
-                                 "     exact         0       1    0.00\n"));
-    /* of figures that are as far the first one is told; a margin of 1.005 is not yet 1.01 */
-    struct figure even[] = {FIGURE(&first, 0.25, 0.5, FINDING_PASS),
-                            FIGURE(&first, 2, 4, FINDING_PASS)};
-    text = table_of(2, even);
-    assert_non_null(strstr(text, "  ok    first                               0.25       0.5 "
-                                 "        2x         0       2    0.00\n"));
-    struct figure close[] = {FIGURE(&first, 1, 1.0049999, FINDING_PASS)};
-    assert_non_null(strstr(table_of(1, close), "        1x "));
 }
 
 int main(void)
