@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "fold.h"
+#include "page_part.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fold.h"
 #include "html.h"
 #include "page_part.h"
 #include "style.h"

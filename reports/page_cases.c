@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "case_state.h"
-#include "fold.h"
 #include "html.h"
 #include "page_part.h"
 #include "value.h"

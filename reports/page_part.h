@@ -5,6 +5,7 @@
 
 #include <jansson.h>
 
+#include "buffer.h"
 #include "page_plot.h"
 
 extern const char *const page_styles[]; /* parts of the style sheet; ends with NULL */
@@ -72,5 +73,19 @@ void page_cloud_plots(struct page_writer *writer, const char *case_name, const j
 
 /* Errors, conservation and cost, and scalars beside their exact values. */
 void page_cloud_tables(struct buffer *to, const json_t *const *runs, size_t count);
+
+/* Folded parts of a page: their HTML is compressed data (zlib, base64), which a small script in the
+ * page inflates when a reader opens them. Without zlib they stand in the page as they are. */
+
+/* What was added to the buffer since `start` becomes a sealed part; it stands directly within a
+ * <details> element, which opens it. */
+void fold_seal(struct buffer *to, size_t start);
+
+/* What was added since `start` is <section ...><h2>...</h2>...</section>: everything behind its
+ * heading is folded and sealed. */
+void fold_section(struct buffer *to, size_t start);
+
+/* For the page's end: inflates what is opened, and what a link leads to. */
+extern const char fold_script[];
 
 #endif

@@ -14,13 +14,6 @@ enum { CLOUD_MAP_CELLS = 64, SHOWN = 600, EXACT_POINTS = 201, QUANTITIES = 4 };
 
 /* ---- maps ---- */
 
-static void set_reals(json_t *object, const char *name, const double *values, size_t n)
-{
-    json_t *array = json_array();
-    for (size_t i = 0; i < n; i++) json_array_append_new(array, result_number(values[i]));
-    json_object_set_new(object, name, array);
-}
-
 static double speed_off(const struct snapshot *s, size_t i, int dim, const double exact[3])
 {
     double square = 0;
@@ -55,18 +48,18 @@ static json_t *map_json(const struct run_result *result)
     double *values = malloc((s->n + cells) * sizeof *values), *z = values + s->n;
     json_t *object = values ? json_object() : NULL;
     if (object) {
-        set_reals(object, "x", map.x, map.nx);
-        set_reals(object, "y", map.y, map.ny);
-        if (dim == 3) set_reals(object, "slice", map.slice, 2);
+        json_object_set_new(object, "x", result_numbers(map.x, map.nx));
+        json_object_set_new(object, "y", result_numbers(map.y, map.ny));
+        if (dim == 3) json_object_set_new(object, "slice", result_numbers(map.slice, 2));
         map_mean(&map, s->rho, z);
-        set_reals(object, "density", z, cells);
+        json_object_set_new(object, "density", result_numbers(z, cells));
         for (size_t i = 0; i < s->n; i++) values[i] = speed_off(s, i, dim, none);
         map_mean(&map, values, z);
-        set_reals(object, "speed", z, cells);
+        json_object_set_new(object, "speed", result_numbers(z, cells));
         if (!result->problem.problem->fieldless) {
             error_values(result, values);
             map_mean(&map, values, z);
-            set_reals(object, "error", z, cells);
+            json_object_set_new(object, "error", result_numbers(z, cells));
         }
     }
     free(values);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gadget_binary.h"
+#include "start_format.h"
 
 #include <math.h>
 #include <stdint.h>

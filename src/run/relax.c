@@ -11,7 +11,6 @@
 #include "grid.h"
 #include "kernel.h"
 #include "regularity.h"
-#include "relax_store.h"
 
 enum { SWEEPS = 60 };
 static const double reach = 2.5;                      /* spacings */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "relax_store.h"
+#include "relax.h"
 
 #include <inttypes.h>
 #include <stdio.h>

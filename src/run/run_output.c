@@ -53,8 +53,7 @@ static void add_interpolation(json_t *errors, const double interpolation[FIELDS]
     json_t *object = json_object();
     for (int field = 0; field < FIELDS; field++)
         json_object_set_new(object, field_family.members[field]->name,
-                            isnan(interpolation[field]) ? json_null()
-                                                        : result_number(interpolation[field]));
+                            result_number_or_null(interpolation[field]));
     json_object_set_new(errors, "interpolation", object);
 }
 
@@ -103,8 +102,7 @@ json_t *run_budget_json(const struct budget *budget)
                                 result_number(budget->l1[r][f]));
         json_object_set_new(object, budget->regions->names[r], fields);
     }
-    json_object_set_new(object, "still",
-                        isnan(budget->still) ? json_null() : result_number(budget->still));
+    json_object_set_new(object, "still", result_number_or_null(budget->still));
     return object;
 }
 

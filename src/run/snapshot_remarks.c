@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "snapshot_remarks.h"
+#include "snapshot_writer.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -32,4 +32,20 @@ const struct snapshot_writer *snapshot_writer_of(const char *path, struct error 
 /* Its bytes for each particle; 0 where path means none. */
 double snapshot_writer_memory(const char *path);
 
+/* What a snapshot of ours says about its run, so that its reader needs no other source. */
+
+enum { SNAPSHOT_REMARKS = 6, SNAPSHOT_REMARK_TEXT = 1024 };
+
+struct snapshot_remark {
+    const char *key;
+    char value[SNAPSHOT_REMARK_TEXT];
+};
+
+/* Returns how many there are, at most SNAPSHOT_REMARKS: `case` (left out where its name is not
+ * known), `time`, `gamma`, `box` (LO:HI for each direction), `boundary` (one word for all
+ * directions, or one each), and `keys`: the measure window and the keys that the user gave and that
+ * change the exact solution, KEY=VALUE separated by "; ". */
+size_t snapshot_remarks(const struct run_result *result,
+                        struct snapshot_remark remarks[SNAPSHOT_REMARKS]);
+
 #endif

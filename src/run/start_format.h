@@ -5,6 +5,9 @@
 #ifndef SPHPROOF_START_FORMAT_H
 #define SPHPROOF_START_FORMAT_H
 
+#include <stdbool.h>
+
+#include "run.h"
 #include "snapshot_writer.h"
 
 struct start_format {
@@ -33,5 +36,15 @@ enum status start_possible(const struct start_format *format, const struct run *
 /* The result of run_start in a file. STATUS_ENVIRONMENT: it cannot be written. */
 enum status start_write(const struct start_format *format, const struct run_result *result,
                         const char *path, struct error *error);
+
+/* Binaries of GADGET (Springel 2005, user guide section 6): records between two counts of their
+ * bytes, in this machine's order; numbers in single precision, positions from the lower corner of
+ * the box. */
+
+/* named: format 2, in which a record before each block names it; else format 1.
+ * STATUS_BAD_INPUT: more particles than a record can count; STATUS_ENVIRONMENT: no memory, or it
+ * cannot be written. */
+enum status gadget_binary_write(const struct run_result *result, const char *path, bool named,
+                                struct error *error);
 
 #endif

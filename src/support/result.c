@@ -60,6 +60,13 @@ json_t *result_number_or_null(double value)
     return isnan(value) ? json_null() : result_number(value);
 }
 
+json_t *result_numbers(const double *values, size_t n)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < n; i++) json_array_append_new(array, result_number(values[i]));
+    return array;
+}
+
 char *result_text(const json_t *document)
 {
     return json_dumps(document, JSON_COMPACT | JSON_REAL_PRECISION(17));

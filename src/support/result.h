@@ -18,6 +18,9 @@ json_t *result_number(double value);
 /* The same; null for NaN: there is none. */
 json_t *result_number_or_null(double value);
 
+/* An array of n numbers. */
+json_t *result_numbers(const double *values, size_t n);
+
 /* The document as text, 17 significant digits; malloced, NULL: no memory. */
 char *result_text(const json_t *document);
 

@@ -7,7 +7,7 @@
 
 #include "balance.h"
 #include "check.h"
-#include "riemann_mutants.h"
+#include "riemann_property.h"
 #include "simple_wave.h"
 #include "worst.h"
 

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "check.h"
-#include "riemann_mutants.h"
+#include "riemann_property.h"
 #include "worst.h"
 
 enum { PROBLEMS = 2000 };

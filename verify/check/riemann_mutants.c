@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "riemann_mutants.h"
+#include "riemann_property.h"
 
 #include <math.h>
 #include <stdbool.h>

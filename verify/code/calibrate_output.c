@@ -120,23 +120,19 @@ static json_t *fault_list(const struct code *code, const bool *which)
     return list;
 }
 
-static json_t *known(double value)
-{
-    return isnan(value) ? json_null() : result_number(value);
-}
-
 static json_t *gate_json(const struct code *code, const struct calibrate_gate *gate)
 {
     const bool fault = gate->smallest >= 0;
-    return json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:b, s:s}", "name",
-                     gate->name, "value", result_number(gate->value), "spread",
-                     result_number(gate->spread), "floor", result_number(gate->floor), "least",
-                     known(gate->least), "bound", known(gate->bound), "order_low", known(gate->low),
-                     "order_high", known(gate->high), "smallest",
-                     fault ? json_string(code->faults[gate->smallest].name) : json_null(), "change",
-                     fault ? result_number(gate->change[gate->smallest]) : json_null(), "sees",
-                     fault_list(code, gate->sees), "order_lost", gate->order_lost, "status",
-                     calibrate_sights[gate->sight]);
+    return json_pack(
+        "{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:b, s:s}", "name", gate->name,
+        "value", result_number(gate->value), "spread", result_number(gate->spread), "floor",
+        result_number(gate->floor), "least", result_number_or_null(gate->least), "bound",
+        result_number_or_null(gate->bound), "order_low", result_number_or_null(gate->low),
+        "order_high", result_number_or_null(gate->high), "smallest",
+        fault ? json_string(code->faults[gate->smallest].name) : json_null(), "change",
+        fault ? result_number(gate->change[gate->smallest]) : json_null(), "sees",
+        fault_list(code, gate->sees), "order_lost", gate->order_lost, "status",
+        calibrate_sights[gate->sight]);
 }
 
 static json_t *fault_json(const struct calibrate *calibrate, const struct calibrate_case *one,

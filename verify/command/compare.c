@@ -367,11 +367,11 @@ static json_t *compare_json(const struct comparison *c, bool pictures)
     for (size_t k = 0; k < c->sides[0].count; k++) {
         const struct paired *of = &c->of[k];
         json_array_append_new(
-            figures, json_pack("{s:s, s:o, s:o, s:o, s:o, s:I, s:s}", "name",
-                               c->sides[0].figures[k], "a", result_number(of->a), "b",
-                               result_number(of->b), "change", result_number(of->change), "half",
-                               isnan(of->half) ? json_null() : result_number(of->half), "draws",
-                               (json_int_t)of->n, "verdict", paired_verdicts[of->verdict]));
+            figures,
+            json_pack("{s:s, s:o, s:o, s:o, s:o, s:I, s:s}", "name", c->sides[0].figures[k], "a",
+                      result_number(of->a), "b", result_number(of->b), "change",
+                      result_number(of->change), "half", result_number_or_null(of->half), "draws",
+                      (json_int_t)of->n, "verdict", paired_verdicts[of->verdict]));
     }
     json_object_set_new(document, "case", json_string(c->sides[0].first.asked.file.name));
     json_object_set_new(document, "dim", json_integer(c->sides[0].first.asked.file.dimension));

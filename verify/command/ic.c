@@ -7,7 +7,7 @@
 #include "output.h"
 #include "result.h"
 #include "slab.h"
-#include "snapshot_remarks.h"
+#include "snapshot_writer.h"
 #include "start_format.h"
 
 /* What the format does not say, with the code's own name for it. */

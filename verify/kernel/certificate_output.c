@@ -186,14 +186,6 @@ static json_t *lattice_json(const struct certificate *c)
     return list;
 }
 
-static json_t *knots_json(const struct certificate *c)
-{
-    json_t *list = json_array();
-    for (int i = 0; i < c->kernel->knot_count; i++)
-        json_array_append_new(list, result_number(c->kernel->knots[i]));
-    return list;
-}
-
 static json_t *resolution_json(const struct certificate *c)
 {
     const double decades = c->terms.single ? 6 : 30;
@@ -218,15 +210,14 @@ void certificate_json(const struct certificate *c, double h, json_t *document)
                   result_number(m->fourth)));
     json_object_set_new(document, "class", json_integer(c->class.class));
     json_object_set_new(document, "class_declared", json_integer(kernel->smoothness[c->dim]));
-    json_object_set_new(document, "knots", knots_json(c));
+    json_object_set_new(document, "knots",
+                        result_numbers(kernel->knots, (size_t)kernel->knot_count));
     json_object_set_new(document, "fourier",
                         json_pack("{s:o, s:o, s:o, s:o}", "min", result_number(c->fourier.least),
                                   "min_kh", result_number(c->fourier.least_at), "first_negative_k",
                                   isnan(first) ? json_null() : result_number(first / h),
-                                  "first_negative_kh",
-                                  isnan(first) ? json_null() : result_number(first)));
-    json_object_set_new(document, "pairing_neighbours",
-                        isnan(c->pairing) ? json_null() : result_number(c->pairing));
+                                  "first_negative_kh", result_number_or_null(first)));
+    json_object_set_new(document, "pairing_neighbours", result_number_or_null(c->pairing));
     json_object_set_new(document, "self_term", result_number(kernel_value(kernel, 0, h, c->dim)));
     json_object_set_new(document, "least_eta", result_number(kernel_least_eta(kernel, c->dim)));
     json_object_set_new(document, "lattice", lattice_json(c));
@@ -276,13 +267,6 @@ static void fill(struct curves *curves, const struct certificate *c)
     }
 }
 
-static json_t *numbers(const double *list, size_t n)
-{
-    json_t *array = json_array();
-    for (size_t i = 0; i < n; i++) json_array_append_new(array, result_number(list[i]));
-    return array;
-}
-
 json_t *certificate_curves(const struct certificate *c)
 {
     struct curves *curves = calloc(1, sizeof *curves);
@@ -293,9 +277,10 @@ json_t *certificate_curves(const struct certificate *c)
     snprintf(title, sizeof title, "%s in %d dimension%s, h = 1", c->kernel->member.name, c->dim,
              c->dim > 1 ? "s" : "");
     json_t *packed = json_pack(
-        "{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "title", title, "q", numbers(curves->q, n), "w",
-        numbers(curves->w, n), "dw", numbers(curves->dw, n), "ddw", numbers(curves->ddw, n),
-        "kappa", numbers(curves->kappa, WAVES), "transform", numbers(curves->transform, WAVES),
+        "{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "title", title, "q",
+        result_numbers(curves->q, n), "w", result_numbers(curves->w, n), "dw",
+        result_numbers(curves->dw, n), "ddw", result_numbers(curves->ddw, n), "kappa",
+        result_numbers(curves->kappa, WAVES), "transform", result_numbers(curves->transform, WAVES),
         "first_negative", result_number(c->fourier.first_negative));
     free(curves);
     return packed;

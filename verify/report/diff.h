@@ -35,13 +35,6 @@ enum status diff_documents(const json_t *old, const json_t *new, double threshol
                            struct diff *diff, struct error *error);
 void diff_free(struct diff *diff);
 
-/* new/old; NaN where that says nothing. */
-double diff_ratio(const struct difference *difference);
-
-/* The value that a figure would have at its best: an error's 0, a functional's exact value; NaN
- * where it is unknown. */
-double diff_exact(const struct difference *difference);
-
 /* [{"path", "old", "new", "exact", "ratio", "verdict", "regression"}], the first `most` of them. */
 json_t *diff_figures_json(const struct diff *diff, size_t most);
 

@@ -10,13 +10,16 @@
 
 enum { LINES_MAX = 60 };
 
-double diff_ratio(const struct difference *d)
+/* new/old; NaN where that says nothing. */
+static double ratio_of(const struct difference *d)
 {
     if (!d->old || !d->new || d->old->word || d->new->word) return (double)NAN;
     return d->new->value / d->old->value;
 }
 
-double diff_exact(const struct difference *d)
+/* The value that a figure would have at its best: an error's 0, a functional's exact value; NaN
+ * where it is unknown. */
+static double exact_of(const struct difference *d)
 {
     const struct metric *metric = d->new ? d->new : d->old;
     switch (metric->kind) {
@@ -44,21 +47,17 @@ static json_t *value_json(const struct metric *metric)
     return metric->word ? json_string(metric->word) : result_number(metric->value);
 }
 
-static json_t *known(double value)
-{
-    return isnan(value) ? json_null() : result_number(value);
-}
-
 json_t *diff_figures_json(const struct diff *diff, size_t most)
 {
     json_t *figures = json_array();
     for (size_t i = 0; i < diff->count && i < most; i++) {
         const struct difference *d = &diff->list[i];
-        json_array_append_new(
-            figures, json_pack("{s:s, s:o, s:o, s:o, s:o, s:s, s:b}", "path", path_of(d), "old",
-                               value_json(d->old), "new", value_json(d->new), "exact",
-                               known(diff_exact(d)), "ratio", known(diff_ratio(d)), "verdict",
-                               metric_verdicts[d->verdict], "regression", d->regression));
+        json_array_append_new(figures,
+                              json_pack("{s:s, s:o, s:o, s:o, s:o, s:s, s:b}", "path", path_of(d),
+                                        "old", value_json(d->old), "new", value_json(d->new),
+                                        "exact", result_number_or_null(exact_of(d)), "ratio",
+                                        result_number_or_null(ratio_of(d)), "verdict",
+                                        metric_verdicts[d->verdict], "regression", d->regression));
     }
     return figures;
 }
@@ -112,8 +111,8 @@ static void print_difference(const struct difference *d, bool exact,
            style->end);
     print_value(d->old);
     print_value(d->new);
-    if (exact) print_number(" %*.6g", 13, diff_exact(d));
-    print_number(" %*.4g", 9, diff_ratio(d));
+    if (exact) print_number(" %*.6g", 13, exact_of(d));
+    print_number(" %*.4g", 9, ratio_of(d));
     printf("  %s\n", path_of(d));
 }
 

@@ -12,7 +12,6 @@
 #include "diff.h"
 #include "metric.h"
 #include "result.h"
-#include "trend.h"
 #include "value.h"
 
 /* What a figure may move by without having changed: an error relatively, an order absolutely. */

@@ -166,22 +166,19 @@ static void ladder_verdict(const struct ladder *ladder, char *verdict, size_t si
 static json_t *ladder_json(const struct ladder *ladder, const char *verdict)
 {
     const struct pairing_run *runs = ladder->runs;
-    json_t *neighbours = json_array(), *paired = json_array(), *nearest = json_array();
+    json_t *neighbours = json_array();
     char command[TEXT + 64];
-    for (size_t i = 0; i < ladder->count; i++) {
+    for (size_t i = 0; i < ladder->count; i++)
         json_array_append_new(neighbours, json_integer(runs[i].neighbours));
-        json_array_append_new(paired, result_number(ladder->paired[i]));
-        json_array_append_new(nearest, result_number(ladder->nearest[i]));
-    }
     const size_t shown = ladder->first < ladder->count ? ladder->first : ladder->count - 1;
     snprintf(command, sizeof command, "sphproof run %s %s", runs->crowd->case_name,
              runs[shown].keys);
-    return json_pack(
-        "{s:s, s:i, s:o, s:o, s:o, s:o, s:o, s:s, s:s}", "kernel", runs->kernel, "dim",
-        runs->crowd->dim, "first_negative_kh",
-        isnan(ladder->negative) ? json_null() : result_number(ladder->negative), "predicted",
-        isnan(ladder->predicted) ? json_null() : result_number(ladder->predicted), "neighbours",
-        neighbours, "paired", paired, "nearest", nearest, "verdict", verdict, "reproduce", command);
+    return json_pack("{s:s, s:i, s:o, s:o, s:o, s:o, s:o, s:s, s:s}", "kernel", runs->kernel, "dim",
+                     runs->crowd->dim, "first_negative_kh", result_number_or_null(ladder->negative),
+                     "predicted", result_number_or_null(ladder->predicted), "neighbours",
+                     neighbours, "paired", result_numbers(ladder->paired, ladder->count), "nearest",
+                     result_numbers(ladder->nearest, ladder->count), "verdict", verdict,
+                     "reproduce", command);
 }
 
 /* What all ladders of a gradient say of the claim. */

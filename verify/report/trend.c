@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "trend.h"
+#include "history.h"
 
 #include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics.h>

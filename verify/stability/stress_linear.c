@@ -158,7 +158,7 @@ static json_t *growth_row(const char *kernel, enum gradient gradient)
     for (int i = 0; i < ETAS; i++) {
         const struct scheme scheme = atlas_scheme(kernel, gradient, 1 + 0.1 * i);
         const double rate = growth_at(&scheme, 1.4, scheme.eta);
-        json_array_append_new(growth, isnan(rate) ? json_null() : result_number(rate));
+        json_array_append_new(growth, result_number_or_null(rate));
     }
     return json_pack("{s:s, s:s, s:o}", "kernel", kernel, "gradient",
                      scheme_gradient_family.members[gradient]->name, "growth", growth);

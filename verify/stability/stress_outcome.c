@@ -8,10 +8,9 @@
 
 json_t *stress_outcome(double predicted, double measured, const char *outcome, const char *reason)
 {
-    return json_pack("{s:o, s:o, s:s, s:s}", "predicted",
-                     isnan(predicted) ? json_null() : result_number(predicted), "measured",
-                     isnan(measured) ? json_null() : result_number(measured), "outcome", outcome,
-                     "reason", reason);
+    return json_pack("{s:o, s:o, s:s, s:s}", "predicted", result_number_or_null(predicted),
+                     "measured", result_number_or_null(measured), "outcome", outcome, "reason",
+                     reason);
 }
 
 const char *stress_outcome_breakdown(const char *message)

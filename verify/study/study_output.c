@@ -59,9 +59,8 @@ static json_t *level_json(const struct study *study, const struct study_level *l
 
 static json_t *order_json(const struct study_order *order, const char *what, const char *norm)
 {
-    json_t *pairwise = json_array(), *gate = json_null();
-    for (size_t i = 0; i + 1 < order->fit.n; i++)
-        json_array_append_new(pairwise, result_number(order->fit.pairwise[i]));
+    json_t *gate = json_null();
+    json_t *pairwise = result_numbers(order->fit.pairwise, order->fit.n ? order->fit.n - 1 : 0);
     if (order->status != FINDING_NONE)
         gate =
             json_pack("{s:o, s:o, s:o}", "low", result_number(order->gate.low), "high",
@@ -123,7 +122,7 @@ static json_t *budget_orders_json(const struct study_result *result)
         json_array_append_new(regions, region);
     }
     return json_pack("{s:o, s:{s:o, s:o, s:s}}", "regions", regions, "still_gas", "value",
-                     isnan(result->still) ? json_null() : result_number(result->still), "bound",
+                     result_number_or_null(result->still), "bound",
                      result_number(STUDY_STILL_BOUND), "status",
                      finding_words[result->still_status]);
 }

@@ -191,13 +191,6 @@ enum status suite_output_junit(const struct suite *suite, const char *path, stru
     return status;
 }
 
-static json_t *numbers_json(size_t n, const double *values)
-{
-    json_t *array = json_array();
-    for (size_t i = 0; i < n; i++) json_array_append_new(array, result_number(values[i]));
-    return array;
-}
-
 json_t *suite_output_series(const struct suite *suite, const struct check *check)
 {
     json_t *list = json_array();
@@ -205,8 +198,8 @@ json_t *suite_output_series(const struct suite *suite, const struct check *check
         const struct series *s = &suite->series[i];
         if (!check || s->check == check)
             json_array_append_new(list, json_pack("{s:s, s:o, s:o}", "label", s->label, "x",
-                                                  numbers_json(s->n, s->x), "y",
-                                                  numbers_json(s->n, s->y)));
+                                                  result_numbers(s->x, s->n), "y",
+                                                  result_numbers(s->y, s->n)));
     }
     return list;
 }

@@ -2,7 +2,6 @@
  * Format 1 of GADGET's binaries, for GADGET, AREPO and GIZMO, as they are usually compiled: single
  * precision. They read the blocks up to the energies; densities and widths are for other readers.
  */
-#include "gadget_binary.h"
 #include "start_format.h"
 
 static enum status write(const struct run_result *result, const char *path, struct error *error)

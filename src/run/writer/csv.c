@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Text: a line with the names of the columns, x,vx,m,rho,u,P,h or in 2D and 3D x,y,vx,vy, ...;
- * comment lines `# KEY = VALUE` (see snapshot_remarks.h); a line a particle, in the order in which
+ * comment lines `# KEY = VALUE` (see snapshot_writer.h); a line a particle, in the order in which
  * particles have started. */
 #include <stdio.h>
 
 #include "output.h"
-#include "snapshot_remarks.h"
 #include "snapshot_writer.h"
 
 static enum status write_csv(const struct run_result *result, const char *path, struct error *error)

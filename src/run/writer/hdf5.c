@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * HDF5 as GADGET's snapshots are laid out (Springel 2005): what yt, pynbody and ParaView read.
  * Header: NumPart_*, MassTable, Time, BoxSize (one number, or one each where sides differ),
- * Dimension, Gamma, Origin, and as text Case, Boundary and Keys (see snapshot_remarks.h);
+ * Dimension, Gamma, Origin, and as text Case, Boundary and Keys (see snapshot_writer.h);
  * PartType0: Coordinates (from the lower corner of the box, `Origin`, z = 0 in 2D), Velocities,
  * Masses, Density, InternalEnergy, Pressure, SmoothingLength (support radius), ParticleIDs (from 1,
  * in the order of the start). */
@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "hdf5_image.h"
-#include "snapshot_remarks.h"
 #include "snapshot_writer.h"
 
 /* What no attribute of GADGET's says: Case, Boundary and Keys. */

@@ -5,7 +5,7 @@
  * pressure, internal_energy, smoothing_length (support radius) and particle_spacing,
  * (m/rho)^(1/dim), are data of points. What belongs to the whole run is field data: TimeValue,
  * gamma, ndims, box (lower and upper end along each direction), and as codes of letters, since not
- * all readers know strings, case, boundary and keys (see snapshot_remarks.h). A series is listed in
+ * all readers know strings, case, boundary and keys (see snapshot_writer.h). A series is listed in
  * a collection, F.pvd of F.vtu, with the time of each file. */
 #include <math.h>
 #include <stdint.h>
@@ -16,7 +16,6 @@
 
 #include "base64.h"
 #include "output.h"
-#include "snapshot_remarks.h"
 #include "snapshot_writer.h"
 
 static const char *const byte_order =

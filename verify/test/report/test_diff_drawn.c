@@ -16,7 +16,6 @@
 #include "made_document.h"
 #include "made_place.h"
 #include "report_piece.h"
-#include "trend.h"
 
 enum { DOCUMENTS = 150, HISTORIES = 12, SERIES = 400, KEPT_TOGETHER = 10 };
 

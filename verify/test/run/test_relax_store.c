@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "made_place.h"
-#include "relax_store.h"
+#include "relax.h"
 
 enum { N = RELAX_STORE_LEAST };
 
