@@ -60,15 +60,16 @@ static void take_number(const char *key, size_t length, double number, const cha
 }
 
 /* Every "KEY = NUMBER" and "KEY: NUMBER" of a comment. A number with anything but a comma, a
- * semicolon or the next key behind it may have a unit, and is left alone. */
+ * semicolon or the next key behind it may have a unit, and is left alone. No key reaches back
+ * beyond the # that a comment begins with. */
 static void take_numbers(const char *line, struct snapshot_file *file)
 {
     double number;
     for (const char *at = line; (at = strpbrk(at, "=:")); at++) {
         const char *end = at, *value = at + 1 + strspn(at + 1, " \t");
-        while (end > line && strchr(" \t", end[-1])) end--;
+        while (strchr(" \t", end[-1])) end--;
         const char *begin = end;
-        while (begin > line && in_word(begin[-1])) begin--;
+        while (in_word(begin[-1])) begin--;
         const size_t size = strcspn(value, " \t,;");
         const char *rest = value + size + strspn(value + size, " \t");
         if ((!*rest || strchr(",;#", *rest) || assigns(rest)) && take_ratio(value, size, &number))
