@@ -71,7 +71,7 @@ static enum status refuse_compressed(const struct snapshot_source *source, struc
 
 static enum status read_all(struct snapshot_source *source, stream from, struct error *error)
 {
-    enum { CHUNK = 1 << 20 };
+    enum { CHUNK = 1 << 16 };
     for (;;) {
         if (source->size >> 20 >= SOURCE_MEGABYTES_MAX)
             return error_set(error, STATUS_BAD_INPUT, "%.200s: too large; allowed: %d megabytes",
