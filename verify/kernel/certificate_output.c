@@ -210,8 +210,8 @@ void certificate_json(const struct certificate *c, double h, json_t *document)
                   result_number(m->fourth)));
     json_object_set_new(document, "class", json_integer(c->class.class));
     json_object_set_new(document, "class_declared", json_integer(kernel->smoothness[c->dim]));
-    json_object_set_new(document, "knots",
-                        result_numbers(kernel->knots, (size_t)kernel->knot_count));
+    const int knots = kernel->knot_count > 0 ? kernel->knot_count : 0; /* -1: unknown */
+    json_object_set_new(document, "knots", result_numbers(kernel->knots, (size_t)knots));
     json_object_set_new(document, "fourier",
                         json_pack("{s:o, s:o, s:o, s:o}", "min", result_number(c->fourier.least),
                                   "min_kh", result_number(c->fourier.least_at), "first_negative_k",
