@@ -33,6 +33,7 @@ struct cells_method cells_method_of(const struct scheme *scheme, const struct pl
         .shift = plan->shift,
         .closed = plan->closed,
         .conductivity = scheme->alpha_u,
+        .shock_conductivity = scheme->shock_conductivity,
         .worst_condition = DESCRIPTION_CONDITION,
         .local = plan->local,
         .alpha_min = scheme->alpha_min,
@@ -69,7 +70,7 @@ static void lay_out_force(struct lanes_layout *force, const struct cells_method 
     const int dim = method->box.dim, symmetric = dim * (dim + 1) / 2;
     const struct viscosity_descriptor *viscosity = &viscosity_of[method->viscosity];
     const struct gradient_descriptor *gradient = &gradient_of[method->gradient];
-    const bool dissipates = !viscosity->none || method->conductivity > 0,
+    const bool conducts = cells_conduct(method), dissipates = !viscosity->none || conducts,
                lagrangian = method->formulation == FORMULATION_LAGRANGIAN;
     begin_layout(force, LANES_CLOSING, dim);
     if (dissipates || lagrangian) add_field(force, RECORD_WEIGHT, 1);
@@ -79,7 +80,7 @@ static void lay_out_force(struct lanes_layout *force, const struct cells_method 
     if (dissipates || method->shift) add_field(force, RECORD_DENSITY, 1);
     if (viscosity_varies(method->viscosity)) add_field(force, RECORD_ALPHA, 1);
     if (method->balsara) add_field(force, RECORD_BALSARA, 1);
-    if (method->conductivity > 0 || method->shift) add_field(force, RECORD_HEAT, 1);
+    if (conducts || method->shift) add_field(force, RECORD_HEAT, 1);
     if (method->shift) add_field(force, RECORD_SHIFT, dim);
     if (method->closed) add_field(force, RECORD_POTENTIAL, dim);
     if (lagrangian) add_field(force, RECORD_LAGRANGIAN, 3);

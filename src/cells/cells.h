@@ -42,7 +42,7 @@ struct cells_method {
     bool div_v;             /* and the divergence by the pair gradient */
     bool shift;             /* particle shifting, with fluxes */
     bool closed;            /* and pair gradients that make nothing of a constant */
-    double conductivity;    /* alpha_u; 0: none */
+    double conductivity, shock_conductivity; /* 0: none */
     double
         worst_condition; /* of a moment matrix; beyond it the pair's gradient is the standard one */
     bool local;          /* local steps may be taken */
@@ -52,6 +52,12 @@ struct cells_method {
                      together to this are left out; 0: none are */
     int threads;  /* at most */
 };
+
+/* Does heat flow between neighbours? */
+static inline bool cells_conduct(const struct cells_method *method)
+{
+    return method->conductivity > 0 || method->shock_conductivity > 0;
+}
 
 /* What a scheme with this plan asks for; what it does not know (box, walls, threads, still) is 0.
  */

@@ -333,7 +333,7 @@ static bool add_part(struct cells *cells, const struct pairs *pairs, int64_t *in
     (method->formulation == FORMULATION_VANILLA_ICE ? add_vanilla_ice : add_lagrangian)(
         method->box.dim, method->energy, pairs, &pressure, totals, inside);
     if (method->shift) cells_exchange(cells, pairs, totals->gained);
-    if (method->conductivity > 0) totals->de += cells_conduction(cells, pairs);
+    if (cells_conduct(method)) totals->de += cells_conduction(cells, pairs);
     if (method->div_v) totals->div_v += cells_divergence(cells, pairs);
     return viscous;
 }

@@ -215,9 +215,19 @@ bool cells_viscosity(const struct cells *cells, const struct pairs *pairs)
     return true;
 }
 
-/* Conductivity (Price 2008), into heat: sum_j m_i m_j alpha_u v_u (u_i - u_j)/rhobar e_ij . Gbar.
- * What the particle gains its neighbours lose. */
-CLONES static double conducted(int dim, double alpha_u, const struct pairs *pairs)
+/* Is there a pair whose pressures differ by enough for the conductivity of shocks? */
+CLONES static bool any_shock(const struct pairs *pairs)
+{
+    const double *restrict P = pairs_theirs(pairs, RECORD_PRESSURE);
+    const double own_P = *pairs_own(pairs, RECORD_PRESSURE);
+    int any = 0;
+#pragma omp simd reduction(| : any)
+    for (int k = 0; k < pairs->count; k++) any |= pair_shocked(own_P, P[k]);
+    return any;
+}
+
+/* Conductivity (CONVENTIONS eq. 6.8), into heat: what the particle gains its neighbours lose. */
+CLONES static double conducted(int dim, double alpha_u, double alpha_s, const struct pairs *pairs)
 {
     const struct lanes *lanes = pairs->lanes;
     const ptrdiff_t stride = lanes->stride;
@@ -243,10 +253,10 @@ CLONES static double conducted(int dim, double alpha_u, const struct pairs *pair
     }
 #pragma omp simd
     for (int k = 0; k < count; k++) {
-        const double rho_bar = 0.5 * (own_rho + rho[k]);
-        const double speed = sqrt(fabs(own_P - P[k]) / rho_bar);
+        const double conduction =
+            pair_conduction(alpha_u, alpha_s, own_P, P[k], 0.5 * (own_rho + rho[k]));
         const double along_pair = least(s[k] * r_inverse[k], 0);
-        s[k] = own_m * m[k] * alpha_u * speed * (own_u - u[k]) / rho_bar * along_pair;
+        s[k] = own_m * m[k] * conduction * (own_u - u[k]) * along_pair;
         reaction[k] -= s[k];
     }
     return lanes_sum(s, count);
@@ -254,7 +264,9 @@ CLONES static double conducted(int dim, double alpha_u, const struct pairs *pair
 
 double cells_conduction(const struct cells *cells, const struct pairs *pairs)
 {
-    return conducted(cells->method.box.dim, cells->method.conductivity, pairs);
+    const struct cells_method *method = &cells->method;
+    if (!(method->conductivity > 0) && !any_shock(pairs)) return 0;
+    return conducted(method->box.dim, method->conductivity, method->shock_conductivity, pairs);
 }
 
 ALWAYS_INLINE void approaches_in(int dim, const struct pairs *pairs, double *restrict found)

@@ -13,6 +13,7 @@
 #ifndef SPHPROOF_PAIR_H
 #define SPHPROOF_PAIR_H
 
+#include <math.h>
 #include <stdbool.h>
 
 #include "scheme.h"
@@ -135,6 +136,24 @@ ALWAYS_INLINE bool pair_within(double r, double h_inverse_i, double h_inverse_j)
 ALWAYS_INLINE double pair_signal_speed(double c_i, double c_j, double closing)
 {
     return c_i + c_j + 3 * largest(closing, 0);
+}
+
+/* Conductivity (CONVENTIONS eq. 6.8): (alpha_u + alpha_s min(1, max(0, (5 D - 1)/2))) v_u/rhobar.
+ */
+ALWAYS_INLINE double pair_conduction(double alpha_u, double alpha_s, double P_i, double P_j,
+                                     double rho_bar)
+{
+    const double jump = fabs(P_i - P_j), sum = fabs(P_i) + fabs(P_j), scale = sum > 0 ? sum : 1;
+    /* one division for both */
+    const double inverse = 1 / (rho_bar * scale), per_rho = inverse * scale,
+                 shock = largest(2.5 * jump * inverse * rho_bar - 0.5, 0);
+    return (alpha_u + alpha_s * least(shock, 1)) * sqrt(jump * per_rho) * per_rho;
+}
+
+/* Are they far enough apart for alpha_s? */
+ALWAYS_INLINE bool pair_shocked(double P_i, double P_j)
+{
+    return 5 * fabs(P_i - P_j) > fabs(P_i) + fabs(P_j);
 }
 
 #endif

@@ -163,8 +163,8 @@ size_t plan_explain(const struct setup *setup, struct plan_line *lines, size_t m
              "each particle takes its own, by powers of two, and a pair the shorter one of its two "
              "particles",
              "steps=global: all particles take the shortest one");
-        line(&writer, "conductivity", scheme->alpha_u > 0, "alpha_u > 0, inside the pair loop",
-             "alpha_u=0");
+        line(&writer, "conductivity", scheme_conducts(scheme), "inside the pair loop",
+             "alpha_u=0, shock_conductivity=0");
         line(&writer, "gravity", plan.gravity, "added to the forces", "gravity=0");
         line(&writer, "particle shifting", plan.shift,
              scheme->shifting == SHIFTING_CLOSED

@@ -118,6 +118,8 @@ void scheme_default(struct scheme *scheme, const struct scheme_open *open, int d
                              : own && standard               ? kernel->predicted.pair_width
                                                              : PAIR_WIDTH_MEAN;
     if (open->shifting && check_shifting(scheme, NULL)) scheme->shifting = SHIFTING_NONE;
+    const bool inviscid = viscosity->none || (scheme->alpha == 0 && scheme->beta == 0);
+    if (open->shock_conductivity && inviscid) scheme->shock_conductivity = 0;
     if (!open->cfl) return;
     /* long steps are stable with this much viscosity, and not needed without */
     const double most_alpha = viscosity->evolve ? scheme->alpha_max : scheme->alpha;
@@ -177,11 +179,12 @@ static enum status check_members(const struct scheme *scheme, int dim, struct er
                              "dimensions",
                              choices[k].key, choices[k].family->members[choices[k].member]->name,
                              dim);
-    if (dim == 1 && scheme->alpha_u > 0)
+    if (dim == 1 && scheme_conducts(scheme))
         return error_set(error, STATUS_BAD_INPUT,
-                         "alpha_u=%g and dimension=1 exclude each other: conductivity is for 2 "
-                         "and 3 dimensions",
-                         scheme->alpha_u);
+                         "%s=%g and dimension=1 exclude each other: conductivity is for 2 and 3 "
+                         "dimensions",
+                         scheme->alpha_u > 0 ? "alpha_u" : "shock_conductivity",
+                         scheme->alpha_u > 0 ? scheme->alpha_u : scheme->shock_conductivity);
     return STATUS_OK;
 }
 

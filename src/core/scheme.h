@@ -32,7 +32,8 @@ struct scheme {
     double alpha_min, alpha_max; /* time_dependent and cullen_dehnen only */
     double balsara_floor;        /* eps: keeps some viscosity in pure shear */
     double noise;                /* projected: nu, strength of the linear term */
-    double alpha_u;              /* conductivity; 0: none */
+    double alpha_u;              /* conductivity (Price 2008); 0: none */
+    double shock_conductivity;   /* of strong shocks alone; 0: none */
     double eta;                  /* h = eta (m/rho)^(1/d) */
     double cfl;                  /* dt = cfl min h / v_signal; h = support radius */
     double h_tolerance;          /* relative, of Newton's h */
@@ -42,8 +43,15 @@ struct scheme {
 struct scheme_open {
     bool kernel, gradient, volume_element, viscosity, viscosity_form, balsara;
     bool eta, alpha, beta, cfl, energy, pair_width, h_method;
-    bool shifting; /* the scheme has what a problem asks for, which may be excluded */
+    /* the scheme has what a problem asks for, which may be excluded */
+    bool shifting, shock_conductivity;
 };
+
+/* Does heat flow between neighbours? */
+static inline bool scheme_conducts(const struct scheme *scheme)
+{
+    return scheme->alpha_u > 0 || scheme->shock_conductivity > 0;
+}
 
 /* Fills what is open: choices with those of the best scheme that was measured in so many
  * dimensions, then numbers from the descriptors of what has been chosen. */

@@ -45,8 +45,8 @@ static bool needs_a_plane(enum setting key)
 {
     return key == SETTING_direction || key == SETTING_boost || key == SETTING_viscosity_form ||
            key == SETTING_balsara || key == SETTING_balsara_floor || key == SETTING_noise ||
-           key == SETTING_alpha_u || key == SETTING_shifting || key == SETTING_window_radius ||
-           key == SETTING_gravity;
+           key == SETTING_alpha_u || key == SETTING_shock_conductivity || key == SETTING_shifting ||
+           key == SETTING_window_radius || key == SETTING_gravity;
 }
 
 static bool needs_a_line(enum setting key)

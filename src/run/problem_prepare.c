@@ -107,6 +107,15 @@ static void choose_shifting(const struct prepared *p, struct settings *settings)
     shifting->choice = closed ? SHIFTING_CLOSED : SHIFTING_NONE;
 }
 
+/* Of gas; scheme_default knows schemes without dissipation. Evaluations of other codes' particles
+ * have none unless they ask. */
+static void choose_conductivity(const struct prepared *p, struct settings *settings)
+{
+    struct setting_value *conductivity = &settings->value[SETTING_shock_conductivity];
+    if (!conductivity->automatic) return;
+    conductivity->real[0] = p->domain.dim > 1 && !p->problem->liquid ? 1 : 0;
+}
+
 /* Automatic keys as they are used. */
 static void write_back(const struct prepared *p, struct settings *settings)
 {
@@ -231,6 +240,7 @@ enum status problem_prepare_as(struct prepared *p, const struct problem *problem
         choose_gravity(p, settings, error) || problem->prepare(p, settings, error))
         return error->status;
     choose_shifting(p, settings);
+    choose_conductivity(p, settings);
     write_back(p, settings);
     return STATUS_OK;
 }

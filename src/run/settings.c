@@ -321,6 +321,7 @@ static enum status read_scheme(const struct settings *settings, int dim, struct 
         .balsara_floor = REAL_OF(balsara_floor),
         .noise = REAL_OF(noise),
         .alpha_u = REAL_OF(alpha_u),
+        .shock_conductivity = REAL_OF(shock_conductivity),
         .eta = REAL_OF(eta),
         .cfl = REAL_OF(cfl),
         .h_tolerance = REAL_OF(h_tolerance),
@@ -340,6 +341,7 @@ static enum status read_scheme(const struct settings *settings, int dim, struct 
         .pair_width = IS_AUTO(pair_width),
         .h_method = IS_AUTO(h_method),
         .shifting = IS_AUTO(shifting),
+        .shock_conductivity = IS_AUTO(shock_conductivity),
     };
     return plugin_select(&scheme->kernel, CHOICE_OF(kernel), (int)REAL_OF(sinc_n), dim, error);
 #undef REAL_OF
@@ -356,7 +358,8 @@ static void write_scheme(struct settings *settings, const struct scheme *scheme)
     } numbers[] = {{SETTING_eta, scheme->eta},
                    {SETTING_alpha, scheme->alpha},
                    {SETTING_beta, scheme->beta},
-                   {SETTING_cfl, scheme->cfl}};
+                   {SETTING_cfl, scheme->cfl},
+                   {SETTING_shock_conductivity, scheme->shock_conductivity}};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         settings->value[numbers[i].key].real[0] = numbers[i].real;
     const struct {

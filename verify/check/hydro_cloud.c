@@ -115,7 +115,9 @@ void hydro_cloud_physic(struct scheme *scheme, size_t c)
     scheme->viscosity_form = (enum viscosity_form)digit(&c, VISCOSITY_FORMS);
     scheme->balsara = (enum balsara)digit(&c, BALSARAS);
     scheme->energy = (enum energy)digit(&c, ENERGIES);
-    scheme->alpha_u = digit(&c, 2) ? 0.71 : 0;
+    const bool conducts = digit(&c, 2);
+    scheme->alpha_u = conducts ? 0.71 : 0;
+    scheme->shock_conductivity = conducts ? 1.3 : 0;
 }
 
 void hydro_cloud_describe(const struct scheme *s, int dim, char text[CLOUD_TEXT])

@@ -145,6 +145,8 @@ static const struct check_mutant mutants[] = {
      SET(scheme.viscosity, VISCOSITY_RECONSTRUCTED, 2, .viscosity = VISCOSITY_PROJECTED)},
     {"cloud_conductivity", "alpha_u off by 1e-9",
      TIMES(scheme.alpha_u, 1 - 1e-9, 2, .alpha_u = 0.71)},
+    {"cloud_shock_conductivity", "shock_conductivity off by 1e-8",
+     TIMES(scheme.shock_conductivity, 1 - 1e-8, 3, .shock_conductivity = 1.3)},
     {"cloud_beta_float", "beta off in the seventh digit",
      SET(scheme.beta, (double)2.17F, 3, .alpha_u = 0)},
     {0},
@@ -159,6 +161,7 @@ static struct cloud_subject of_mutant(const struct cloud_subject *mutant)
     s.scheme.viscosity_form = mutant->scheme.viscosity_form;
     s.scheme.balsara = mutant->scheme.balsara;
     s.scheme.alpha_u = mutant->scheme.alpha_u;
+    s.scheme.shock_conductivity = mutant->scheme.shock_conductivity;
     if (mutant->scheme.viscosity) s.scheme.viscosity = mutant->scheme.viscosity;
     return s;
 }

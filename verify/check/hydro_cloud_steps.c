@@ -32,7 +32,7 @@ static struct scheme scheme_of(int dim, const struct integrator *integrator, int
         s.gradient = GRADIENT_IA;
         s.h_method = H_PREDICTED;
     }
-    if (c == 2) s.alpha_u = 0.71;
+    if (c == 2) s.alpha_u = 0.71, s.shock_conductivity = 1.3;
     return s;
 }
 

@@ -96,12 +96,16 @@ CHANGE(lagrangian, scheme.formulation, FORMULATION_LAGRANGIAN)
 CHANGE(mass, scheme.volume_element, VOLUME_MASS)
 CHANGE(energy, scheme.volume_element, VOLUME_ENERGY)
 CHANGE(number, scheme.volume_element, VOLUME_NUMBER)
-CHANGE(conduction, scheme.alpha_u, 0)
 CHANGE(gamma_5_3, gamma, 5. / 3)
 CHANGE(gamma_7_5, gamma, 1.4)
 CHANGE(half_eta, scheme.eta, 0.5 * setup->scheme.eta)
 CHANGE(twice_eta, scheme.eta, 2 * setup->scheme.eta)
 #undef CHANGE
+
+static void conduction(struct setup *setup)
+{
+    setup->scheme.alpha_u = setup->scheme.shock_conductivity = 0;
+}
 
 static void twice_viscosity(struct setup *setup)
 {

@@ -183,7 +183,7 @@ static void add_pressure(const struct oracle *oracle, struct oracle_particle *a,
     a->dU += from_a * oracle_dot(v_ij, G->i);
 }
 
-/* Conductivity (Price 2008). */
+/* Conductivity, CONVENTIONS eq. 6.8. */
 static long double conducted(const struct oracle *oracle, const struct oracle_particle *a,
                              const struct oracle_particle *b, const oracle_vector x,
                              const struct gradients *G)
@@ -191,8 +191,12 @@ static long double conducted(const struct oracle *oracle, const struct oracle_pa
     const long double r = sqrtl(oracle_dot(x, x)), rho = (a->rho + b->rho) / 2;
     const long double along = r > 0 ? -oracle_dot(x, G->mean) / r : 0;
     if (along >= 0) return 0;
-    return a->m * b->m * oracle->scheme.alpha_u * sqrtl(fabsl(a->P - b->P) / rho) *
-           (a->U / a->m - b->U / b->m) / rho * along;
+    const long double jump = fabsl(a->P - b->P), sum = fabsl(a->P) + fabsl(b->P),
+                      relative = sum > 0 ? jump / sum : 0,
+                      strength =
+                          oracle->scheme.alpha_u + oracle->scheme.shock_conductivity *
+                                                       fminl(1, fmaxl(0, (5 * relative - 1) / 2));
+    return a->m * b->m * strength * sqrtl(jump / rho) * (a->U / a->m - b->U / b->m) / rho * along;
 }
 
 /* The potentials' difference, by x . G/d, and what is left of a constant. */
@@ -233,7 +237,7 @@ void oracle_add_pair(const struct oracle *oracle, struct oracle_particle *a,
     add_pressure(oracle, a, b, v_ij, &G);
     a->div_v -= b->V * oracle_dot(v_ij, G.mean);
     if (scheme->shifting != SHIFTING_NONE) add_exchange(a, b, &G);
-    if (scheme->alpha_u > 0) a->dU += conducted(oracle, a, b, x, &G);
+    if (scheme_conducts(scheme)) a->dU += conducted(oracle, a, b, x, &G);
     if (scheme->viscosity == VISCOSITY_NONE) return;
     const long double r = sqrtl(oracle_dot(x, x)), w = closing_speed(oracle, a, b, x, v_ij, &G);
     long double PI = w < 0 ? shock_pressure(oracle, a, b, r, w) : 0;

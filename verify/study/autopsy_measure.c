@@ -316,10 +316,10 @@ static enum status look_at_dissipation(const struct scene *s, const struct rate_
                                        struct autopsy_level *level, struct error *error)
 {
     struct scheme scheme = s->run->scheme;
-    const bool conducts = scheme.alpha_u > 0;
+    const bool conducts = scheme_conducts(&scheme);
     struct rate_table whole = {0}, calm = {0}, quiet = {0};
     enum status status = evaluate_as(s, &scheme, s->u, &whole, error);
-    scheme.alpha_u = 0;
+    scheme.alpha_u = scheme.shock_conductivity = 0;
     if (!status && conducts) status = evaluate_as(s, &scheme, s->u, &calm, error);
     if (!status && conducts) status = look_at_conductivity(s, &whole, &calm, level, error);
     scheme.noise = 0;
@@ -439,7 +439,7 @@ enum status autopsy_measure_theirs(const struct run *run, const struct run_resul
 {
     struct run plain = *run;
     plain.scheme.viscosity = VISCOSITY_NONE;
-    plain.scheme.alpha_u = 0;
+    plain.scheme.alpha_u = plain.scheme.shock_conductivity = 0;
     *level = (struct autopsy_level){0};
     for (int k = 0; k < 3; k++) level->error[k] = result->errors[FIELD_VELOCITY].l1;
     const struct regularity seen =

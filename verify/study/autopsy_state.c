@@ -15,12 +15,12 @@ static void switch_off(struct scheme *scheme, enum autopsy_term term)
 {
     if (term == AUTOPSY_VISCOUS) scheme->viscosity = VISCOSITY_NONE;
     if (term == AUTOPSY_NOISE) scheme->noise = 0;
-    if (term == AUTOPSY_CONDUCTIVITY) scheme->alpha_u = 0;
+    if (term == AUTOPSY_CONDUCTIVITY) scheme->alpha_u = scheme->shock_conductivity = 0;
 }
 
 static bool has(const struct scheme *scheme, enum autopsy_term term)
 {
-    if (term == AUTOPSY_CONDUCTIVITY) return scheme->alpha_u > 0;
+    if (term == AUTOPSY_CONDUCTIVITY) return scheme_conducts(scheme);
     if (term == AUTOPSY_NOISE) return viscosity_of[scheme->viscosity].noise && scheme->noise > 0;
     return term == AUTOPSY_PRESSURE || !viscosity_of[scheme->viscosity].none;
 }

@@ -125,6 +125,7 @@ def draw_local(number):
     maybe(0.3, "gradient", rng.choice(["standard", "ia", "blended"]))
     maybe(0.3, "viscosity", rng.choice(["constant", "reconstructed", "projected"]))
     maybe(0.3, "alpha_u", round(rng.uniform(0.1, 1), 2))
+    maybe(0.3, "shock_conductivity", round(rng.uniform(0, 4), 2))
     maybe(0.3, "cfl", log_uniform(rng, 0.05, 0.4))
     maybe(0.3, "energy", rng.choice(["internal", "total"]))
     maybe(0.3, "jitter", round(rng.uniform(0, 0.2), 2))

@@ -271,6 +271,36 @@ TEST(what_shifts)
     }
 }
 
+/* shock_conductivity=auto: of gas that viscosity heats. */
+TEST(what_conducts)
+{
+    static const struct {
+        const char *name, *keys[2];
+        double strength;
+    } rows[] = {
+        {"sedov_2d", {0}, 1},
+        {"noh_3d", {"viscosity=constant", "gradient=standard"}, 1},
+        {"gresho", {"alpha=0"}, 0},
+        {"gresho", {"alpha=0", "beta=1"}, 1},
+        {"sod_3d", {"viscosity=none"}, 0},
+        {"sod_3d", {"viscosity=none", "shock_conductivity=3"}, 3},
+        {"sod_2d", {"shock_conductivity=0"}, 0},
+        {"sod", {0}, 0},
+        {"taylor_green", {0}, 0},
+        {"hydrostatic", {"shock_conductivity=1"}, 1},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct run_settings base = case_of(rows[k].name);
+        struct run run;
+        size_t n = 0;
+        while (n < 2 && rows[k].keys[n]) n++;
+        assert_true(scheme_of(&base, n, rows[k].keys, &run));
+        if (run.scheme.shock_conductivity != rows[k].strength ||
+            settings_real(&run.settings, SETTING_shock_conductivity) != rows[k].strength)
+            fail_msg("row %zu: %s", k, rows[k].name);
+    }
+}
+
 /* sinc: half its exponent. */
 TEST(sinc)
 {
@@ -346,6 +376,10 @@ TEST(numbers_that_are_refused)
              dim > 1 ? NULL
                      : "alpha_u=0.5 and dimension=1 exclude each other: conductivity is for 2 and "
                        "3 dimensions");
+        WITH(shock_conductivity, 2,
+             dim > 1 ? NULL
+                     : "shock_conductivity=2 and dimension=1 exclude each other: conductivity is "
+                       "for 2 and 3 dimensions");
         /* of a viscosity that varies only */
         const double alphas[][2] = {{-1e-300, 1}, {0.5, 0.25}, {0.5, (double)INFINITY}, {1, NAN}};
         for (int k = 0; k < 4; k++) {

@@ -114,9 +114,10 @@ TEST(of_a_million)
     setup.scheme.integrator =
         (const struct integrator *)family_find(&integrator_family, "predicted_midpoint");
     assert_non_null(setup.scheme.integrator);
+    setup.scheme.shock_conductivity = 1;
     scheme_default(&setup.scheme,
                    &(struct scheme_open){true, true, true, true, true, true, true, true, true, true,
-                                         true, true, true, true},
+                                         true, true, true, true, true},
                    3);
     assert_true(setup.scheme.viscosity == VISCOSITY_PROJECTED && setup.scheme.eta == 3.6);
     assert_true(estimate_size(&setup).memory < 0x1p30);

@@ -237,6 +237,7 @@ TEST(schemes)
                            "balsara_floor=0.01",
                            "noise=0.6",
                            "alpha_u=0.9",
+                           "shock_conductivity=1.7",
                            "eta=2.9",
                            "cfl=0.25",
                            "h_tolerance=1e-7"};
@@ -258,7 +259,8 @@ TEST(schemes)
     assert_true(s.pair_width == PAIR_WIDTH_HARMONIC && s.h_method == H_NEWTON &&
                 strcmp(s.integrator->member.name, "rk3") == 0);
     assert_true(s.alpha == 0.3 && s.beta == 0.7 && s.alpha_min == 0.2 && s.alpha_max == 2.5);
-    assert_true(s.balsara_floor == 0.01 && s.noise == 0.6 && s.alpha_u == 0.9 && s.eta == 2.9);
+    assert_true(s.balsara_floor == 0.01 && s.noise == 0.6 && s.alpha_u == 0.9 &&
+                s.shock_conductivity == 1.7 && s.eta == 2.9);
     assert_true(s.cfl == 0.25 && s.h_tolerance == 1e-7);
     struct kernel other;
     assert_int_equal(kernel_select(&other, "sinc", 6, &error), STATUS_OK);

@@ -142,6 +142,7 @@ static void same_figures(int dim, enum shifting shifting, int draws)
     settings.value[SETTING_shifting].choice = (int)shifting;
     if (settings_scheme(&settings, dim, &scheme, &error)) fail_msg("%s", error.message);
     if (dim == 3) scheme.eta = 2.4; /* a third of the neighbours */
+    if (dim > 1) scheme.shock_conductivity = 1;
     for (int k = 0; k < draws; k++) {
         const double hot = pow(10, dim == 1 ? draw(0.5, 4) : draw(0.5, 6));
         struct setup setup =
@@ -177,7 +178,7 @@ TEST(test_cold_gas_shifts)
         settings_init(&settings);
         settings.value[SETTING_shifting].choice = (int)shifting;
         if (settings_scheme(&settings, 2, &setup.scheme, &error)) fail_msg("%s", error.message);
-        setup.scheme.alpha_u = 0.5;
+        setup.scheme.shock_conductivity = 1;
         for (size_t i = 0; i < setup.n; i++)
             for (int k = 0; k < 2; k++) x[k][i] += draw(-0.1, 0.1) / 144;
         run(&setup, true, &skipping);

@@ -339,7 +339,8 @@ TEST(noise_is_told_from_smooth_fields)
 /* Of any state: what terms take from the flow they give as heat. */
 TEST(the_power_of_each_term_closes)
 {
-    static const char *const keys[] = {"", "viscosity=reconstructed alpha_u=0.5",
+    static const char *const keys[] = {"shock_conductivity=0",
+                                       "viscosity=reconstructed shock_conductivity=50",
                                        "gradient=standard viscosity=none alpha_u=1"};
     static const bool there[][AUTOPSY_TERMS] = {
         {true, true, true, false}, {true, true, false, true}, {true, false, false, true}};
