@@ -149,6 +149,18 @@ static bool in_range(const struct setting_key *key, double value)
     return (key->above ? value > key->lo : value >= key->lo) && value <= key->hi;
 }
 
+/* All members of the key's family are allowed, and auto where the key has it. */
+static enum status unknown_choice(const struct setting_key *key, const char *where,
+                                  const char *word, struct error *error)
+{
+    const char *names[64];
+    size_t n = 0;
+    if (may_be_auto(key)) names[n++] = "auto";
+    for (size_t i = 0; i < key->family->n && n < sizeof names / sizeof *names; i++)
+        names[n++] = key->family->members[i]->name;
+    return text_unknown(error, where, key->name, word, names, n);
+}
+
 /* given is 0 where there are no words, or too many. */
 static enum status read_choices(const struct setting_key *key, const char *text, const char *where,
                                 struct setting_value *value, struct error *error)
@@ -158,7 +170,7 @@ static enum status read_choices(const struct setting_key *key, const char *text,
     value->given = 0;
     for (char *word; length < SETTING_TEXT_MAX && (word = strtok_r(rest, " \t,", &rest));) {
         const int choice = family_index(key->family, word);
-        if (choice < 0) return text_unknown_member(error, where, key->name, word, key->family);
+        if (choice < 0) return unknown_choice(key, where, word, error);
         if (value->given == key->count) {
             value->given = 0;
             return STATUS_OK;
@@ -179,8 +191,7 @@ static enum status read_choice(enum setting which, const char *text, const char 
                          reason.message);
     }
     *choice = family_index(key->family, text);
-    return *choice < 0 ? text_unknown_member(error, where, key->name, text, key->family)
-                       : STATUS_OK;
+    return *choice < 0 ? unknown_choice(key, where, text, error) : STATUS_OK;
 }
 
 /* Of a vector as many as there are. */

@@ -166,8 +166,14 @@ TEST(messages)
     refused("eta=2 ", "eta=2 : allowed: a number above 0 up to 100, or auto");
     refused("seed=1.5", "seed=1.5: allowed: an integer from 0");
     refused("n=64.5", "n=64.5: allowed: an integer, or 64^2,");
-    refused("boundary=foo", "no boundary 'foo'; allowed: ");
-    refused("energy=./x.so", "no energy './x.so'; allowed: ");
+    for (int i = 0; i < SETTINGS; i++) { /* of choices all that is allowed */
+        if (!setting_keys[i].family) continue;
+        setting_allowed(&setting_keys[i], word, sizeof word);
+        snprintf(want, sizeof want, "no %s './x.Q'; allowed:%s", setting_keys[i].name,
+                 strstr(word, "of ") + 2);
+        snprintf(word, sizeof word, "%s=./x.Q", setting_keys[i].name);
+        if (i != SETTING_kernel) refused(word, want);
+    }
     refused("kernel=./no/such.so", "kernel './no/such.so': ");
     refused("eta", "'eta': KEY=VALUE expected (`sphproof list keys` shows the keys)");
     snprintf(word, sizeof word, "%080d", 0);
