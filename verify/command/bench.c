@@ -364,12 +364,12 @@ const struct command command_bench = {
     .synopsis = "[CASE] [KEY=VALUE ...]",
     .help =
         "what an error costs: CPU time and pair interactions against the L1 error of density\n"
-        "For every scheme of --vary and every resolution of --n (default case: sod): the "
-        "Pareto\nfront, the cheapest way to 1 %, 0.3 % and 0.1 % of the signal (the exact "
-        "density's mean\ndistance from its mean), and L1^(2/p) x CPU time at the case's order p "
-        "against the seed program's corrected method. Samples of all schemes are "
-        "taken in turn, so\nthat ratios hold on a busy machine, too; the least sample counts "
-        "and the spread is shown.",
+        "For every scheme of --vary and every resolution of --n (default case: sod): the Pareto\n"
+        "front, the cheapest way to 1 %, 0.3 % and 0.1 % of the signal (the exact density's mean\n"
+        "distance from its mean), and L1^(2/p) x CPU time at the case's order p against the seed\n"
+        "program's corrected method. Samples of all schemes are taken in turn, so that ratios "
+        "hold\n"
+        "on a busy machine, too; the least sample counts and the spread is shown.",
     .run = run,
     .options = own_options,
     .examples = "sphproof bench\n"
