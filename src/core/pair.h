@@ -138,8 +138,9 @@ ALWAYS_INLINE double pair_signal_speed(double c_i, double c_j, double closing)
     return c_i + c_j + 3 * largest(closing, 0);
 }
 
-/* Conductivity (CONVENTIONS eq. 6.8): (alpha_u + alpha_s min(1, max(0, (5 D - 1)/2))) v_u/rhobar.
- */
+/* --- conductivity ----------------------------------------------------------------------------- */
+
+/* CONVENTIONS eq. 6.8: (alpha_u + alpha_s min(1, max(0, (5 D - 1)/2))) v_u/rhobar. */
 ALWAYS_INLINE double pair_conduction(double alpha_u, double alpha_s, double P_i, double P_j,
                                      double rho_bar)
 {
@@ -150,10 +151,10 @@ ALWAYS_INLINE double pair_conduction(double alpha_u, double alpha_s, double P_i,
     return (alpha_u + alpha_s * least(shock, 1)) * sqrt(jump * per_rho) * per_rho;
 }
 
-/* Are they far enough apart for alpha_s? */
+/* May alpha_s act between these? Where it may not, it is exactly 0: round-off has room. */
 ALWAYS_INLINE bool pair_shocked(double P_i, double P_j)
 {
-    return 5 * fabs(P_i - P_j) > fabs(P_i) + fabs(P_j);
+    return 5 * fabs(P_i - P_j) > 0.999 * (fabs(P_i) + fabs(P_j));
 }
 
 #endif

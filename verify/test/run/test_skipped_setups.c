@@ -288,6 +288,30 @@ TEST(test_pairs)
     }
 }
 
+/* Gas of which some neighbours' pressures differ by enough for the conductivity of shocks, and most
+ * do not: a particle without such neighbours is left out, unless alpha_u conducts as well. */
+TEST(test_conduction)
+{
+    for (int k = 0; k < 6; k++) {
+        struct settings settings;
+        struct error error;
+        const int dim = 2 + k % 2;
+        struct setup setup = draw_setup(dim, PULSE, 1, false);
+        const double most = draw(0.21, 0.3);
+        for (size_t i = 0; i < setup.n; i++) u[i] = 1 + draw(-most, most);
+        settings_init(&settings);
+        if (settings_scheme(&settings, dim, &setup.scheme, &error)) fail_msg("%s", error.message);
+        setup.scheme.eta = 2.2;
+        run(&setup, false, &plain);
+        setup.scheme.shock_conductivity = 1;
+        run(&setup, false, &skipping);
+        assert_true(memcmp(plain.fields, skipping.fields, sizeof plain.fields) != 0);
+        setup.scheme.alpha_u = 1e-300;
+        run(&setup, false, &plain);
+        assert_memory_equal(plain.fields, skipping.fields, sizeof plain.fields);
+    }
+}
+
 int main(void)
 {
     draw_state = 2385;
