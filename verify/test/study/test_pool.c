@@ -83,7 +83,8 @@ struct told {
     int number;
     enum status status;
     enum { NOTHING, WITH_DOCUMENT, LEAVES, LEAVES_BADLY, FLUSHES } kind;
-    int ms; /* how long it takes */
+    int ms;       /* how long it takes */
+    int together; /* before that it waits until so many have run at once, 20 s at most */
 };
 
 static enum status tell(const void *context, json_t **document, struct error *error)
@@ -95,7 +96,11 @@ static enum status tell(const void *context, json_t **document, struct error *er
                                         __ATOMIC_SEQ_CST))
             break;
     board->order[__atomic_fetch_add(&board->count, 1, __ATOMIC_SEQ_CST)] = told->number;
-    const struct timespec pause = {told->ms / 1000, told->ms % 1000 * 1000000L};
+    const struct timespec pause = {told->ms / 1000, told->ms % 1000 * 1000000L},
+                          tick = {0, 1000000};
+    for (int k = 0; k < 20000 && __atomic_load_n(&board->most, __ATOMIC_SEQ_CST) < told->together;
+         k++)
+        nanosleep(&tick, NULL);
     nanosleep(&pause, NULL);
     __atomic_sub_fetch(&board->running, 1, __ATOMIC_SEQ_CST);
     if (told->kind == LEAVES) _exit(0);
@@ -197,7 +202,7 @@ TEST(order_and_number)
     for (int jobs = 1; jobs <= 3; jobs++) {
         struct told told[N] = {{0}};
         *board = (struct board){0};
-        for (int i = 0; i < N; i++) told[i].ms = jobs == 1 ? 0 : 40;
+        for (int i = 0; i < N; i++) told[i].ms = jobs == 1 ? 0 : 40, told[i].together = jobs;
         add(&pool, told, N, weights);
         assert_int_equal(run(&pool, NULL, jobs), STATUS_OK);
         assert_int_equal(board->count, N);
