@@ -122,18 +122,16 @@ void hydro_cloud_physic(struct scheme *scheme, size_t c)
 
 void hydro_cloud_describe(const struct scheme *s, int dim, char text[CLOUD_TEXT])
 {
-    snprintf(
-        text, CLOUD_TEXT,
-        "%dD %s eta %g %s %s %s width %s viscosity %s %s balsara %s energy %s alpha_u %g, %g in "
-        "shocks h %s "
-        "%s",
-        dim, s->kernel.member.name, s->eta, scheme_gradient_family.members[s->gradient]->name,
-        scheme_formulation_family.members[s->formulation]->name,
-        scheme_volume_element_family.members[s->volume_element]->name,
-        scheme_pair_width_family.members[s->pair_width]->name,
-        scheme_viscosity_family.members[s->viscosity]->name,
-        scheme_viscosity_form_family.members[s->viscosity_form]->name,
-        scheme_balsara_family.members[s->balsara]->name,
-        scheme_energy_family.members[s->energy]->name, s->alpha_u, s->shock_conductivity,
-        scheme_h_method_family.members[s->h_method]->name, s->integrator->member.name);
+    snprintf(text, CLOUD_TEXT,
+             "%dD %s eta %g %s %s %s width %s viscosity %s %s balsara %s energy %s alpha_u %g "
+             "shock_conductivity %g h %s %s",
+             dim, s->kernel.member.name, s->eta, scheme_gradient_family.members[s->gradient]->name,
+             scheme_formulation_family.members[s->formulation]->name,
+             scheme_volume_element_family.members[s->volume_element]->name,
+             scheme_pair_width_family.members[s->pair_width]->name,
+             scheme_viscosity_family.members[s->viscosity]->name,
+             scheme_viscosity_form_family.members[s->viscosity_form]->name,
+             scheme_balsara_family.members[s->balsara]->name,
+             scheme_energy_family.members[s->energy]->name, s->alpha_u, s->shock_conductivity,
+             scheme_h_method_family.members[s->h_method]->name, s->integrator->member.name);
 }

@@ -369,8 +369,8 @@ static double median_error(const struct judged *judged, int f, double *errors, d
     return 0;
 }
 
-/* How far a functional is off, in units of what is far; of most of them only the sizes are known.
- */
+/* How far a functional is off; above 1 is far. The value of mode_error is its error; of others the
+ * error is relative to the exact value, and 0 where that is 0. */
 static double wrong_functional(const struct run_functional *f)
 {
     const double part = strcmp(f->name, mode_error.name) == 0 ? f->value / JUDGE_FOREIGN_MODE

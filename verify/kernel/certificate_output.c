@@ -215,8 +215,8 @@ void certificate_json(const struct certificate *c, double h, json_t *document)
     json_object_set_new(document, "fourier",
                         json_pack("{s:o, s:o, s:o, s:o}", "min", result_number(c->fourier.least),
                                   "min_kh", result_number(c->fourier.least_at), "first_negative_k",
-                                  isnan(first) ? json_null() : result_number(first / h),
-                                  "first_negative_kh", result_number_or_null(first)));
+                                  result_number_or_null(first / h), "first_negative_kh",
+                                  result_number_or_null(first)));
     json_object_set_new(document, "pairing_neighbours", result_number_or_null(c->pairing));
     json_object_set_new(document, "self_term", result_number(kernel_value(kernel, 0, h, c->dim)));
     json_object_set_new(document, "least_eta", result_number(kernel_least_eta(kernel, c->dim)));
