@@ -71,16 +71,16 @@ static enum status refuse_compressed(const struct snapshot_source *source, struc
 
 static enum status read_all(struct snapshot_source *source, stream from, struct error *error)
 {
-    enum { CHUNK = 1 << 16 };
-    for (;;) {
+    enum { FIRST = 1 << 16, MOST = 1 << 26 };
+    for (size_t chunk = FIRST;; chunk += chunk < MOST ? chunk : 0) {
         if (source->size >> 20 >= SOURCE_MEGABYTES_MAX)
             return error_set(error, STATUS_BAD_INPUT, "%.200s: too large; allowed: %d megabytes",
                              source->path, SOURCE_MEGABYTES_MAX);
-        unsigned char *bytes = realloc(source->bytes, source->size + CHUNK + 1);
+        unsigned char *bytes = realloc(source->bytes, source->size + chunk + 1);
         if (!bytes)
             return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
         source->bytes = bytes;
-        const long got = stream_read(from, source->bytes + source->size, CHUNK);
+        const long got = stream_read(from, source->bytes + source->size, chunk);
         if (got < 0)
             return error_set(error, STATUS_BAD_INPUT,
                              "%.200s: cannot be read (damaged, if it is compressed)", source->path);

@@ -41,6 +41,9 @@ static enum status take_sampling(const struct options *options, struct sampling 
         return error_set(error, STATUS_BAD_INPUT,
                          "riemann: --time %g: allowed: 0 (the initial states) or later", s->time);
     const char *text = options_value(options, "sample");
+    if (!text && (options_value(options, "time") || options_value(options, "x0")))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "riemann: --time and --x0 say where and when to sample: they need --sample");
     if (!text) return STATUS_OK;
     double v[3];
     if (!text_reals(text, ":", 3, v))
