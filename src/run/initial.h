@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Particles at t = 0, and what problems lay them with. */
+ * Particles at t = 0: what problems lay them with, and those that a run begins with. */
 #ifndef SPHPROOF_INITIAL_H
 #define SPHPROOF_INITIAL_H
 
@@ -40,6 +40,23 @@ void initial_keep(struct initial *initial, size_t first, initial_wanted *wanted,
 
 /* Its first guess of the state of particle i: the sample's; the mass stays. */
 void initial_sample(struct initial *initial, const struct prepared *p, size_t i);
+
+/* A problem's whole fill, where all of the domain is laid so: equal spacing, masses that follow the
+ * density; or, with equal_masses=yes of a problem that reads the key, equal masses at places that
+ * follow it. */
+enum status initial_fill(const struct prepared *p, const struct settings *settings,
+                         struct initial *initial, struct error *error);
+
+/* A problem's whole fill with a ball (a disc, an interval) in the middle of the domain: about n
+ * particles. */
+enum status initial_fill_ball(const struct prepared *p, const struct settings *settings,
+                              double radius, struct initial *initial, struct error *error);
+
+/* The particles of a prepared problem, its own or those of a file, moved as the keys lattice and
+ * jitter ask; settings: resolved. STATUS_BAD_INPUT: the problem cannot fill its domain with them.
+ */
+enum status initial_create(struct initial *initial, const struct prepared *p,
+                           const struct settings *settings, struct error *error);
 
 void initial_free(struct initial *initial);
 

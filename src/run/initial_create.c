@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "initial_create.h"
+#include "initial.h"
 
 #include <gsl/gsl_rng.h>
 #include <math.h>
 
 #include "particle_file.h"
+#include "problem.h"
 
 /* Brings every second particle of a line close to its neighbour on the same side of the jump. */
 static void pair_up(struct initial *initial, const struct settings *settings)

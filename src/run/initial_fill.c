@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "initial_fill.h"
+#include "initial.h"
 
 #include <math.h>
 
 #include "equal_masses.h"
 #include "lattice.h"
+#include "problem.h"
 
 enum status initial_fill(const struct prepared *p, const struct settings *settings,
                          struct initial *initial, struct error *error)

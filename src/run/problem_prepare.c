@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-#include "initial_fill.h"
+#include "initial.h"
 #include "problem_list.h"
 
 static const enum setting vectors[] = {SETTING_lo,        SETTING_hi,      SETTING_boost,

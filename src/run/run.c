@@ -10,7 +10,6 @@
 
 #include "equal_masses.h"
 #include "initial.h"
-#include "initial_create.h"
 #include "problem_list.h"
 #include "problem_prepare.h"
 #include "run_part.h"

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include "initial.h"
-#include "initial_create.h"
 #include "solver.h"
 
 static const double reaches = 3;

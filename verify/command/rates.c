@@ -8,7 +8,6 @@
 
 #include "command.h"
 #include "initial.h"
-#include "initial_create.h"
 #include "output.h"
 #include "particle_file.h"
 #include "rate_check.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "initial_create.h"
+#include "initial.h"
 #include "list.h"
 #include "mode.h"
 #include "plugin_kernel.h"

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "initial.h"
-#include "initial_create.h"
 #include "rate_table.h"
 
 /* Of a displacement, in spacings: differences of forces lose 1e-12/STEP to round-off and STEP^2 to

@@ -5,7 +5,6 @@
 
 #include "autopsy_state.h"
 #include "initial.h"
-#include "initial_create.h"
 #include "rate_table.h"
 
 /* Particles somewhere, with the exact fields of one time; n each. */

@@ -4,7 +4,7 @@
  * the liquid (Poiseuille), or both: the equations are linear here (Morris, Fox & Zhu 1997). */
 #include <math.h>
 
-#include "initial_fill.h"
+#include "initial.h"
 #include "liquid.h"
 #include "liquid_problem.h"
 

@@ -3,7 +3,7 @@
  * what a scheme does to it is error. Particles of equal masses. */
 #include <math.h>
 
-#include "initial_fill.h"
+#include "initial.h"
 #include "problem.h"
 #include "vortex.h"
 

@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "functional.h"
-#include "initial_fill.h"
+#include "initial.h"
 #include "liquid_problem.h"
 
 static const struct liquid *column_of(const struct prepared *p)

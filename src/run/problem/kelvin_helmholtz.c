@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "initial_fill.h"
+#include "initial.h"
 #include "problem.h"
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)

@@ -5,7 +5,7 @@
  * Particles of equal spacing, whose masses follow the density. */
 #include <math.h>
 
-#include "initial_fill.h"
+#include "initial.h"
 #include "mode.h"
 
 /* Density and speed on either side of the layers, and their half width. */

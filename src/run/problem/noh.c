@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-#include "initial_fill.h"
+#include "initial.h"
 #include "problem.h"
 #include "shells.h"
 

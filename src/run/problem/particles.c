@@ -5,7 +5,7 @@
  * state that a user's own reference has at t = 0. */
 #include <math.h>
 
-#include "initial_fill.h"
+#include "initial.h"
 #include "problem.h"
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)

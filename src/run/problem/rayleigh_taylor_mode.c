@@ -6,7 +6,7 @@
  * spacing, whose masses follow the density. */
 #include <math.h>
 
-#include "initial_fill.h"
+#include "initial.h"
 #include "mode.h"
 
 /* In the middle of the layer, and to either side. */

@@ -2,7 +2,7 @@
  * Uniform gas at rest: nothing may move. What moves is noise, driven by the disorder that particles
  * start with, or an instability of their lattice. Particles of equal masses. */
 #include "functional.h"
-#include "initial_fill.h"
+#include "initial.h"
 #include "problem.h"
 
 struct gas {

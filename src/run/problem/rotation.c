@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "disc.h"
-#include "initial_fill.h"
+#include "initial.h"
 #include "problem.h"
 
 static const double spin = 1, middle_pressure = 0.25; /* of a disc of radius 1 */

@@ -7,7 +7,6 @@
 #include <math.h>
 
 #include "initial.h"
-#include "initial_fill.h"
 #include "problem.h"
 #include "shells.h"
 

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "initial_fill.h"
+#include "initial.h"
 #include "problem.h"
 
 static const double speed = 0.5;

@@ -3,7 +3,7 @@
  * breaks (Landau & Lifshitz 1987, section 101): `waves` wavelengths in the box; in 2D and 3D in a
  * `direction` of integers, so that it is periodic in the box. Particles of equal masses, whose
  * positions carry the density exactly. */
-#include "initial_fill.h"
+#include "initial.h"
 #include "simple_wave.h"
 
 #include <math.h>

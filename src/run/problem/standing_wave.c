@@ -6,7 +6,7 @@
  * linear theory, so to a part k depth amplitude of them, and of a viscosity that is small). */
 #include <math.h>
 
-#include "initial_fill.h"
+#include "initial.h"
 #include "liquid.h"
 #include "liquid_problem.h"
 

@@ -6,7 +6,7 @@
  * projection of the velocity on the flow of the start over that of the start itself. */
 #include <math.h>
 
-#include "initial_fill.h"
+#include "initial.h"
 #include "liquid_problem.h"
 
 struct vortices {

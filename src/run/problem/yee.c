@@ -5,7 +5,7 @@
  * the density. */
 #include <math.h>
 
-#include "initial_fill.h"
+#include "initial.h"
 #include "problem.h"
 #include "vortex.h"
 

@@ -7,9 +7,17 @@
 
 #include "equal_masses.h"
 #include "gas.h"
-#include "initial_fill.h"
-#include "made_digits.h"
+#include "initial.h"
 #include "near.h"
+
+/* What a seed makes of a coordinate of Sobol's sequence before it is shifted, worked out a second
+ * time: thirty binary digits, added without carrying to those of a root times the seed less 1. */
+static double digits_added(double part, int d, uint64_t seed)
+{
+    static const uint64_t roots[] = {0x9e3779b9, 0x6a09e667, 0xbb67ae85, 0x3c6ef373};
+    const uint64_t digits = (seed - 1) * roots[d] % (1 << 30);
+    return (double)((uint64_t)ldexp(part, 30) ^ digits) / (1 << 30);
+}
 
 /* The construction: Sobol's sequence with its digits exchanged, shifted; each point is kept with a
  * probability that follows from the density. */
@@ -45,7 +53,7 @@ TEST(equal_masses_follow_the_density)
             double part[4], x[3] = {0};
             gsl_qrng_get(sequence, part);
             for (int d = 0; d <= dim; d++)
-                part[d] = made_digits(part[d], d, 5) + shift[d], part[d] -= part[d] >= 1;
+                part[d] = digits_added(part[d], d, 5) + shift[d], part[d] -= part[d] >= 1;
             for (int d = 0; d < dim; d++)
                 x[d] = p.domain.lo[d] + (p.domain.hi[d] - p.domain.lo[d]) * part[d];
             if (part[dim] * most >= gas_density(x)) {

@@ -9,8 +9,7 @@
 #include <string.h>
 
 #include "gas.h"
-#include "initial_create.h"
-#include "initial_fill.h"
+#include "initial.h"
 #include "lattice.h"
 #include "near.h"
 

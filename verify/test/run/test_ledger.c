@@ -6,7 +6,6 @@
 #include <math.h>
 
 #include "initial.h"
-#include "initial_create.h"
 #include "near.h"
 #include "run.h"
 

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "initial_create.h"
+#include "initial.h"
 #include "near.h"
 #include "particle_file.h"
 #include "problem.h"

@@ -11,7 +11,6 @@
 #include "cases.h"
 #include "functional.h"
 #include "initial.h"
-#include "initial_create.h"
 #include "near.h"
 #include "problem.h"
 #include "problem_list.h"

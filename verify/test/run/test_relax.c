@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "gas.h"
-#include "initial_fill.h"
+#include "initial.h"
 #include "near.h"
 #include "regularity.h"
 #include "relax.h"

@@ -10,7 +10,6 @@
 #include <unistd.h>
 
 #include "initial.h"
-#include "initial_create.h"
 #include "near.h"
 #include "run.h"
 #include "run_part.h"

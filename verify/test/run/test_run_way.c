@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include "initial.h"
-#include "initial_create.h"
 #include "near.h"
 #include "precision.h"
 #include "run.h"
