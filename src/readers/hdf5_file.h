@@ -14,8 +14,7 @@
  * STATUS_ENVIRONMENT: it is there no more. */
 enum status hdf5_load(const char *path, struct error *error);
 
-/* Opens source->file. STATUS_BAD_INPUT: the library cannot make sense of it; else as
- * hdf5_load has it. */
+/* Opens source->file, after hdf5_load. STATUS_BAD_INPUT: the library cannot make sense of it. */
 enum status hdf5_open(struct snapshot_source *source, struct error *error);
 void hdf5_close(struct snapshot_source *source);
 
@@ -40,10 +39,10 @@ void hdf5_text(const struct snapshot_source *source, const char *group, const ch
                char *text, size_t size);
 
 /* What stands there in place of a table of numbers, for messages: "a group", "text", "numbers with
- * 3 indices", "nothing". */
+ * 3 indices", "something else". */
 void hdf5_kind(const struct snapshot_source *source, const char *path, char *text, size_t size);
 
-/* Rows of a dataset of numbers; 0: it is none. */
+/* Rows of what stands there; 0: it is no dataset of numbers. */
 size_t hdf5_rows(const struct snapshot_source *source, const char *path);
 
 /* Reads a dataset of file->n rows and at most 3 columns into column and those behind it.

@@ -25,12 +25,13 @@ enum status hdf5_gas(const struct snapshot_source *source, const char *group,
         if (names[k].column == SNAPSHOT_X) {
             char kind[64];
             file->n = hdf5_rows(source, path);
-            hdf5_kind(source, path, kind, sizeof kind);
-            if (file->n < 1)
+            if (!file->n) {
+                hdf5_kind(source, path, kind, sizeof kind);
                 return error_set(error, STATUS_BAD_INPUT,
                                  "%.200s: %.80s: no particles, or no table of numbers, but %s; "
                                  "allowed: 1 or 2 indices",
                                  source->path, path, kind);
+            }
             if (file->n > SNAPSHOT_ROWS_MAX)
                 return error_set(error, STATUS_BAD_INPUT,
                                  "%.200s: %.80s: %zu particles; allowed: up to %d", source->path,

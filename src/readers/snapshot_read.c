@@ -114,8 +114,6 @@ static enum status read_hdf5(struct snapshot_source *source, const struct snapsh
 {
     enum { SECONDS = 60 };
     struct guard_verdict verdict = {0};
-    /* loaded here once, and not in each of the other processes */
-    if (hdf5_load(source->path, error)) return error->status;
     const struct errand errand = {source, options, output_temporary()};
     if (!errand.results)
         return error_set(error, STATUS_ENVIRONMENT, "no temporary file for what %.200s holds",
@@ -138,6 +136,8 @@ static enum status read_one(const char *path, const struct snapshot_options *opt
     struct snapshot_source source;
     *file = (struct snapshot_file){0};
     enum status status = source_open(&source, path, error);
+    /* here once, and not in each of the other processes */
+    if (!status && source.hdf5) status = hdf5_load(path, error);
     if (!status)
         status = (!source.hdf5    ? read_source
                   : options->here ? read_here

@@ -89,13 +89,15 @@ static enum metric_verdict judge_number(const struct metric *old, const struct m
         return judge_less(a, b, noise, floor, amount);
     case READING_TIMING:
         if (fabs(b - a) < timing_least || (b < noise * a && a < noise * b)) return VERDICT_SAME;
-        *amount = b > a ? b / a - 1 : 0;
-        return b > a ? VERDICT_WORSE : VERDICT_BETTER;
+        if (b < a) return VERDICT_BETTER;
+        *amount = b / a - 1;
+        return VERDICT_WORSE;
     case READING_ORDER:
         if (fabs(b - a) <= hypot(old->noise, new->noise)) return VERDICT_SAME;
-        *amount = fmax(0, a - b);
-        *fault = b < a;
-        return b < a ? VERDICT_WORSE : VERDICT_BETTER;
+        if (b > a) return VERDICT_BETTER;
+        *amount = a - b;
+        *fault = true;
+        return VERDICT_WORSE;
     default:
         return fabs(b - a) <= fmax(floor, noise * fabs(a)) ? VERDICT_SAME : VERDICT_INCOMPARABLE;
     }

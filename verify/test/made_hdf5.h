@@ -12,7 +12,7 @@
 enum { ITEM_NUMBERS = 64 };
 
 /* How numbers are stored, and texts. */
-enum stored { F64, F32, F32_BIG, I64, I32_BIG, I8, TEXT, TEXT_VARIABLE, GROUP };
+enum stored { F64, F32, F32_BIG, I64, I32_BIG, I8, TEXT, TEXT_VARIABLE, OPAQUE, TYPE, GROUP };
 
 /* A dataset or, of the group that stands before the last '/', an attribute. */
 struct item {
@@ -31,6 +31,7 @@ static hid_t item_type(const struct item *item)
     const hid_t numbers[] = {H5T_IEEE_F64LE, H5T_IEEE_F32LE, H5T_IEEE_F32BE,
                              H5T_STD_I64LE,  H5T_STD_I32BE,  H5T_STD_I8LE};
     if (item->stored < TEXT) return H5Tcopy(numbers[item->stored]);
+    if (item->stored > TEXT_VARIABLE) return H5Tcreate(H5T_OPAQUE, 8);
     const hid_t type = H5Tcopy(H5T_C_S1);
     H5Tset_size(type, item->stored == TEXT ? sizeof item->text : H5T_VARIABLE);
     return type;
@@ -67,6 +68,8 @@ static void write_item(hid_t file, const struct item *item)
     herr_t status = 0;
     if (item->stored == GROUP) {
         H5Gclose(group_of(file, item->path, strlen(item->path)));
+    } else if (item->stored == TYPE) {
+        status = H5Tcommit2(group, name, type, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     } else if (item->attribute) {
         const hid_t self = H5Acreate2(group, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
         status = H5Awrite(self, memory, values);

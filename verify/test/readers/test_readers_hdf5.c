@@ -183,10 +183,13 @@ TEST(spoilt_columns)
             items[k].shape[0] = N, items[k].shape[1] = items[k].shape[2] = 1;
             refuses(l, items, f->path, "no table of numbers, but numbers with 3 indices");
             items_of(l, items);
-            items[k].stored = TEXT;
-            refuses(l, items, f->path, "no table of numbers, but text");
-            items[k].stored = GROUP;
-            refuses(l, items, f->path, "no table of numbers, but a group");
+            static const char *const instead[] = {"text", "text", "something else",
+                                                  "something else", "a group"};
+            for (int form = TEXT; form <= GROUP; form++) {
+                items[k].stored = (enum stored)form;
+                snprintf(says, sizeof says, "no table of numbers, but %s", instead[form - TEXT]);
+                refuses(l, items, f->path, says);
+            }
             if (f->meaning == TYPES) continue;
             for (int fault = 0; fault < 5; fault++)
                 for (int c = 0; c < f->width; c++) {
