@@ -77,6 +77,7 @@ static void take_numbers(const char *line, struct snapshot_file *file)
     }
 }
 
+/* A line that has a #. */
 static void take_remark(const char *line, size_t length, struct snapshot_file *file)
 {
     char text[1200], key[16];
@@ -86,7 +87,7 @@ static void take_remark(const char *line, size_t length, struct snapshot_file *f
     const size_t begin = strspn(text, "# \t"), size = strcspn(text + begin, " \t=:");
     const size_t value = begin + size + strspn(text + begin + size, " \t=:");
     char *end = text + strlen(text);
-    while (end > text && strchr(" \t\r", end[-1])) *--end = '\0';
+    while (strchr(" \t\r", end[-1])) *--end = '\0';
     if (size == 0 || value >= (size_t)(end - text)) return;
     snprintf(key, sizeof key, "%.*s", (int)size, text + begin);
     double number;

@@ -55,9 +55,8 @@ static enum status read(const struct snapshot_source *source,
         if (time_follows) {
             double number;
             char word[40];
-            const size_t begin = 1 + strspn(text + at + 1, " ");
-            const size_t n = begin < length ? strcspn(text + at + begin, " \r\n") : 0;
-            snprintf(word, sizeof word, "%.*s", (int)(n < 39 ? n : 39), text + at + begin);
+            snprintf(word, sizeof word, "%.39s", text + at + 1 + strspn(text + at + 1, " "));
+            word[strcspn(word, " \r\n")] = '\0';
             if (text_real(word, &number)) file->time = (struct snapshot_value){true, number};
         }
         time_follows = strncmp(text + at, "# time:", 7) == 0;

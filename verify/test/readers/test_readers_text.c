@@ -84,6 +84,8 @@ TEST(units)
 
 /* ---- lines that say what columns do not ---- */
 
+#define ZEROS "0000000000000000000000000000000000000000000" /* so many that with four letters more they are 47 */
+
 TEST(remarks)
 {
     static const struct {
@@ -118,6 +120,14 @@ TEST(remarks)
          false,
          false,
          0,
+         0,
+         {0}},
+        {"# t = 0.25 = a quarter\n", false, false, false, 0, 0, {0}},
+        {"# at t = " ZEROS "0.25,\n# at gamma = " ZEROS "001.5,\n",
+         true,
+         false,
+         false,
+         0.25,
          0,
          {0}},
         {"# keys = gamma=1.5;t=3\n", false, false, false, 0, 0, {0}},
@@ -191,6 +201,15 @@ TEST(remarks)
                             file.box[d] == ends[k].length[d]);
             snapshot_file_free(&file);
         }
+    for (int more = 0; more < 2; more++) { /* a box of 160 letters and more is none */
+        struct table t = table_of(2, true);
+        struct snapshot_file file;
+        t.columns -= 2;
+        snprintf(t.head, sizeof t.head, "# box = 0:1%*s\n", 156 + more, "0:2");
+        reads(&t, NULL, &file);
+        assert_true(file.boxed == !more && file.box[1] == (more ? 0 : 2));
+        snapshot_file_free(&file);
+    }
     static const char *const boxes[] = {"# box = 0\n", "# box = 0 1 1\n", "# box = -1\n",
                                         "# box = 1 0\n", "# box = 1 2 -3\n"};
     for (size_t k = 0; k < sizeof boxes / sizeof *boxes;
@@ -227,6 +246,7 @@ TEST(splash)
          true},
         {"# created by SPLASH\r\n# time:\r\n# 0.25\r\n", true},
         {"# created by SPLASH\n# time:\n#   hot\n", false},
+        {"# created by SPLASH\n# time:\n#\n", false},
         {"# created by SPLASH\n# times: a\n#   0.5\n", false},
         {"# created by SPLASH\n", false}};
     for (int draw = 0; draw < 120; draw++) {
