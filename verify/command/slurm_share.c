@@ -28,7 +28,7 @@ static bool of_the_caller(const char *name)
 
 static bool takes(const struct command *command, const char *name)
 {
-    for (size_t i = 0; command->options && command->options[i].name; i++)
+    for (size_t i = 0; command->options[i].name; i++)
         if (strcmp(command->options[i].name, name) == 0) return true;
     return false;
 }
@@ -62,7 +62,7 @@ static char *line_of(const struct slurm_share *share)
     fprintf(line, " %s --shard $SLURM_ARRAY_TASK_ID/%d --only-build %s --threads %d",
             options->command->name, share->of, share->cache->build, options->threads);
     if (takes(options->command, "jobs")) fprintf(line, " --jobs %d", share->jobs);
-    for (size_t i = 0; list && list[i].name; i++) {
+    for (size_t i = 0; list[i].name; i++) {
         if (!options->values[i] || of_the_caller(list[i].name)) continue;
         snprintf(before, sizeof before, "--%s%s", list[i].name, list[i].argument ? "=" : "");
         put_quoted(line, before, options->values[i]);
