@@ -4,22 +4,16 @@ does not with faults planted: velocities 10 % low, particles moved by two spacin
 of speed and sound speed."""
 import json
 import math
-import os
 import random
-import subprocess
 import sys
-import tempfile
 
-PROGRAM = os.path.abspath(sys.argv[1])
+from script import call, json_of, play, read, write
+
 # Faults that no gate of the case can see, and why.
 UNSEEN = {("rest_2d", "slow"): "gas at rest, which moves by noise alone", ("rest_2d", "moved"): "it is uniform",
           ("rest_3d", "slow"): "as in 2D", ("rest_3d", "moved"): "as in 2D", ("square", "slow"): "its gas should rest",
           ("kelvin_helmholtz", "moved"): "the amplitude of a mode hardly depends on its place",
           ("square", "moved"): "particles across the edge err by more than that anyway"}
-
-
-def call(*words):
-    return subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=600)
 
 
 def judge(path):
@@ -48,23 +42,20 @@ def plant(fault, head, remarks, rows):
     return "\n".join([",".join(head), *remarks, *(",".join(map(repr, row)) for row in rows)]) + "\n"
 
 
-def one_case(case, folder):
-    path, bad = os.path.join(folder, "own.csv"), os.path.join(folder, "bad.csv")
-    done = call("run", case, "--quiet", "--snapshot", path)
-    assert done.returncode == 0, done.stderr
+def one_case(case):
+    path, bad = "own.csv", "bad.csv"
+    call("run", case, "--quiet", "--snapshot", path, status=0, timeout=600)
     status, gates = judge(path)
     said = {g["name"]: g["status"] for g in gates}
     assert status == 0 and "pass" in said.values(), (case, gates)
     assert all(g["source"].startswith("case " + case) or g["name"] in ("mass", "momentum", "angular_momentum", "energy")
                for g in gates), (case, gates)
     assert len(said) > 3 or case == "none", "%s has no gates of its own" % case
-    with open(path, encoding="utf-8") as file:
-        lines = file.read().splitlines()
+    lines = read(path).splitlines()
     head, remarks = lines[0].split(","), [line for line in lines if line.startswith("#")]
     numbers = [list(map(float, line.split(","))) for line in lines[1:] if not line.startswith("#")]
     for fault in ("slow", "moved", "noise"):
-        with open(bad, "w", encoding="utf-8") as file:
-            file.write(plant(fault, head, remarks, [list(row) for row in numbers]))
+        write(bad, plant(fault, head, remarks, [list(row) for row in numbers]))
         status, gates = judge(bad)
         failed = [g["name"] for g in gates if g["status"] == "fail"]
         unseen = (case, fault) in UNSEEN
@@ -73,11 +64,10 @@ def one_case(case, folder):
 
 
 def main():
-    cases = [c["name"] for c in json.loads(call("list", "cases", "--json", "-").stdout)["families"]["cases"]]
+    cases = [c["name"] for c in json_of("list", "cases")["families"]["cases"]]
     assert len(cases) > 20
-    with tempfile.TemporaryDirectory() as folder:
-        for case in sys.argv[2:] or cases:
-            one_case(case, folder)
+    for case in sys.argv[2:] or cases:
+        one_case(case)
 
 
-main()
+play(main)

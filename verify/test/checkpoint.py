@@ -10,12 +10,11 @@ import os
 import random
 import subprocess
 import sys
-import tempfile
 import time
 
-program = os.path.abspath(sys.argv[1])
+from script import call, expect, faults, play, program
+
 setups, seed = int(sys.argv[2]) if len(sys.argv) > 2 else 12, int(sys.argv[3]) if len(sys.argv) > 3 else 1
-faults = []
 # a case, its numbers of particles, an end that takes a few dozen steps or more
 LINES = [("sod", (100, 300), 0.05), ("strong_shock", (100, 200), 0.01), ("sound_wave", (64, 128), 0.2),
          ("lax", (100, 200), 0.03), ("noh_1d", (100, 200), 0.1)]
@@ -38,11 +37,6 @@ LOCAL_CHOICES = {"gradient": ["standard", "ia"], "skip": ["auto", "none"], "ener
                  "viscosity": ["constant", "reconstructed", "projected"], "alpha_u": ["0", "0.5"]}
 
 
-def expect(what, well, got=""):
-    if not well:
-        faults.append("%s: %s" % (what, got))
-
-
 def draw(generator):
     """Words of a run; some combinations exclude each other."""
     local, cloud = generator.random() < 0.25, generator.random() < 0.6
@@ -59,7 +53,7 @@ def draw(generator):
 
 
 def run(words, *more):
-    return subprocess.run([program, "run", *words, *more, "--quiet"], capture_output=True, text=True)
+    return call("run", *words, *more, "--quiet")
 
 
 def seen(stem):
@@ -142,13 +136,4 @@ def test_bits():
     expect("runs that were killed", resumed >= (setups + 1) // 4, resumed)
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        test_bits()
-        os.chdir("/")
-    print("\n".join(faults) or "runs go on to the last bit")
-    return bool(faults)
-
-
-sys.exit(main())
+play(test_bits)

@@ -4,39 +4,21 @@ also when another tool has rewritten it, and refuses bad input. (Verdicts on fig
 `sphproof baseline`: the transcripts.)"""
 import json
 import os
-import subprocess
-import sys
-import tempfile
 
-program = os.path.abspath(sys.argv[1])
-faults = []
+from script import call, expect, json_of, play, write
 
 
-def sphproof(*words):
-    return subprocess.run([program, *words], capture_output=True, text=True, timeout=60)
 
-
-def expect(what, well, got=""):
-    if not well:
-        faults.append("%s: %s" % (what, got))
-
-
-def save(name, document):
-    with open(name, "w", encoding="utf-8") as file:
-        json.dump(document, file)
+def save(name, content):
+    write(name, json.dumps(content))
     return name
-
-
-def made_by(*words):
-    done = sphproof(*words, "--json", "-")
-    return json.loads(done.stdout)
 
 
 def diff(old, new, *options):
     """Exit status, {path: verdict}."""
-    done = sphproof("diff", save("old.json", old), save("new.json", new), *options, "--json", "-")
-    document = json.loads(done.stdout) if done.stdout else {"figures": [], "problem": done.stderr, "summary": {}}
-    return done.returncode, {f["path"]: f for f in document["figures"]}, document
+    done = call("diff", save("old.json", old), save("new.json", new), *options, "--json", "-")
+    whole = json.loads(done.stdout) if done.stdout else {"figures": [], "problem": done.stderr, "summary": {}}
+    return done.returncode, {f["path"]: f for f in whole["figures"]}, whole
 
 
 def test_rewritten(documents):
@@ -70,14 +52,14 @@ def test_kinds():
              ["run", "sedov_2d", "n=16^2", "t_end=1e-3"], ["run", "noh_3d", "n=12^3", "t_end=1e-3"],
              ["run", "gresho", "n=12^2", "t_end=1e-2"], ["verify", "norms"], ["stress", "few", "start"],
              ["converge", "sod", "--n", "40,60,80,120", "--vary", "kernel=cubic_spline,quartic_spline"])
-    documents = [made_by(*words) for words in kinds]
+    documents = [json_of(*words, status=None) for words in kinds]
     for document, words in zip(documents, kinds):
         got, figures, whole = diff(document, document)
         expect("%s with itself" % words, got == 0 and {f["verdict"] for f in figures.values()} == {"same"}, whole)
         expect("figures of %s" % words, len(figures) > 3, figures)
     test_rewritten(documents)
     for words in (["list"], ["run", "sod", "n=60", "--explain"]):
-        document = made_by(*words)
+        document = json_of(*words, status=None)
         got, figures, whole = diff(document, document)
         expect("%s has no figures" % words, got == 1 and not figures, whole)
 
@@ -90,19 +72,9 @@ def test_bad_input(run):
     os.mkdir("folder")
     for words, said in ((["run.json", "folder"], "folder"), (["text.json", "run.json"], "text.json:1"),
                         (["other.json", "run.json"], "schema"), (["run.json", "run.json", "run.json"], "two")):
-        done = sphproof("diff", *words)
+        done = call("diff", *words)
         expect("diff %s" % words, done.returncode == 2 and said in done.stderr and not done.stdout,
                (done.returncode, done.stderr))
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        test_kinds()
-        test_bad_input(made_by("run", "sod", "n=60"))
-        os.chdir("/")
-    print("\n".join(faults) or "diff is sound")
-    return bool(faults)
-
-
-sys.exit(main())
+play(test_kinds, lambda: test_bad_input(json_of("run", "sod", "n=60")))

@@ -6,11 +6,9 @@ import contextlib
 import json
 import os
 import re
-import subprocess
 import sys
-import tempfile
 
-from studying import expect, faults, program, without_times
+from script import call, expect, play, read, write
 
 TUBE = """[case]
 title = A tube
@@ -61,50 +59,47 @@ def fixed(value):
     return [fixed(v) for v in value] if isinstance(value, list) else value
 
 
-def call(*words):
+def tried(*words):
     """Exit status, what is in the document (and in a JUnit file) and what was said about an error."""
     for name in ("out.json", "out.xml"):
         with contextlib.suppress(FileNotFoundError):
             os.remove(name)
     junit = ("--junit", "out.xml") if words[0] == "verify" else ()
-    done = subprocess.run([program, *words, "--quiet", "--json", "out.json", *junit], capture_output=True, text=True, timeout=100)
+    done = call(*words, "--quiet", "--json", "out.json", *junit)
     document = None
     if os.path.exists("out.json"):
-        with open("out.json", encoding="utf-8") as file:
-            document = fixed(without_times(json.load(file)))
+        document = fixed(json.loads(read("out.json")))
     if os.path.exists("out.xml"):
-        with open("out.xml", encoding="utf-8") as file:
-            document["junit"] = re.sub(r' time="[^"]*"', "", file.read())
+        document["junit"] = re.sub(r' time="[^"]*"', "", read("out.xml"))
     return done.returncode, document, done.stderr
 
 
 def share(words, cache, number, code):
-    status, document, said = call(*words, "--cache", cache, "--shard", "%d/2" % number)
+    status, document, said = tried(*words, "--cache", cache, "--shard", "%d/2" % number)
     expect("%s, share %d" % (words, number), status == (2 if code == 2 else 0) and document is None, (status, said))
 
 
 def try_study(number, code, words):
-    alone = call(*words)
+    alone = tried(*words)
     what = "exit %d, %s" % (code, " ".join(words[:2]))
     expect(what, alone[0] == code and bool(alone[2]) == (code > 1), alone)
     for how, shares in (("cold", ()), ("warm", ()), ("joined", (2, 1)), ("one is missing", (2,))):
         cache = "%d-%s" % (number, "warm" if how == "cold" else how)
         for one in shares:
             share(words, cache, one, code)
-        expect("%s: %s" % (what, how), call(*words, "--cache", cache) == alone, how)
+        expect("%s: %s" % (what, how), tried(*words, "--cache", cache) == alone, how)
         if code == 2:
             expect("%s: a cache is made" % what, not os.path.exists(cache) or not os.listdir(cache), how)
     if os.path.exists("submitted"):
         os.remove("submitted")
-    engine = call(*words, "--cache", "%d-engine" % number, "--engine", "slurm", "--engine-tasks", "2")
+    engine = tried(*words, "--cache", "%d-engine" % number, "--engine", "slurm", "--engine-tasks", "2")
     expect("%s: an engine" % what, engine == alone, engine)
     expect("%s: an engine was asked" % what, os.path.exists("submitted") == (code != 2))
 
 
 def test_all_checks():
     """They are all computed, each once."""
-    listed, names = (subprocess.run([program, *words], capture_output=True, text=True).stdout.splitlines()
-                     for words in (("verify", "--slow", "--list"), ("list", "checks")))
+    listed, names = (call(*words).stdout.splitlines() for words in (("verify", "--slow", "--list"), ("list", "checks")))
     expect("all checks", len(set(listed)) == len(listed) == len(names) - 1, (len(listed), len(names)))
 
 
@@ -112,31 +107,22 @@ def test_environment():
     """Where nothing can be kept, and where there is no Slurm, every way ends with 4."""
     words = STUDIES[0][1]
     for more in ((), ("--shard", "1/2"), ("--engine", "slurm")):
-        status, document, said = call(*words, "--cache", "/dev/null/cache", *more)
+        status, document, said = tried(*words, "--cache", "/dev/null/cache", *more)
         expect("no place for a cache %s" % (more,), status == 4 and document is None and "/dev/null" in said, said)
     os.rename("bin", "gone")
-    status, document, said = call(*words, "--cache", "none", "--engine", "slurm")
+    status, document, said = tried(*words, "--cache", "none", "--engine", "slurm")
     expect("no Slurm", status == 4 and document is None and "no command squeue" in said, said)
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        with open("tube.ini", "w", encoding="ascii") as file:
-            file.write(TUBE)
-        os.makedirs("bin")
-        for name in ("sbatch", "squeue", "scancel"):
-            with open("bin/" + name, "w", encoding="ascii") as file:
-                file.write(FAKE)
-            os.chmod("bin/" + name, 0o755)
-        os.environ["PATH"] = os.path.abspath("bin")  # nothing of a Slurm that may be here
-        for number, (code, words) in enumerate(STUDIES + (OTHERS if "all" in sys.argv else [])):
-            try_study(number, code, words)
-        test_all_checks()
-        test_environment()
-        os.chdir("/")
-    print("\n".join(faults) or "a study ends as it ends alone")
-    return bool(faults)
+def try_studies():
+    write("tube.ini", TUBE)
+    os.makedirs("bin")
+    for name in ("sbatch", "squeue", "scancel"):
+        write("bin/" + name, FAKE)
+        os.chmod("bin/" + name, 0o755)
+    os.environ["PATH"] = os.path.abspath("bin")  # nothing of a Slurm that may be here
+    for number, (code, words) in enumerate(STUDIES + (OTHERS if "all" in sys.argv else [])):
+        try_study(number, code, words)
 
 
-sys.exit(main())
+play(try_studies, test_all_checks, test_environment)

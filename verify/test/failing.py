@@ -6,23 +6,15 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 
-program = os.path.abspath(sys.argv[1])
+from script import expect, play, program, said
+
 wrong = os.path.join(os.path.dirname(program), "verify/examples/faulty_DW_ELEVENTH_DIGIT.so")
 first_failure = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../first_failure.py")
-faults = []
-
-
-def expect(what, well, got=""):
-    if not well:
-        faults.append("%s: %s" % (what, got))
 
 
 def sphproof(*words, what="kernels"):
-    done = subprocess.run([program, "verify", what, "--failures", "failures", *words], capture_output=True,
-                          text=True, timeout=100, check=False)
-    return done.returncode, done.stdout, done.stderr
+    return said("verify", what, "--failures", "failures", *words)
 
 
 def last_words(log, name="testlog.json"):
@@ -70,16 +62,16 @@ def main():
     test = {"name": "sphproof:quick / verify kernels", "result": "FAIL", "starttime": 0}
     other = {"name": "sphproof:quick / kernel", "result": "FAIL", "starttime": 0, "stderr": "[  ERROR   ] --- 0x1d != 0"}
     good = dict(other, result="OK")
-    said = last_words([good, other, test]).strip().splitlines()
-    expect("last lines: what", said[1] == first["headline"], said)
-    expect("last lines: how far, where", "times over" in said[2] and first["place"] in said[2], said)
-    plot = [line.split(":", 1)[1].strip() for line in said if "plot:" in line]
-    expect("last lines: plot", len(plot) == 1 and os.path.getsize(plot[0]) > 1000, said)
-    expect("last lines: command", any("./sphproof verify kernels" in line for line in said), said)
-    expect("last lines: all that failed", said[-1] == "2 tests failed: kernel, verify kernels", said)
-    said = last_words([dict(test, starttime=4e9), other])
-    expect("results of an earlier run", first["headline"] not in said and "0x1d != 0" in said and
-           "--print-errorlogs" in said, said)
+    last = last_words([good, other, test]).strip().splitlines()
+    expect("last lines: what", last[1] == first["headline"], last)
+    expect("last lines: how far, where", "times over" in last[2] and first["place"] in last[2], last)
+    plot = [line.split(":", 1)[1].strip() for line in last if "plot:" in line]
+    expect("last lines: plot", len(plot) == 1 and os.path.getsize(plot[0]) > 1000, last)
+    expect("last lines: command", any("./sphproof verify kernels" in line for line in last), last)
+    expect("last lines: all that failed", last[-1] == "2 tests failed: kernel, verify kernels", last)
+    last = last_words([dict(test, starttime=4e9), other])
+    expect("results of an earlier run", first["headline"] not in last and "0x1d != 0" in last and
+           "--print-errorlogs" in last, last)
     expect("all well", last_words([good]) == "")
     expect("under a wrapper", "0x1d != 0" in last_words([other], "testlog-valgrind.json"))
     code, out, _ = sphproof("--json", "verify/test/kernels.json")
@@ -87,9 +79,4 @@ def main():
         expect("repaired", code == 0 and json.load(file)["failures"] == [] and not os.path.exists("failures"), out)
 
 
-with tempfile.TemporaryDirectory() as folder:
-    os.chdir(folder)
-    main()
-    os.chdir("/")
-print("\n".join(faults) or "a fault is told in a few lines")
-sys.exit(bool(faults))
+play(main)

@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """ic.py SPHPROOF: `sphproof ic` writes the particles that `run` starts from, to the last bit, on scenes drawn at
 random; judge reads every format with the errors that its precision allows; SWIFT's h is twice the standard deviation.
-(Damaged files: damages.py; other refusals: the transcripts.)"""
+(Refusals: the transcripts.)"""
 import csv
-import json
 import os
 import random
 import struct
-import subprocess
 import sys
-import tempfile
 import time
 
-program = os.path.abspath(sys.argv[1])
+from script import call, json_of, play
+
 SCENES = (("sod", "%d", (40, 200), ("uniform", "clustered")), ("sound_wave", "%d", (16, 64), ("uniform", "clustered")),
           ("gresho", "%d^2", (12, 20), ("square", "hexagonal", "jittered")),
           ("yee", "%d^2", (12, 20), ("square", "jittered")), ("noh_3d", "%d^3", (7, 10), ("cubic", "jittered")))
@@ -24,9 +22,8 @@ BAD = (("ic square boundary=reflecting --format swift --out a.csv", "no walls"),
        ("ic gresho n=19^2 eta=4 --as-3d 8 --format csv --out a.csv", "at least 9 layers"))
 
 
-def call(*words, status=0):
-    done = subprocess.run([program, *words], capture_output=True, text=True, timeout=100)
-    assert done.returncode == status, (words, done)
+def answer(*words, status=0):
+    done = call(*words, status=status)
     return done.stdout + done.stderr
 
 
@@ -37,10 +34,7 @@ def content(path):
 
 def judged(path, case):
     """Errors of a file as judge finds them."""
-    done = subprocess.run([program, "judge", path, "--case", case, "--time", "0", "--json", "-", "--quiet"],
-                          capture_output=True, text=True, timeout=100)
-    assert done.returncode in (0, 1), done
-    return done.returncode, json.loads(done.stdout)
+    return json_of("judge", path, "--case", case, "--time", "0", "--quiet", status=None)
 
 
 def test_bits(draw):
@@ -56,7 +50,7 @@ def test_bits(draw):
 
 def test_every_format(draw):
     """Errors in every format are those of the text, which has all digits."""
-    formats = [one["name"] for one in json.loads(call("list", "formats", "--json", "-"))["families"]["formats"]]
+    formats = [one["name"] for one in json_of("list", "formats")["families"]["formats"]]
     for name in formats:
         # SPH-EXA is for 3D; SPLASH's text says no box, so that of an open problem is not known
         scenes = {"sph_exa": SCENES[-1:], "splash_ascii": SCENES[:-1]}.get(name, SCENES)
@@ -65,9 +59,9 @@ def test_every_format(draw):
         lattice = draw.choice([one for one in lattices if one != "clustered"])
         keys = ["n=" + power % draw.randint(*sizes), "lattice=" + lattice, "seed=%d" % draw.randint(1, 999)]
         call("ic", case, *keys, "--format", "csv", "--out", "start.csv")
-        said = call("ic", case, *keys, "--format", name, "--out", "start." + name)
+        said = answer("ic", case, *keys, "--format", name, "--out", "start." + name)
         floor = 3e-7 if "float32" in said else 1e-14
-        want, got = judged("start.csv", case)[1]["errors"], judged("start." + name, case)[1]["errors"]
+        want, got = judged("start.csv", case)["errors"], judged("start." + name, case)["errors"]
         for field, norms in want.items():
             for norm in ("l1", "l2") if isinstance(norms, dict) else ():
                 scale = 10 if field in ("pressure", "internal_energy") else 2  # values and sums over gradients of them
@@ -88,7 +82,7 @@ def test_last_place():
 
 
 def test_swift():
-    said = call("ic", "gresho", "n=16^2", "kernel=cubic_spline", "--format", "swift", "--out", "swift.hdf5")
+    said = answer("ic", "gresho", "n=16^2", "kernel=cubic_spline", "--format", "swift", "--out", "swift.hdf5")
     for word in ("--with-adiabatic-index", "--with-hydro-dimension", "time_end"):
         assert word in said, said
     call("ic", "gresho", "n=16^2", "kernel=cubic_spline", "--format", "gadget_hdf5", "--out", "gadget.hdf5")
@@ -116,7 +110,7 @@ def test_equal_masses():
         call("ic", case, "n=" + n, "--equal-masses", "--format", "csv", "--out", "equal.csv")
         masses = [row["m"] for row in rows_of("equal.csv")]
         assert max(masses) < min(masses) * (1 + 1e-12), (case, min(masses), max(masses))
-    said = call("ic", "kelvin_helmholtz_mode", "n=12^2", "--equal-masses", "--format", "csv", "--out", "equal.csv", status=2)
+    said = answer("ic", "kelvin_helmholtz_mode", "n=12^2", "--equal-masses", "--format", "csv", "--out", "equal.csv", status=2)
     assert "masses that differ" in said, said
 
 
@@ -127,7 +121,7 @@ def test_slab(draw):
         call("ic", case, *keys, "--format", "csv", "--out", "plane.csv")
         for name in ("csv", "sph_exa", "swift"):
             call("ic", case, *keys, "--as-3d", "%d" % layers, "--format", name, "--out", "slab." + name)
-            plane, slab = judged("plane.csv", case)[1], judged("slab." + name, case)[1]
+            plane, slab = judged("plane.csv", case), judged("slab." + name, case)
             assert slab["n"] == layers * plane["n"] and slab["dim"] == 2 and slab["start"]["wrong"] == 0, (case, slab)
             assert slab["start"]["velocity"] < 1e-13 and slab["conservation"]["mass"] < 1e-12, (case, slab)
     call("ic", "gresho", "n=16^2", "--as-3d", "8", "--format", "csv", "--out", "slab.csv")
@@ -135,8 +129,8 @@ def test_slab(draw):
         file.write("[case]\ntitle = t\ndimension = 3\nreference = none\n[domain]\nlo = 0 0 0\nhi = 1 1 0.5\n[initial]\n"
                    "kind = particles\nfile = slab.csv\n[run]\ngamma = 1.6666666666666667\nt_end = 0.1\n")
     call("run", "./slab.ini", "--snapshot", "moved.csv", "--quiet")
-    slab = json.loads(call("judge", "moved.csv", "--case", "gresho", "--json", "-"))["errors"]["velocity"]["l1"]
-    plane = json.loads(call("run", "gresho", "n=16^2", "t_end=0.1", "--json", "-"))["errors"]["velocity"]["l1"]
+    slab = json_of("judge", "moved.csv", "--case", "gresho", status=None)["errors"]["velocity"]["l1"]
+    plane = json_of("run", "gresho", "n=16^2", "t_end=0.1")["errors"]["velocity"]["l1"]
     assert 0.8 < slab / plane < 1.2, (slab, plane)
     rows = rows_of("moved.csv")
     assert max(abs(row["vz"]) for row in rows) < 1e-9 and max(abs(row["vx"]) for row in rows) > 0.5
@@ -144,20 +138,12 @@ def test_slab(draw):
 
 def test_refused():
     for words, told in BAD:
-        said = call(*words.split(), status=2)
+        said = answer(*words.split(), status=2)
         assert told in said, (words, said)
         assert not os.path.exists("a.csv") and not os.path.exists("a"), words
 
 
 seed = random.randrange(10**6) if len(sys.argv) < 3 else int(sys.argv[2])
 print("seed", seed)
-with tempfile.TemporaryDirectory() as work:
-    os.chdir(work)
-    test_bits(random.Random(seed))
-    test_every_format(random.Random(seed))
-    test_last_place()
-    test_swift()
-    test_equal_masses()
-    test_slab(random.Random(seed))
-    test_refused()
-    os.chdir("/")
+drawing = [lambda test=test: test(random.Random(seed)) for test in (test_bits, test_every_format, test_slab)]
+play(*drawing, test_last_place, test_swift, test_equal_masses, test_refused)

@@ -7,27 +7,14 @@ import json
 import math
 import os
 import random
-import subprocess
-import sys
-import tempfile
 
-program = os.path.abspath(sys.argv[1])
-failures = []
+from script import check, play, said
+
 draw = random.Random(11)
 
 
-def check(good, *what):
-    if not good:
-        failures.append(" ".join(str(w) for w in what))
-
-
-def call(*words):
-    r = subprocess.run([program, *words], capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL)
-    return r.returncode, r.stdout, r.stderr
-
-
 def judged(path, case, *words):
-    code, out, err = call("judge", path, "--case", case, *words, "--json", "-")
+    code, out, err = said("judge", path, "--case", case, *words, "--json", "-")
     check(code in (0, 1) and out, path, case, code, err)
     return json.loads(out) if out else {"errors": {}, "functionals": []}
 
@@ -118,26 +105,20 @@ def main():
     try_flow("wave", "standing_wave", t, wave, {"gravity": lambda x, y: wave(x, y, 1.2),
                                                 "sign": lambda x, y: tuple(-v for v in wave(x, y)[:2]) + (1.0, 0.0)}, wide=2, far=1e-3)
     for case in "taylor_green", "couette", "poiseuille", "hydrostatic", "standing_wave":
-        code, out, err = call("run", case, "n=400", "--json", "run.json")
+        code, out, err = said("run", case, "n=400", "--json", "run.json")
         check(code == 2 and not out and "does not run" in err and not os.path.exists("run.json"), case, code, err)
-        check(call("ic", case, "n=400", "--format", "csv", "--out", "ic.csv")[0] == 0, case, "has no initial state")
+        check(said("ic", case, "n=400", "--format", "csv", "--out", "ic.csv")[0] == 0, case, "has no initial state")
         result = judged("ic.csv", case)
         for field in ("velocity", "pressure") if case == "hydrostatic" else ("velocity",):
             check(result["errors"][field]["l1"] < 1e-15, case, "starts otherwise:", field, result["errors"][field])
-    for words, said in ((("nu=0",), "nu=0"), (("gravity=0 -1",), "along x"), (("speed=0",), "stays at rest")):
-        code, _, err = call("ic", "couette", *words, "--format", "csv", "--out", "no.csv")
-        check(code == 2 and said in err and not os.path.exists("no.csv"), words, code, err)
-    for case, word, said in (("hydrostatic", "gravity=0 1", "downwards"), ("standing_wave", "gravity=1 0", "downwards"),
+    for words, told in ((("nu=0",), "nu=0"), (("gravity=0 -1",), "along x"), (("speed=0",), "stays at rest")):
+        code, _, err = said("ic", "couette", *words, "--format", "csv", "--out", "no.csv")
+        check(code == 2 and told in err and not os.path.exists("no.csv"), words, code, err)
+    for case, word, told in (("hydrostatic", "gravity=0 1", "downwards"), ("standing_wave", "gravity=1 0", "downwards"),
                              ("taylor_green", "hi=2 1", "one length"), ("taylor_green", "speed=0", "no vortices"),
                              ("standing_wave", "amplitude=0", "no wave")):
-        code, _, err = call("ic", case, word, "--format", "csv", "--out", "no.csv")
-        check(code == 2 and said in err, case, word, code, err)
+        code, _, err = said("ic", case, word, "--format", "csv", "--out", "no.csv")
+        check(code == 2 and told in err, case, word, code, err)
 
 
-with tempfile.TemporaryDirectory() as place:
-    os.chdir(place)
-    main()
-    os.chdir("/")
-for failure in failures:
-    print(failure)
-sys.exit(bool(failures))
+play(main)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A folder of a test's own, beside what was built, as fixtures of a group:
- * test_run(make_place, remove_place). Include after cmocka.h. */
+ * A folder of a test's own, beside what was built: there before the first test, and gone with all
+ * that is in it after the last one. Include after test.h. */
 #ifndef MADE_PLACE_H
 #define MADE_PLACE_H
 
@@ -19,14 +19,15 @@ static inline int make_place(void **state)
     return !mkdtemp(place);
 }
 
-/* With all that has been left in it. */
 static inline int remove_place(void **state)
 {
     char command[64];
     (void)state;
-    snprintf(command, sizeof command, "rm -r %s", place);
+    snprintf(command, sizeof command, "/bin/rm -r %s", place);
     return system(command);
 }
+
+TEST_BETWEEN(make_place, remove_place);
 
 /* A file there; the next call overwrites it. */
 static inline char *path_of(const char *name)

@@ -5,11 +5,11 @@ other one of its dimension."""
 import json
 import os
 import re
-import subprocess
 import sys
-import tempfile
 
-PROGRAM, FULL = os.path.abspath(sys.argv[1]), "full" in sys.argv
+from script import call, play, read, write
+
+FULL = "full" in sys.argv
 CASES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "cases")
 SIZE = {1: "100", 2: "24^2", 3: "10^3"}
 LARGER = {"sod_2d": "1400", "sod_3d": "9216", "rayleigh_taylor_mode": "1152"}
@@ -20,7 +20,7 @@ PASS = {("sod", "sod_standard"), ("sod_standard", "sod"), ("kelvin_helmholtz_mod
 
 
 def output(*words):
-    done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=120)
+    done = call(*words)
     assert done.returncode in (0, 1, 2), (words, done)
     return done.returncode, done.stdout + done.stderr
 
@@ -55,30 +55,23 @@ def main():
     cases = {}
     for name in sorted(os.listdir(CASES)):
         if name.endswith(".ini"):
-            with open(os.path.join(CASES, name), encoding="ascii") as text:
-                text = text.read()
+            text = read(os.path.join(CASES, name))
             if re.search(r"^kind = (channel|hydrostatic|standing_wave|taylor_green)$", text, flags=re.M):
                 continue  # a liquid, which is not run
             found = re.search(r"(?s)dimension = (\d).*t_end = (\S+)", text)
             cases[name[:-4]] = int(found[1]), float(found[2])
     pairs = [(a, b) for a in cases for b in cases if a != b and cases[a][0] == cases[b][0]] if FULL else QUICK
     told, own = 0, {}
-    with tempfile.TemporaryDirectory() as folder:
-        for true, asked in pairs:
-            path = os.path.join(folder, true + ".csv")
-            if true not in own:
-                dim, end = cases[true]
-                status, text = output("run", true, "n=" + LARGER.get(true, SIZE[dim]), "t_end=%r" % (0.3 * end),
-                                      "--snapshot", path, "--quiet")
-                assert status == 0, text
-                with open(path, encoding="utf-8") as file:
-                    lines = [line for line in file if not re.match("# (case|keys)", line)]
-                with open(path, "w", encoding="utf-8") as file:
-                    file.writelines(lines)
-                own[true] = judged(path, true)[0] == 0
-            told += look(path, true, asked, own[true])
+    for true, asked in pairs:
+        path = true + ".csv"
+        if true not in own:
+            dim, end = cases[true]
+            call("run", true, "n=" + LARGER.get(true, SIZE[dim]), "t_end=%r" % (0.3 * end), "--snapshot", path, "--quiet", status=0)
+            write(path, re.sub("(?m)^# (case|keys).*\n", "", read(path)))
+            own[true] = judged(path, true)[0] == 0
+        told += look(path, true, asked, own[true])
     assert told >= 0.8 * len(pairs) and sum(own.values()) >= 0.7 * len(own), (told, len(pairs), own)
     print("%d pairs of cases: %d told apart" % (len(pairs), told))
 
 
-main()
+play(main)

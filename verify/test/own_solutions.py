@@ -6,11 +6,10 @@ the line. FOLDER: of the shared objects; without it, those that have been built 
 import json
 import os
 import random
-import subprocess
 import sys
-import tempfile
 
-program = os.path.abspath(sys.argv[1])
+from script import check, play, program, said
+
 folder = os.path.abspath(sys.argv[2] if sys.argv[2:] else os.path.join(os.path.dirname(program), "verify/examples"))
 CASE = """[case]
 title = Sod's tube
@@ -28,21 +27,10 @@ window = -0.5 0.5
 %s
 """
 FIELDS = ("density", "velocity", "pressure", "internal_energy")
-failures = []
-
-
-def check(good, *what):
-    if not good:
-        failures.append(" ".join(str(w) for w in what))
-
-
-def call(*words, timeout=120):
-    r = subprocess.run([program, *words], capture_output=True, text=True, timeout=timeout, stdin=subprocess.DEVNULL)
-    return r.returncode, r.stdout, r.stderr
 
 
 def result(*words):
-    status, out, err = call(*words, "--json", "-")
+    status, out, err = said(*words, "--json", "-")
     check(status == 0, words, status, err)
     return json.loads(out) if out else {}
 
@@ -65,7 +53,7 @@ def refused(reference, *words, fields="", status=2, line=4):
         return  # it has not been built
     with open("bad.ini", "w") as file:
         file.write(CASE % (reference, fields))
-    code, out, err = call("run", "./bad.ini", "--json", "bad.json")
+    code, out, err = said("run", "./bad.ini", "--json", "bad.json")
     check(code == status and not out and not os.path.exists("bad.json"), reference, code, out, err)
     check(line is None or ":%d: " % line in err, reference, "has no line", err)
     for word in words:
@@ -73,13 +61,14 @@ def refused(reference, *words, fields="", status=2, line=4):
 
 
 def rows(places, time=0.2, start=-0.6, step=1.2 / 1200):
-    sampled = json.loads(call("riemann", "1", "0", "1", "0.125", "0", "0.1", "--time", "0.2", "--sample=-0.6:0.6:1201",
+    sampled = json.loads(said("riemann", "1", "0", "1", "0.125", "0", "0.1", "--time", "0.2", "--sample=-0.6:0.6:1201",
                               "--json", "-")[1])["samples"]
     return "# time = %r\nx,rho,vx,P\n" % time + "".join(
         "%r,%r,%r,%r\n" % (s["x"], s["density"], s["velocity"], s["pressure"]) for s in sampled[places])
 
 
 def main():
+    os.environ["XDG_CACHE_HOME"] = os.getcwd()
     with open("fine.csv", "w") as file:
         file.write(rows(slice(None)))
     with open("table.ini", "w") as file:
@@ -98,7 +87,7 @@ def main():
                   table["interpolation"][field])
         check(slip["density"]["l1"] > 1.2 * exact["density"]["l1"], "a wrong solution is not seen", slip["density"])
         check("interpolation" not in so, "interpolation without a table")
-    check(call("run", "sod", "n=198", "--snapshot", "s.csv", "--quiet")[0] == 0, "no snapshot")
+    check(said("run", "sod", "n=198", "--snapshot", "s.csv", "--quiet")[0] == 0, "no snapshot")
     exact, so, table = (result("judge", "s.csv", "--case", case)["errors"] for case in ("sod", "./so.ini", "./table.ini"))
     check(all(abs(so[f]["l1"] / exact[f]["l1"] - 1) < 1e-10 for f in FIELDS), "judge", so, exact)
     check(all(abs(table[f]["l1"] - exact[f]["l1"]) <= 3 * table["interpolation"][f] for f in FIELDS), "judge", table, exact)
@@ -107,7 +96,7 @@ def main():
     first = result(*words)
     check(first == dict(result(*words), **{k: first[k] for k in ("date",)}) or
           result(*words)["levels"] == first["levels"], "a kept ladder differs")
-    check("interpolation" in first["levels"][0]["errors"] or "table" in call(*words)[1], "a ladder without a word of the table")
+    check("interpolation" in first["levels"][0]["errors"] or "table" in said(*words)[1], "a ladder without a word of the table")
     with open("fine.csv", "w") as file:
         file.write(rows(slice(None, None, 8)))
     check(result(*words)["levels"] != first["levels"], "another table, the same ladder")
@@ -168,11 +157,4 @@ def main():
     refused(library("sod_reference_later"), "reference", "crashes (Aborted) in sphproof_reference(", status=1, line=None)
 
 
-with tempfile.TemporaryDirectory() as place:
-    os.chdir(place)
-    os.environ["XDG_CACHE_HOME"] = place
-    main()
-    os.chdir("/")
-for failure in failures:
-    print(failure)
-sys.exit(bool(failures))
+play(main)

@@ -10,25 +10,13 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 
-PROGRAM = os.path.abspath(sys.argv[1])
-FOLDER = os.path.abspath(sys.argv[2]) if sys.argv[2:] else os.path.join(os.path.dirname(PROGRAM), "verify/examples")
+from script import check, play, program, said
+
+FOLDER = os.path.abspath(sys.argv[2]) if sys.argv[2:] else os.path.join(os.path.dirname(program), "verify/examples")
 ALL = sys.argv[3:] == ["all"]
 COPY = os.path.join(FOLDER, "cubic_copy.so")
-failures = []
-
-
-def call(*arguments, timeout=300):
-    r = subprocess.run([PROGRAM, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                       timeout=timeout, stdin=subprocess.DEVNULL)
-    return r.returncode, r.stdout, r.stderr
-
-
-def check(good, *what):
-    if not good:
-        failures.append(" ".join(str(w) for w in what))
 
 
 def figures(document):
@@ -47,12 +35,12 @@ def far(a, b):
     return max(abs(x - y) for x, y in zip(a, b)) / size if len(a) == len(b) and size > 0 else float("inf")
 
 
-def same_rates(folder, *words):
+def same_rates(*words):
     """Every column of every particle: to 1e-11 of the largest."""
     tables = []
     for kernel in COPY, "cubic_spline":
-        path = os.path.join(folder, "rates.csv")
-        code, _, err = call("rates", *words, "kernel=" + kernel, "--csv", path, "--quiet")
+        path = "rates.csv"
+        code, _, err = said("rates", *words, "kernel=" + kernel, "--csv", path, "--quiet")
         check(code == 0, "rates", words, kernel, err)
         with open(path) as f:
             rows = list(csv.DictReader(f))
@@ -67,7 +55,7 @@ def same_document(bound, *words, option=None):
     documents = []
     for kernel in COPY, "cubic_spline":
         named = ["--kernel", kernel] if option else ["kernel=" + kernel]
-        code, out, err = call(*words, *named, "--json", "-")
+        code, out, err = said(*words, *named, "--json", "-")
         check(code in (0, 1), words, kernel, err)
         documents.append(json.loads(out) if out else {})
     a, b = figures(documents[0]), figures(documents[1])
@@ -79,7 +67,7 @@ def same_document(bound, *words, option=None):
 
 def refused(status, words, *arguments, lasting=60):
     began = time.time()
-    code, out, err = call(*arguments)
+    code, out, err = said(*arguments)
     check(code == status and not out and words in err and err.count("\n") == 1, *arguments, "ends with", code,
           "and says", repr(out[:200]), repr(err[:300]), "not", repr(words))
     check(time.time() - began < lasting, *arguments, "takes", time.time() - began, "s")
@@ -92,13 +80,13 @@ def nothing_left(name):
                 words = f.read()
         except OSError:
             continue
-        check(not (name.encode() in words and int(pid) != os.getpid() and PROGRAM.encode() in words),
+        check(not (name.encode() in words and int(pid) != os.getpid() and program.encode() in words),
               "process", pid, "of", name, "is left")
 
 
 def interrupted():
     """Ctrl-C ends the run and the process that watches it, by the signal."""
-    p = subprocess.Popen([PROGRAM, "run", "sod", "n=100000", "kernel=" + COPY], stdout=subprocess.DEVNULL,
+    p = subprocess.Popen([program, "run", "sod", "n=100000", "kernel=" + COPY], stdout=subprocess.DEVNULL,
                          stderr=subprocess.PIPE)
     time.sleep(1)
     p.send_signal(signal.SIGINT)
@@ -110,7 +98,7 @@ def is_there(path):
     return sys.argv[2:] or os.path.exists(path)
 
 
-def by_day(folder):
+def by_day():
     wrong, crashes = (os.path.join(FOLDER, "%s.so" % n) for n in ("faulty_CONSTANT_SEVENTH_DIGIT", "cubic_crashes"))
     if is_there(wrong):
         refused(1, "checks that fail: normalisation", "run", "sod", "n=50", "kernel=" + wrong, "--json", "-")
@@ -119,46 +107,46 @@ def by_day(folder):
     if not is_there(COPY):
         return
     same_document(1e-9, "run", "sod", "n=100", "gradient=ia")
-    same_rates(folder, "yee", "n=256", "gradient=ia", "lattice=jittered")
-    same_rates(folder, "sound_wave_3d", "n=512", "gradient=standard", "lattice=jittered")
+    same_rates("yee", "n=256", "gradient=ia", "lattice=jittered")
+    same_rates("sound_wave_3d", "n=512", "gradient=standard", "lattice=jittered")
     refused(2, "No such file", "run", "sod", "kernel=./no_such_kernel.so")
     refused(2, "its content is", "run", "sod", "kernel=%s@0123456789abcdef" % COPY)
 
 
-def by_night(folder):
+def by_night():
     for gradient in "standard", "ia":
         for words in (["sod", "n=200"], ["yee", "n=256", "lattice=jittered"], ["sound_wave_3d", "n=512", "lattice=jittered"]):
-            same_rates(folder, *words, "gradient=" + gradient)
+            same_rates(*words, "gradient=" + gradient)
     same_document(1e-8, "run", "sound_wave_2d", "n=256", "t_end=0.1")
     same_document(1e-4, "converge", "sound_wave", "--n", "16,24,32,48", "--replicates", "1")
-    cloud = os.path.join(folder, "cloud.csv")
+    cloud = "cloud.csv"
     with open(cloud, "w") as f:
         f.write("x,y,volume,f\n")
         for i in range(100):
             f.write("%g,%g,0.01,%g\n" % (i % 10 / 10 + 0.01 * (i * 7 % 5), i // 10 / 10, (i * 13 % 17)))
     for operator in "standard", "ia", "linear_exact":
         same_document(1e-11, "gradient", cloud, "--operator", operator, "--dim", "2", "--eta", "2.4", option=True)
-    snapshot = os.path.join(folder, "end.csv")
-    call("run", "sod", "n=200", "kernel=cubic_spline", "eta=2.5", "--snapshot", snapshot)
+    snapshot = "end.csv"
+    said("run", "sod", "n=200", "kernel=cubic_spline", "eta=2.5", "--snapshot", snapshot)
     judged = same_document(1e-7, "judge", snapshot, "--case", "sod", "--time", "0.2", option=True)
     check(judged["kernel"]["name"].startswith(COPY + "@"), "judge names the kernel", judged["kernel"])
     # a document names the content, and its name may be typed
-    code, out, _ = call("run", "sod", "n=50", "kernel=" + COPY, "--json", "-")
+    code, out, _ = said("run", "sod", "n=50", "kernel=" + COPY, "--json", "-")
     name = json.loads(out)["settings"]["kernel"]
-    check(name.startswith(COPY + "@") and call("run", "sod", "n=50", "kernel=" + name)[0] == 0, "name", name)
+    check(name.startswith(COPY + "@") and said("run", "sod", "n=50", "kernel=" + name)[0] == 0, "name", name)
     # in a case file, and varied beside others
-    case = os.path.join(folder, "mine.ini")
+    case = "./mine.ini"
     with open(case, "w") as f:
         f.write("[case]\ntitle = mine\ndimension = 1\nreference = riemann\n[initial]\nkind = riemann\nleft = 1 0 1\n"
                 "right = 0.125 0 0.1\n[scheme]\nkernel = %s\n[run]\nt_end = 0.1\n" % COPY)
-    code, out, err = call("run", case, "n=50", "--json", "-")
+    code, out, err = said("run", case, "n=50", "--json", "-")
     check(code == 0 and json.loads(out)["settings"]["kernel"] == name, "case file", err)
-    code, out, err = call("bench", "sod", "--vary", "kernel=cubic_spline," + COPY, "--n", "20,40", "t_end=0.05",
+    code, out, err = said("bench", "sod", "--vary", "kernel=cubic_spline," + COPY, "--n", "20,40", "t_end=0.05",
                           "--time", "1e-5", "--samples", "2", "--json", "-")
     check(code == 0 and name in out, "bench", code, err[-300:])
     # harm
     wrong = os.path.join(FOLDER, "faulty_CONSTANT_SEVENTH_DIGIT.so")
-    code, out, err = call("run", "sod", "n=50", "kernel=" + wrong, "--uncertified", "--json", "-")
+    code, out, err = said("run", "sod", "n=50", "kernel=" + wrong, "--uncertified", "--json", "-")
     check(code == 0 and out and "although its certificate is refused" in err, "--uncertified", code, err)
     refused(1, "is refused", "converge", "sod", "--n", "20,30,40,50", "--vary", "kernel=cubic_spline," + wrong)
     refused(2, "no function sphproof_kernel_dw", "run", "sod", "kernel=" + os.path.join(FOLDER, "gaussian_without_dw.so"))
@@ -171,13 +159,10 @@ def by_night(folder):
         nothing_left(path)
     refused(1, "crashes (Aborted)", "run", "sod_2d", "n=2000", "--threads", "2", "--json", "-",
             "kernel=" + os.path.join(FOLDER, "cubic_crashes.so"))
-    code, out, err = call("converge", "sod", "--n", "100,200,300,400", "--replicates", "1", "--jobs", "2", "--json", "-",
+    code, out, err = said("converge", "sod", "--n", "100,200,300,400", "--replicates", "1", "--jobs", "2", "--json", "-",
                           "kernel=" + os.path.join(FOLDER, "cubic_crashes.so"))
     check(code == 1 and "crashes or ends its process" in err, "converge", code, err[-300:])
     interrupted()
 
 
-with tempfile.TemporaryDirectory() as scratch:
-    (by_night if ALL else by_day)(scratch)
-if failures:
-    sys.exit("\n".join(failures))
+play(by_night if ALL else by_day)

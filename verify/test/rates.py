@@ -4,24 +4,20 @@ rates_2d.csv and rates_3d.csv: one evaluation on rates_*_particles.csv, h to 1e-
 ninth particle stands there), in any order of columns, and in 1D. (What --check says: the transcripts
 and test_rate_check.)"""
 import csv
-import json
 import os
-import subprocess
 import sys
-import tempfile
 
-PROGRAM, DATA = os.path.abspath(sys.argv[1]), os.path.join(os.path.dirname(os.path.abspath(__file__)), "data")
+from script import json_of, play, read, write
+
+DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "data")
 SETS = {"a": ("cubic_spline", "standard", "vanilla_ice", "mass"),
         "b": ("wendland_c2", "ia", "vanilla_ice", "mass"),
         "c": ("quintic_spline", "standard", "lagrangian", "energy")}
 ETA = {2: "2.4", 3: "2.1"}
 
 
-def rates(*words, status=0):
-    done = subprocess.run([PROGRAM, "rates", *words, "--json", "-"], capture_output=True, text=True, timeout=60)
-    if done.returncode != status:
-        sys.exit("rates %s: exit status %d, not %d\n%s" % (" ".join(words), done.returncode, status, done.stderr))
-    return json.loads(done.stdout)
+def rates(*words):
+    return json_of("rates", *words)
 
 
 def scheme(name, dim):
@@ -36,8 +32,7 @@ def particles(dim):
 
 
 def table(path):
-    with open(path, newline="", encoding="utf-8", errors="surrogateescape") as f:
-        return list(csv.DictReader(line for line in f if not line.startswith("#")))
+    return list(csv.DictReader(line for line in read(path).splitlines() if not line.startswith("#")))
 
 
 def against_data(dim):
@@ -71,10 +66,10 @@ def sums_and_neighbours(dim):
     assert all(1 <= p["condition"] < 1000 for p in ia["particles"])
 
 
-def any_order(folder):
+def any_order():
     """Columns in another order, with others between them; boxes with a number for each direction."""
     rows = table(particles(2))
-    path = os.path.join(folder, "other.csv")
+    path = "other.csv"
     with open(path, "w", encoding="ascii") as f:
         f.write("u,vy,colour,x,m,vx,y\n")
         for r in rows:
@@ -86,26 +81,20 @@ def any_order(folder):
     assert opened["settings"]["boundary"] == ["open", "open"] and opened["particles"] != first["particles"]
 
 
-def line(folder):
+def line():
     """In 1D as a run starts; and a case is a source, too."""
-    path = os.path.join(folder, "line.csv")
-    with open(path, "w", encoding="ascii") as f:
-        f.write("x,vx,m,u\n" + "".join("%r,%r,0.1,2.5\n" % (0.05 + 0.1 * i, 0.1 * (i % 3)) for i in range(10)))
-    document = rates(path, "lo=0", "hi=1", "kernel=cubic_spline", "eta=2.3", "gradient=standard")
+    write("line.csv", "x,vx,m,u\n" + "".join("%r,%r,0.1,2.5\n" % (0.05 + 0.1 * i, 0.1 * (i % 3)) for i in range(10)))
+    document = rates("line.csv", "lo=0", "hi=1", "kernel=cubic_spline", "eta=2.3", "gradient=standard")
     assert document["dim"] == 1 and len(document["particles"]) == 10
     assert abs(document["particles"][0]["rho"] - 1) < 0.05 and document["particles"][0]["neighbours"] == 5
     document = rates("sod", "n=90")
     assert len(document["particles"]) == 90 and document["settings"]["h_tolerance"] == 1e-14
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        for dim in (2, 3):
-            against_data(dim)
-            sums_and_neighbours(dim)
-        any_order(folder)
-        line(folder)
-    print("columns may stand in any order")
+def of_planes_and_boxes():
+    for dim in (2, 3):
+        against_data(dim)
+        sums_and_neighbours(dim)
 
 
-main()
+play(of_planes_and_boxes, any_order, line)

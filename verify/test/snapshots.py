@@ -8,12 +8,9 @@ import json
 import os
 import re
 import resource
-import subprocess
-import sys
-import tempfile
 
-program = os.path.abspath(sys.argv[1])
-faults = []
+from script import call, expect, play, read
+
 # words, end, interval in the end, which of the snapshots are compared with runs that end there
 RUNS = [(["sod", "n=200"], 0.2, 0.07, (0, 1, 7, 14)),
         (["sound_wave", "n=64", "viscosity=none"], 0.5, 0.002, (1, 2, 250, 499)),  # several within each step
@@ -23,13 +20,8 @@ RUNS = [(["sod", "n=200"], 0.2, 0.07, (0, 1, 7, 14)),
         (["noh_3d", "n=12^3", "integrator=vl2"], 0.05, 0.5, (0, 1))]
 
 
-def expect(what, well, got=""):
-    if not well:
-        faults.append("%s: %s" % (what, got))
-
-
 def run(words, *more, **options):
-    return subprocess.run([program, "run", *words, *more], capture_output=True, text=True, timeout=100, **options)
+    return call("run", *words, *more, **options)
 
 
 def get(path):
@@ -76,9 +68,7 @@ def test_bits():
 
 
 def rows(path):
-    with open(path, encoding="utf-8", errors="surrogateescape") as file:
-        return [[float(value) for value in line] for line in list(csv.reader(file))[1:]
-                if line[0][0] != "#"]
+    return [[float(value) for value in line] for line in list(csv.reader(read(path).splitlines()))[1:] if line[0][0] != "#"]
 
 
 def test_late():
@@ -107,15 +97,4 @@ def test_trouble():
            os.path.exists("large.json"), (full.returncode, full.stderr, glob.glob("large*")))
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        test_bits()
-        test_late()
-        test_trouble()
-        os.chdir("/")
-    print("\n".join(faults) or "a run knows nothing of its snapshots")
-    return bool(faults)
-
-
-sys.exit(main())
+play(test_bits, test_late, test_trouble)

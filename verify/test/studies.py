@@ -8,16 +8,29 @@ import pty
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 
-from studying import expect, faults, program, study, without_times
+from script import call, expect, play, program
 
 QUICK = ["converge", "sod", "--n", "40,60,80,120", "t_end=0.1", "--vary", "gradient",
          "--replicates", "1"]
 # long enough to be killed in the middle: half a second a run and more
 LONG = ["converge", "sod", "--n", "100,140,200,6400", "t_end=0.1", "kernel=wendland_c6", "eta=9", "skip=none",
         "integrator=rk3", "volume_element=energy", "--replicates", "1"]
+
+
+def study(*words):
+    """Exit status, document without its date, what was said."""
+    done = call(*words, "--json", "-")
+    found = json.loads(done.stdout) if done.stdout else {}
+    found.pop("date", None)
+    return done.returncode, found, done.stderr
+
+
+def without_times(found):
+    for level in found.get("levels", ()):
+        level.pop("cpu_s", None)
+    return found
 
 
 def entries():
@@ -101,7 +114,7 @@ def test_mathematics():
     for words in ("", "-AVX2,-FMA", "-AVX2_Usable,-FMA_Usable"):
         other = dict(os.environ, GLIBC_TUNABLES="glibc.cpu.hwcaps=" + words) if words else dict(os.environ)
         bits = subprocess.run([sys.executable, "-c", BITS], capture_output=True, env=other).stdout
-        listed = subprocess.run([program, *QUICK, "--cache", "cache", "--list"], capture_output=True, text=True, env=other)
+        listed = call(*QUICK, "--cache", "cache", "--list", env=other)
         found = listed.stdout.count("\tkept\t")
         kept.append(found)
         expect("found with other mathematics (%s)" % words, found == 8 if not words else bits == usual or not found, found)
@@ -124,21 +137,8 @@ def test_progress():
     running.wait()
     expect("progress on a terminal", "\rsod, n = " in text and " of 12 (" in text and " s left" in text
            and "\n" not in text and text.endswith("\r\033[K"), repr(text[-300:]))
-    quiet = subprocess.run([program, *QUICK, "--quiet"], stderr=subprocess.PIPE, text=True)
+    quiet = call(*QUICK, "--quiet")
     expect("quiet", not quiet.stderr, quiet.stderr)
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        test_cache()
-        test_kill()
-        test_two_at_once()
-        test_mathematics()
-        test_progress()
-        os.chdir("/")
-    print("\n".join(faults) or "studies are kept, found and resumed")
-    return bool(faults)
-
-
-sys.exit(main())
+play(test_cache, test_kill, test_two_at_once, test_mathematics, test_progress)

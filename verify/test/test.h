@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What every test in C includes first: cmocka, with what it asks for, and TEST. A file of tests
- * needs neither a list of them nor main, unless something must be done before. */
+ * needs neither a list of them nor main. */
 #ifndef TEST_H
 #define TEST_H
 
@@ -19,10 +19,18 @@
     }                                                                                              \
     static void name(__attribute__((unused)) void **state)
 
-void test_add(const char *name, CMUnitTestFunction function);
+/* What is called before the first test of the file and after the last one (or NULL). */
+#define TEST_BETWEEN(before, after)                                                                \
+    __attribute__((constructor)) static void test_add_between(void)                                \
+    {                                                                                              \
+        test_between(before, after);                                                               \
+    }                                                                                              \
+    void test_between(CMFixtureFunction first, CMFixtureFunction last)
 
-/* For a main of one's own: runs all of them between two fixtures (or NULL); returns how many have
- * failed. */
-int test_run(CMFixtureFunction before, CMFixtureFunction after);
+void test_add(const char *name, CMUnitTestFunction function);
+void test_between(CMFixtureFunction before, CMFixtureFunction after);
+
+/* The k-th word behind the program's name, from 1. NULL: there is none. */
+const char *test_word(int k);
 
 #endif

@@ -444,7 +444,4 @@ static int remove_file(void **state)
     return unlink(path);
 }
 
-int main(void)
-{
-    return test_run(make_file, remove_file);
-}
+TEST_BETWEEN(make_file, remove_file);

@@ -3,27 +3,16 @@
 """vtk.py SPHPROOF: legacy files of VTK, as text and binary, with arrays as SCALARS, VECTORS and FIELD, are judged as the
 table of the same particles is; every file that is cut off anywhere is told. (Other refusals: test_readers_text_faults.)"""
 import json
-import os
 import random
 import struct
-import subprocess
-import sys
-import tempfile
 
-program = os.path.abspath(sys.argv[1])
-failures = []
+from script import check, play, said
+
 draw = random.Random(5)
 
 
-def check(good, *what):
-    if not good:
-        failures.append(" ".join(str(w) for w in what))
-
-
-def call(path):
-    r = subprocess.run([program, "judge", path, "--case", "taylor_green", "--time", "0", "--allow-far", "--json", "-"],
-                       capture_output=True, text=True, timeout=60, stdin=subprocess.DEVNULL)
-    return r.returncode, r.stdout, r.stderr
+def judged(path):
+    return said("judge", path, "--case", "taylor_green", "--time", "0", "--allow-far", "--json", "-")
 
 
 def make(points, binary, field, grid, kind):
@@ -61,7 +50,7 @@ def main():
     points = [(draw.random(), draw.random(), draw.gauss(0, 1), draw.gauss(0, 1), 0.0025, draw.uniform(0.9, 1.1)) for _ in range(40)]
     with open("a.csv", "w") as file:
         file.write("x,y,vx,vy,m,rho\n" + "".join(",".join(map(repr, p)) + "\n" for p in points))
-    want = json.loads(call("a.csv")[1])["errors"]["velocity"]["l1"]
+    want = json.loads(judged("a.csv")[1])["errors"]["velocity"]["l1"]
     for binary in False, True:
         for field in False, True:
             for grid in False, True:
@@ -69,21 +58,15 @@ def main():
                     text = make(points, binary, field, grid, kind)
                     with open("a.vtk", "wb") as file:
                         file.write(text)
-                    code, out, err = call("a.vtk")
+                    code, out, err = judged("a.vtk")
                     have = json.loads(out)["errors"]["velocity"]["l1"] if out else 0
                     bound = 1e-12 if kind == b"double" or not binary else 1e-6
                     check(abs(have / want - 1) < bound, binary, field, grid, kind, have, want, err)
         for cut in draw.sample(range(40, len(text) - 200), 12):
             with open("cut.vtk", "wb") as file:
                 file.write(text[:cut])
-            code, out, err = call("cut.vtk")
+            code, out, err = judged("cut.vtk")
             check(code == 2 and "cut.vtk" in err and not out, "cut off at", cut, code, err)
 
 
-with tempfile.TemporaryDirectory() as place:
-    os.chdir(place)
-    main()
-    os.chdir("/")
-for failure in failures:
-    print(failure)
-sys.exit(bool(failures))
+play(main)

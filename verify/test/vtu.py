@@ -10,11 +10,11 @@ import random
 import struct
 import subprocess
 import sys
-import tempfile
 import xml.etree.ElementTree as tree
 import zlib
 
-PROGRAM = os.path.abspath(sys.argv[1])
+from script import call, play
+
 DRAWS = int(sys.argv[2]) if sys.argv[2:] and sys.argv[2].isdigit() else 2
 KINDS = {"Float64": "d", "Int64": "q", "UInt8": "B", "Int32": "i"}
 NAMES = {"m": "mass", "rho": "density", "u": "internal_energy", "P": "pressure", "h": "smoothing_length"}
@@ -62,8 +62,7 @@ TESTERS = "--others" in sys.argv and [(python, word) for word, module in (("vtk"
 
 
 def run(*words, status=0):
-    done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=100, check=False)
-    assert done.returncode == status, (words, done.returncode, done.stderr)
+    done = call(*words, status=status)
     return done.stdout + done.stderr
 
 
@@ -208,20 +207,8 @@ def refused():
     assert "'.vtk'; allowed: .csv" in said and ".vtu" in said, said
 
 
-def main():
-    seed = int(sys.argv[sys.argv.index("--seed") + 1]) if "--seed" in sys.argv else random.randrange(1 << 30)
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        try:
-            random_setups(random.Random(seed))
-        except BaseException:
-            print("seed", seed)
-            raise
-        series()
-        refused()
-        os.chdir("/")
-    others = "" if TESTERS is False else "; also read by: %s" % (", ".join(word for _, word in TESTERS) or "nobody, as neither VTK nor meshio is here")
-    print("%d setups, bit for bit%s" % (DRAWS, others))
-
-
-main()
+seed = int(sys.argv[sys.argv.index("--seed") + 1]) if "--seed" in sys.argv else random.randrange(1 << 30)
+print("seed", seed)
+if TESTERS is not False:
+    print("also read by: %s" % (", ".join(word for _, word in TESTERS) or "nobody, as neither VTK nor meshio is here"))
+play(lambda: random_setups(random.Random(seed)), series, refused)

@@ -210,8 +210,10 @@ TEST(test_refused)
     assert_int_equal(apply(&one, form_at(1), &error), STATUS_BAD_INPUT);
 }
 
-int main(void)
+static int select_kernel(void **state)
 {
-    if (kernel_select(&kernel, "wendland_c4", 5, NULL)) return 1;
-    return test_run(NULL, NULL);
+    (void)state;
+    return kernel_select(&kernel, "wendland_c4", 5, NULL);
 }
+
+TEST_BETWEEN(select_kernel, NULL);

@@ -313,8 +313,10 @@ TEST(test_units)
     assert_true(lost > 10 && kept > 10);
 }
 
-int main(void)
+static int select_kernel(void **state)
 {
-    if (kernel_select(&kernel, "wendland_c2", 5, NULL)) return 1;
-    return test_run(NULL, NULL);
+    (void)state;
+    return kernel_select(&kernel, "wendland_c2", 5, NULL);
 }
+
+TEST_BETWEEN(select_kernel, NULL);

@@ -425,8 +425,10 @@ TEST(test_generic)
     }
 }
 
-int main(void)
+static int select_kernel(void **state)
 {
-    if (kernel_select(&kernel, "cubic_spline", 5, NULL)) return 1;
-    return test_run(NULL, NULL);
+    (void)state;
+    return kernel_select(&kernel, "cubic_spline", 5, NULL);
 }
+
+TEST_BETWEEN(select_kernel, NULL);

@@ -290,7 +290,4 @@ TEST(its_name)
     assert_string_equal(made.name, name);
 }
 
-int main(void)
-{
-    return test_run(begin, end);
-}
+TEST_BETWEEN(begin, end);

@@ -351,7 +351,4 @@ TEST(how_often_it_looks)
     assert_int_equal(made.questions, looks);
 }
 
-int main(void)
-{
-    return test_run(begin, end);
-}
+TEST_BETWEEN(begin, end);

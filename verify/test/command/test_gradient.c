@@ -95,8 +95,10 @@ TEST(test_bad_files)
     }
 }
 
-int main(int argc, char **argv)
+static int go_there(void **state)
 {
-    if (argc > 1 && chdir(argv[1])) return EXIT_FAILURE;
-    return test_run(NULL, NULL);
+    (void)state;
+    return chdir(test_word(1));
 }
+
+TEST_BETWEEN(go_there, NULL);

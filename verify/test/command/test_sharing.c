@@ -427,7 +427,4 @@ TEST(right_options)
     assert_true(sharing.cache.force);
 }
 
-int main(void)
-{
-    return test_run(begin, end);
-}
+TEST_BETWEEN(begin, end);

@@ -461,8 +461,3 @@ TEST(drawn_tubes)
     }
     if (clean < 5 || cut < 5 || spoilt < 3) fail_msg("%d, %d, %d", clean, cut, spoilt);
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

@@ -229,8 +229,3 @@ TEST(drawn)
         }
     assert_true(far > 4 && far < draws - 4);
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

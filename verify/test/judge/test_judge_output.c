@@ -208,8 +208,3 @@ TEST(on_a_line)
     json_decref(document);
     for (int k = 0; k < 2; k++) judge_free(&judged[k]);
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

@@ -239,8 +239,3 @@ TEST(in_vain)
     gas.x[0][1] = 0.4;
     refuses(&request, "no particle lies in the window, ");
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

@@ -184,8 +184,3 @@ TEST(tube_is_far)
             judge_free(&judged);
         }
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

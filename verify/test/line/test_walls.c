@@ -208,10 +208,18 @@ TEST(layers_stay)
     }
 }
 
-int main(void)
+static int begin(void **state)
 {
+    (void)state;
     rng = gsl_rng_alloc(gsl_rng_mt19937);
-    const int failed = test_run(NULL, NULL);
-    gsl_rng_free(rng);
-    return failed;
+    return !rng;
 }
+
+static int end(void **state)
+{
+    (void)state;
+    gsl_rng_free(rng);
+    return 0;
+}
+
+TEST_BETWEEN(begin, end);

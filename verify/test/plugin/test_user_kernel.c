@@ -17,7 +17,16 @@
 #include "user_figures.h"
 #include "user_kernel.h"
 
-static const char *program, *folder;
+static char folder[4000]; /* of the first module */
+
+static int find_folder(void **state)
+{
+    (void)state;
+    snprintf(folder, sizeof folder, "%s", test_word(2));
+    char *slash = strrchr(folder, '/');
+    if (slash) *slash = '\0';
+    return 0;
+}
 
 static const char *path_of(const char *name)
 {
@@ -129,7 +138,7 @@ TEST(test_unusable)
     refused(path_of("gaussian_without_dw"), "sphproof_kernel_dw");
     refused(path_of("no_such_file"), "No such file");
     refused(folder, "directory");
-    refused(program, ""); /* an executable is no shared object */
+    refused(test_word(1), ""); /* an executable is no shared object */
 }
 
 /* Exit status of the program with these arguments (%s, at most twice: the folder of the plug-ins).
@@ -138,7 +147,7 @@ static int status_of(const char *arguments)
 {
     char tail[4096], command[8192];
     snprintf(tail, sizeof tail, arguments, folder, folder);
-    snprintf(command, sizeof command, "'%s' %s >/dev/null 2>&1", program, tail);
+    snprintf(command, sizeof command, "'%s' %s >/dev/null 2>&1", test_word(1), tail);
     return WEXITSTATUS(system(command));
 }
 
@@ -162,14 +171,4 @@ TEST(test_program)
     assert_int_equal(status_of("verify kernels --kernel-plugin '%s/none.so'"), 2);
 }
 
-int main(int argc, char **argv)
-{
-    if (argc < 3) return 2;
-    program = argv[1];
-    static char own[4096]; /* the folder of the first module */
-    snprintf(own, sizeof own, "%s", argv[2]);
-    char *slash = strrchr(own, '/');
-    if (slash) *slash = '\0';
-    folder = own;
-    return test_run(NULL, NULL);
-}
+TEST_BETWEEN(find_folder, NULL);

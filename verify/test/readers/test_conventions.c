@@ -387,8 +387,3 @@ TEST(corners)
     assert_int_equal(found.sample, CONVENTIONS_SAMPLE);
     assert_true(found.count > 0);
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

@@ -12,7 +12,7 @@
 #include "sphproof/rates.h"
 #include "sphproof/simulations.h"
 
-static const char *corpus, *read_path;
+static const char *read_path;
 
 static enum status read_file(struct error *error)
 {
@@ -30,7 +30,7 @@ TEST(formats)
         "gadget/plain.gadget", "gadget/two_other.gadget", "phantom/big"};
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         char path[4096];
-        snprintf(path, sizeof path, "%s/%s", corpus, names[k]);
+        snprintf(path, sizeof path, "%s/%s", test_word(1), names[k]);
         read_path = path;
         without_memory(read_file, 3, true);
     }
@@ -140,10 +140,4 @@ TEST(library)
 {
     without_memory(kernels, 2, true);
     without_memory(setups, 8, true);
-}
-
-int main(int argc, char **argv)
-{
-    corpus = argc > 1 ? argv[1] : "";
-    return test_run(make_place, remove_place);
 }

@@ -230,8 +230,3 @@ TEST(records)
     bytes[put_count(0, &b, 7)] = 1;
     refuses(300, "seven bytes", "no snapshot that is read");
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

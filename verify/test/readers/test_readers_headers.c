@@ -311,14 +311,4 @@ TEST(unknown)
     }
 }
 
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}
-#else
-
-int main(void)
-{
-    return 77; /* skipped: no HDF5 */
-}
 #endif

@@ -362,8 +362,3 @@ TEST(damaged)
         refuses(size, "-1 values of one kind");
     }
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

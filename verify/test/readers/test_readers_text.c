@@ -313,8 +313,3 @@ TEST(compressed)
     refuses("\x1f\x8b...", 5, NULL, "is compressed");
 #endif
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

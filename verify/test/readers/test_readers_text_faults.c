@@ -298,8 +298,3 @@ TEST(legacy_vtk)
         assert_int_equal(status, STATUS_BAD_INPUT);
     }
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

@@ -256,8 +256,3 @@ TEST(cut_off)
         refuses(d.text, length, NULL, "is cut off");
     }
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

@@ -202,7 +202,4 @@ TEST(slow_growth_is_known_as_far_as_it_can_be)
     assert_false(layer_mode_find(&layer, &mode));
 }
 
-int main(void)
-{
-    return test_run(find_modes, NULL);
-}
+TEST_BETWEEN(find_modes, NULL);

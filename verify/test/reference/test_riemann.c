@@ -16,8 +16,6 @@
 #include "riemann.h"
 #include "riemann_property.h"
 
-static const char *table_path;
-
 /* ---- the table ---- */
 
 enum column {
@@ -104,7 +102,7 @@ static void compare_row(char **f)
 TEST(test_table)
 {
     char line[1024], *fields[COLUMNS + 1];
-    FILE *file = fopen(table_path, "r");
+    FILE *file = fopen(test_word(1), "r");
     assert_non_null(file);
     assert_non_null(fgets(line, sizeof line, file));
     int rows = 0;
@@ -500,11 +498,4 @@ TEST(test_gentle_and_parting)
     assert_int_equal(pushed.left_wave, RIEMANN_RAREFACTION);
     assert_true(pushed.left_head == pushed.left_tail);
     near_relative(pushed.left_head, 0.5 - sqrt(3.5), 1e-15);
-}
-
-int main(int argc, char **argv)
-{
-    if (argc < 2) return 1;
-    table_path = argv[1];
-    return test_run(NULL, NULL);
 }

@@ -19,8 +19,6 @@
 
 enum { DOCUMENTS = 150, HISTORIES = 12, SERIES = 400, KEPT_TOGETHER = 10 };
 
-static const char *folder;
-
 static void keep(struct made_kept *kept, const char *what, size_t number, struct buffer *text)
 {
     char name[64], *all = buffer_take(text);
@@ -110,10 +108,10 @@ static void add_readings(struct buffer *to, const json_t *document)
 TEST(diffs)
 {
     static const char *const kinds[] = {"report", "report", "other", "other", "anything_else"};
-    json_t *template = made_template(folder, "figures.json");
+    json_t *template = made_template(test_word(1), "figures.json");
     struct made_kept kept;
     struct buffer text = {0};
-    made_open(&kept, folder, "diffs.txt");
+    made_open(&kept, test_word(1), "diffs.txt");
     for (size_t k = 0; k < DOCUMENTS; k++) {
         struct made_draw draw = {k, template};
         struct error error = {0};
@@ -144,10 +142,10 @@ TEST(diffs)
 /* Nights of one document that changes by and by; other modes and damaged lines between them. */
 TEST(histories)
 {
-    json_t *template = made_template(folder, "figures.json");
+    json_t *template = made_template(test_word(1), "figures.json");
     struct made_kept kept;
     struct buffer text = {0};
-    made_open(&kept, folder, "histories.txt");
+    made_open(&kept, test_word(1), "histories.txt");
     for (size_t k = 0; k < HISTORIES; k++) {
         static const char *const damage[] = {"\n", "damaged\n", "{\"schema\": \"other\"}\n",
                                              "{\"schema\": \"sphproof-his"};
@@ -193,7 +191,7 @@ TEST(series)
 {
     struct made_kept kept;
     struct buffer text = {0};
-    made_open(&kept, folder, "series.txt");
+    made_open(&kept, test_word(1), "series.txt");
     for (size_t k = 0; k < SERIES; k++) {
         struct made_draw draw = {k, NULL};
         struct trend_change changes[8];
@@ -223,7 +221,7 @@ TEST(joined)
     struct made_kept kept;
     struct buffer text = {0};
     static const char *const names[] = {"a", "b", "c"};
-    made_open(&kept, folder, "joined.txt");
+    made_open(&kept, test_word(1), "joined.txt");
     for (size_t k = 0; k < 20; k++) {
         struct made_draw draw = {k, NULL};
         json_t *all = json_object();
@@ -245,11 +243,4 @@ TEST(joined)
     }
     keep(&kept, "joined", 0, &text);
     made_close(&kept);
-}
-
-int main(int argc, char **argv)
-{
-    if (argc != 2) return 2;
-    folder = argv[1];
-    return test_run(make_place, remove_place);
 }

@@ -324,8 +324,3 @@ TEST(nights_that_lack_a_figure)
     }
     unlink(path_of("history"));
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

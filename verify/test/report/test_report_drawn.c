@@ -18,8 +18,6 @@
 #include "result.h"
 #include "value.h"
 
-static const char *folder;
-
 static void compare(struct made_kept *kept, const char *what, size_t number, struct buffer *text)
 {
     char name[64], *all = buffer_take(text);
@@ -107,12 +105,12 @@ static struct report *planned(struct made_kept *kept, enum report_mode mode)
 
 TEST(reports)
 {
-    json_t *template = made_template(folder, "pieces.json"), *results;
+    json_t *template = made_template(test_word(1), "pieces.json"), *results;
     struct made_kept kept;
     struct made_draw draw = {0, template};
     struct buffer text = {0};
     struct error error = {0};
-    made_open(&kept, folder, "reports.txt");
+    made_open(&kept, test_word(1), "reports.txt");
     write_text("faults.json",
                "{\"schema\": \"sphproof/1\", \"command\": \"faults\", \"faults\": []}");
     write_text("score.json", "{");
@@ -136,11 +134,4 @@ TEST(reports)
     report_destroy(planned(&kept, REPORT_NIGHTLY)); /* it would be judged as by day */
     made_close(&kept);
     json_decref(template);
-}
-
-int main(int argc, char **argv)
-{
-    if (argc != 2) return 2;
-    folder = argv[1];
-    return test_run(make_place, remove_place);
 }

@@ -15,8 +15,6 @@
 
 enum { PAGES = 100 };
 
-static const char *folder;
-
 /* The page, opened, without its style sheet and its script, and the files beside it. */
 static char *whole(struct page *page)
 {
@@ -60,11 +58,11 @@ static char *verdict_in_words(const json_t *results)
 
 TEST(pages)
 {
-    json_t *template = made_template(folder, "report.json");
+    json_t *template = made_template(test_word(1), "report.json");
     char *path = strdup(getenv("PATH") ? getenv("PATH") : "");
     struct made_kept kept;
     struct page page;
-    made_open(&kept, folder, "pages.txt");
+    made_open(&kept, test_word(1), "pages.txt");
     setenv("PATH", "/nowhere", 1);
     for (size_t k = 0; k < PAGES; k++) {
         struct made_draw draw = {k, template};
@@ -99,7 +97,7 @@ TEST(pages)
  * rank, and each check once. */
 TEST(one_verdict)
 {
-    json_t *template = made_template(folder, "report.json");
+    json_t *template = made_template(test_word(1), "report.json");
     size_t well = 0, bad = 0;
     for (size_t k = 0; k < 4 * PAGES; k++) {
         struct made_draw draw = {1000 + k, template};
@@ -136,11 +134,4 @@ TEST(one_verdict)
     }
     assert_true(well > 10 && bad > 10);
     json_decref(template);
-}
-
-int main(int argc, char **argv)
-{
-    if (argc != 2) return 2;
-    folder = argv[1];
-    return test_run(NULL, NULL);
 }

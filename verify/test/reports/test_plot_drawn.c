@@ -15,8 +15,6 @@
 
 enum { PLOTS = 250, PICTURES = 200, PANELS = 3, SERIES = 4, POINTS = 12, KEPT_TOGETHER = 10 };
 
-static const char *folder;
-
 struct drawn {
     double values[PANELS][SERIES + 1][4][POINTS], z[PANELS][POINTS * POINTS], ticks[2];
     struct plot_series series[PANELS][SERIES];
@@ -144,7 +142,7 @@ TEST(scripts)
     struct plot plot;
     struct buffer text = {0};
     char *script, *data, name[64];
-    made_open(&kept, folder, "plots.txt");
+    made_open(&kept, test_word(1), "plots.txt");
     for (size_t k = 0; k < PLOTS; k++) {
         struct made_draw draw = {k, NULL};
         draw_plot(&draw, &d, &plot);
@@ -243,7 +241,7 @@ TEST(pictures)
     struct made_kept kept;
     struct buffer text = {0};
     char name[64];
-    made_open(&kept, folder, "pictures.txt");
+    made_open(&kept, test_word(1), "pictures.txt");
     for (size_t k = 0; k < PICTURES; k++) {
         struct made_draw draw = {k, NULL};
         struct buffer raw = {0}, to = {0};
@@ -269,11 +267,4 @@ TEST(pictures)
         free(all);
     }
     made_close(&kept);
-}
-
-int main(int argc, char **argv)
-{
-    if (argc != 2) return 2;
-    folder = argv[1];
-    return test_run(NULL, NULL);
 }

@@ -175,7 +175,4 @@ static int remove_folder(void **state)
     return rmdir(folder);
 }
 
-int main(void)
-{
-    return test_run(make_folder, remove_folder);
-}
+TEST_BETWEEN(make_folder, remove_folder);

@@ -324,7 +324,4 @@ TEST(no_room)
     simulation_destroy(self);
 }
 
-int main(void)
-{
-    return test_run(begin, end);
-}
+TEST_BETWEEN(begin, end);

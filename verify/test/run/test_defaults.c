@@ -463,10 +463,12 @@ TEST(choices_that_are_refused)
     assert_int_equal(scheme_members(&scheme_formulation_family, 1), scheme_formulation_family.n);
 }
 
-int main(int argc, char **argv)
+static int read_tables(void **state)
 {
-    if (argc != 2) return 2;
-    read_table(&kernels, argv[1], "kernel");
-    read_table(&integrators, argv[1], "integrator");
-    return test_run(NULL, NULL);
+    (void)state;
+    read_table(&kernels, test_word(1), "kernel");
+    read_table(&integrators, test_word(1), "integrator");
+    return 0;
 }
+
+TEST_BETWEEN(read_tables, NULL);

@@ -6,13 +6,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "draw.h"
+#include "made_place.h"
 #include "near.h"
 #include "own_table.h"
-
-static char path[] = "sphproof_table_XXXXXX";
 
 /* rho = 1 + a x + b y + c sin(2 pi x), P = 2 rho, v = (rho, -rho). */
 static double field(double x, double y, const double c[3])
@@ -34,7 +32,7 @@ static struct own_table *make(enum shape shape, size_t nx, size_t ny, const doub
 {
     double x[400], y[400];
     struct error error = {0};
-    FILE *file = fopen(path, "w");
+    FILE *file = fopen(path_of("t"), "w");
     assert_non_null(file);
     places(nx, x), places(ny, y);
     fprintf(file, "#time=0\n# time = 0.25\n%s,a,vx,P,vy,rho\n",
@@ -51,7 +49,7 @@ static struct own_table *make(enum shape shape, size_t nx, size_t ny, const doub
         fprintf(file, "7,%.17g,%.17g,%.17g,%.17g\n", rho, 2 * rho, -rho, rho);
     }
     assert_int_equal(fclose(file), 0);
-    struct own_table *table = own_table_read(path, &error);
+    struct own_table *table = own_table_read(path_of("t"), &error);
     if (!table) fail_msg("%s", error.message);
     return table;
 }
@@ -142,11 +140,11 @@ TEST(the_gap_of_a_periodic_box)
 
 TEST(radii)
 {
-    FILE *file = fopen(path, "w");
+    FILE *file = fopen(path_of("t"), "w");
     struct error error = {0};
     fputs("# time = 1\nr,vr,vphi,rho,u\n0,0,0,1,2\n0.5,1,2,3,4\n0.8,1.6,3.2,3,4\n", file);
     assert_int_equal(fclose(file), 0);
-    struct own_table *table = own_table_read(path, &error);
+    struct own_table *table = own_table_read(path_of("t"), &error);
     const struct prepared p = box(2, BOUNDARY_OPEN);
     for (int k = 0; k < 100; k++) { /* vr = 2 r, vphi = 4 r */
         const double x[3] = {draw(0, 1), draw(0, 1)}, dx = x[0] - 0.5, dy = x[1] - 0.5;
@@ -157,13 +155,4 @@ TEST(radii)
         near_below(fabs(s.P - (0.5 * s.rho * s.u)), 1e-14);
     }
     own_table_free(table);
-}
-
-int main(void)
-{
-    const int file = mkstemp(path);
-    if (file < 0 || close(file)) return 1;
-    const int failed = test_run(NULL, NULL);
-    unlink(path);
-    return failed;
 }

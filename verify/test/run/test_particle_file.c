@@ -284,7 +284,4 @@ static int remove_file(void **state)
     return 0;
 }
 
-int main(void)
-{
-    return test_run(make_file, remove_file);
-}
+TEST_BETWEEN(make_file, remove_file);

@@ -563,8 +563,3 @@ TEST(planted_faults_are_found)
     const struct walk walk = walk_vortex(&backwards);
     assert_non_null(strstr(walk.fault, "another velocity"));
 }
-
-int main(void)
-{
-    return test_run(NULL, NULL);
-}

@@ -120,8 +120,3 @@ TEST(old_ones_go)
     relax_store_keep(2, 2, N, all);
     assert_true(relax_store_find(1, 2, N, all) && !is_there(old));
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

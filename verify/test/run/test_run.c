@@ -483,8 +483,3 @@ TEST(walls_push)
         run_free(&result);
     }
 }
-
-int main(void)
-{
-    return test_run(NULL, NULL);
-}

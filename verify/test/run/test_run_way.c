@@ -265,7 +265,4 @@ TEST(growth)
     }
 }
 
-int main(void)
-{
-    return test_run(begin, end);
-}
+TEST_BETWEEN(begin, end);

@@ -155,6 +155,7 @@ static void same_figures(int dim, enum shifting shifting, int draws)
 
 TEST(test_same_figures)
 {
+    draw_state = 2385;
     same_figures(1, SHIFTING_NONE, 24);
     same_figures(2, SHIFTING_NONE, 6);
     same_figures(3, SHIFTING_NONE, 4);
@@ -310,10 +311,4 @@ TEST(test_conduction)
         run(&setup, false, &plain);
         assert_memory_equal(plain.fields, skipping.fields, sizeof plain.fields);
     }
-}
-
-int main(void)
-{
-    draw_state = 2385;
-    return test_run(NULL, NULL);
 }

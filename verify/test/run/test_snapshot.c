@@ -6,21 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "output.h"
 #include "run.h"
 #include "snapshot_file.h"
 
 #ifdef HAVE_HDF5
 #include <hdf5.h>
 
-static char folder[] = "sphproof_snapshot_XXXXXX";
-
-static const char *path_of(const char *name)
-{
-    static char path[128];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
+#include "made_place.h"
 
 static size_t attribute_of(hid_t file, const char *name, hid_t type, void *values)
 {
@@ -110,8 +102,8 @@ static void gas_is_of(hid_t file, const struct run_result *run)
     for (size_t i = 0; i < s->n; i++) {
         assert_int_equal(id[i], i + 1);
         for (int d = 0; d < 3; d++) {
-            const double place = d < box->dim ? s->x[d][i] - box->lo[d] : 0;
-            assert_true(x[3 * i + (size_t)d] == place);
+            const double at = d < box->dim ? s->x[d][i] - box->lo[d] : 0;
+            assert_true(x[3 * i + (size_t)d] == at);
             assert_true(v[3 * i + (size_t)d] == (d < box->dim ? s->v[d][i] : 0));
         }
     }
@@ -171,21 +163,4 @@ TEST(periods)
         }
 }
 
-int main(void)
-{
-    char command[96];
-    output_prepare_process(); /* as the program does: no file gets the number of a closed stream */
-    if (!mkdtemp(folder)) return 1;
-    const int failed = test_run(NULL, NULL);
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    return system(command) || failed;
-}
-
-#else
-
-int main(void)
-{
-    puts("no HDF5");
-    return 77; /* skipped */
-}
 #endif

@@ -289,8 +289,3 @@ TEST(failures)
     assert_non_null(strstr(error.message, "a.h5: built without HDF5"));
 }
 #endif
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

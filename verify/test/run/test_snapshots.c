@@ -155,8 +155,3 @@ TEST(first_trouble)
     assert_int_equal(snapshots.trouble.status, STATUS_ENVIRONMENT);
     assert_string_equal(snapshots.trouble.message, "no space");
 }
-
-int main(void)
-{
-    return test_run(NULL, NULL);
-}

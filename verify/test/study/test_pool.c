@@ -518,7 +518,4 @@ TEST(a_share_is_its_own)
     }
 }
 
-int main(void)
-{
-    return test_run(begin, NULL);
-}
+TEST_BETWEEN(begin, NULL);

@@ -131,8 +131,3 @@ TEST(drawings)
     assert_int_equal(suite_output_failures(&one, out, NULL, NULL), STATUS_OK);
     assert_int_equal(access(out, F_OK), -1);
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

@@ -12,9 +12,6 @@
 #include "buffer.h"
 #include "suite_output.h"
 
-static const char *folder;
-static bool writing; /* the files anew, to be read before they are believed */
-
 static const struct check_mutant minus = {"minus", "a sign", NULL},
                                  plus = {"plus", "<no> sign", NULL};
 static const struct check
@@ -80,7 +77,8 @@ static void compare(const char *text, const char *name)
 {
     static char expected[1 << 16];
     char path[4096];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
+    const bool writing = test_word(2) != NULL; /* anew, to be read before they are believed */
+    snprintf(path, sizeof path, "%s/%s", test_word(1), name);
     FILE *file = fopen(path, writing ? "w+" : "r");
     assert_non_null(file);
     if (writing) fputs(text, file), rewind(file);
@@ -154,11 +152,4 @@ TEST(junit)
     read_all(path, text, sizeof text);
     compare(text, "junit.xml");
     assert_int_equal(suite_output_junit(&suite, "/nowhere/junit.xml", NULL), STATUS_ENVIRONMENT);
-}
-
-int main(int argc, char **argv)
-{
-    folder = argc > 1 ? argv[1] : "";
-    writing = argc > 2 && strcmp(argv[2], "--write") == 0;
-    return test_run(NULL, NULL);
 }

@@ -2,24 +2,18 @@
  * What control groups allow, read from folders that look like theirs. */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <unistd.h>
-
 #include "allowance.h"
+#include "made_place.h"
 #include "near.h"
-#include "output.h"
-
-static char root[] = "limits-XXXXXX";
 
 static void put(const char *folder, const char *name, const char *text)
 {
     char path[300];
     struct output output;
     struct error error;
-    snprintf(path, sizeof path, "%s/%s", root, folder);
+    snprintf(path, sizeof path, "%s/%s", place, folder);
     assert_int_equal(output_folder(path, &error), STATUS_OK);
-    snprintf(path, sizeof path, "%s/%s/%s", root, folder, name);
+    snprintf(path, sizeof path, "%s/%s/%s", place, folder, name);
     assert_int_equal(output_open(&output, path, &error), STATUS_OK);
     fputs(text, output.stream);
     assert_int_equal(output_close(&output, &error), STATUS_OK);
@@ -35,17 +29,17 @@ TEST(groups_are_nested)
     const double all = allowance_memory("nowhere");
     assert_true(all > 1e8);
     put("proc/self", "cgroup", "0::/jobs/7/step\n");
-    same(allowance_memory(root), all); /* nothing there says anything */
+    same(allowance_memory(place), all); /* nothing there says anything */
     put("sys/fs/cgroup/jobs/7/step", "memory.max", "max\n");
-    same(allowance_memory(root), all);
+    same(allowance_memory(place), all);
     put("sys/fs/cgroup/jobs", "memory.max", "40000000\n");
-    same(allowance_memory(root), 4e7);
+    same(allowance_memory(place), 4e7);
     put("sys/fs/cgroup/jobs/7", "memory.max", "30000000\n");
-    same(allowance_memory(root), 3e7);
+    same(allowance_memory(place), 3e7);
     put("sys/fs/cgroup/jobs/7/step", "memory.max", "50000000\n");
-    same(allowance_memory(root), 3e7);
+    same(allowance_memory(place), 3e7);
     put("sys/fs/cgroup", "memory.max", "20000000\n"); /* a container's own */
-    same(allowance_memory(root), 2e7);
+    same(allowance_memory(place), 2e7);
 }
 
 TEST(first_version)
@@ -53,20 +47,11 @@ TEST(first_version)
     const double all = allowance_memory("nowhere");
     put("proc/self", "cgroup", "9:name=systemd:/\n4:memory:/jobs/8\n3:cpuset:/jobs/7\n");
     put("sys/fs/cgroup/memory/jobs/8", "memory.limit_in_bytes", "9223372036854771712\n");
-    same(allowance_memory(root), all);
+    same(allowance_memory(place), all);
     put("sys/fs/cgroup/memory/jobs", "memory.limit_in_bytes", "10000000\n");
-    same(allowance_memory(root), 1e7);
+    same(allowance_memory(place), 1e7);
     put("proc/self", "cgroup", "4:memory:/a/path/of/the/host\n");
-    same(allowance_memory(root), all);
+    same(allowance_memory(place), all);
     put("sys/fs/cgroup/memory", "memory.limit_in_bytes", "15000000\n");
-    same(allowance_memory(root), 1.5e7);
-}
-
-int main(void)
-{
-    char command[64];
-    if (!mkdtemp(root)) return 1;
-    const int failed = test_run(NULL, NULL);
-    snprintf(command, sizeof command, "rm -r %s", root);
-    return system(command) ? 1 : failed;
+    same(allowance_memory(place), 1.5e7);
 }

@@ -299,8 +299,3 @@ TEST(what_is_old_goes)
         folder[CACHE_PATH_MAX - room] = '/';
     }
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}

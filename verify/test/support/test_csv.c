@@ -248,8 +248,3 @@ TEST(faults)
     assert_non_null(strstr(error.message, "is a directory; allowed: a CSV file"));
     csv_free(&csv);
 }
-
-int main(void)
-{
-    return test_run(make_place, remove_place);
-}
