@@ -38,6 +38,10 @@ TEST(left_out)
             else if (l->fields[k].meaning == MASS)
                 items[k].shape[0] = 1;
         reads(l, items, "a table of one mass");
+        for (size_t k = 0; k < l->count && !a; k++)
+            if (l->fields[k].meaning == MASS) items[k].values[0] = 0;
+        if (!a)
+            refuses(l, items, "a table of no mass", "Header/MassTable[0] = 0; allowed: above 0");
         items_of(l, items);
         bool named = false;
         for (size_t k = 0; k < l->count; k++)
@@ -147,6 +151,17 @@ static bool is_dead(const struct layout *l, const struct field *f, double h)
     return strcmp(l->name, "phantom_hdf5") == 0 && f->column == SNAPSHOT_H && h <= 0;
 }
 
+static void allows(const struct item *items, size_t n)
+{
+    struct snapshot_file file;
+    struct error error = {0};
+    write_items(path_of("a.hdf5"), items, n);
+    if (snapshot_read(path_of("a.hdf5"), &here, &file, &error) ||
+        snapshot_check_gas("a.hdf5", &file, &error))
+        fail_msg("%s", error.message);
+    snapshot_file_free(&file);
+}
+
 /* Columns of another shape, columns of words, a group in place of a column, and impossible
  * values. */
 TEST(spoilt_columns)
@@ -210,6 +225,8 @@ TEST(spoilt_columns)
                 if (is_dead(l, f, 0)) continue;
                 if (above || (below && fault))
                     refuses(l, items, f->path, above ? "above 0" : "0 or above");
+                else if (below)
+                    allows(items, l->count);
             }
         }
     }
@@ -236,6 +253,8 @@ TEST(spoilt_numbers)
             items[k].values[0] = 0;
             if (f->meaning == PARTS || f->meaning == COUNT || f->needed)
                 refuses(l, items, f->path, name);
+            items[k].values[0] = SNAPSHOT_PARTS_MAX;
+            if (f->meaning == PARTS) refuses(l, items, f->path, "one of 512 files");
             items[k].values[0] = SNAPSHOT_PARTS_MAX + 1;
             if (f->meaning == PARTS) refuses(l, items, f->path, "allowed: 1 to 512");
             items[k].values[0] = 2;
