@@ -303,7 +303,7 @@ static bool near_jump(const struct judged *judged, size_t i)
 
 /* Part of the window's particles that move by more than a tenth of the range of velocities where
  * the exact solution knows of no wave yet: of a scheme waves are near the exact ones, of another
- * time or place they are not. */
+ * time or place they are not. NaN: the window has none. */
 static double moves_ahead(const struct judged *judged, double range)
 {
     const struct snapshot *s = &judged->result.snapshot;
@@ -318,7 +318,7 @@ static double moves_ahead(const struct judged *judged, double range)
             squares += (s->v[d][i] - now.v[d]) * (s->v[d][i] - now.v[d]);
         ahead += sqrt(squares) > 0.1 * range;
     }
-    return all ? (double)ahead / (double)all : 0;
+    return (double)ahead / (double)all;
 }
 
 static double value_of(const struct problem_state *state, int f, int dim)
@@ -510,8 +510,8 @@ static void write_verdict(struct judged *judged)
                  r->time, kernel);
     else if (r->problem.problem->fieldless)
         snprintf(judged->verdict, sizeof judged->verdict, "%s%s%s = %.4g, the case says %.4g; %s",
-                 gas, judged->wrong > JUDGE_FOREIGN ? "far from the solution of this case: " : "",
-                 telling(r)->name, telling(r)->value, telling(r)->exact, kernel);
+                 gas, judged->far ? "far from the solution of this case: " : "", telling(r)->name,
+                 telling(r)->value, telling(r)->exact, kernel);
     else {
         char errors[120] = "";
         for (int f = 0; f < FIELD_INTERNAL_ENERGY; f++)
@@ -519,10 +519,9 @@ static void write_verdict(struct judged *judged)
                 snprintf(errors + strlen(errors), sizeof errors - strlen(errors), "%s %s %.3g",
                          *errors ? "," : "", field_family.members[f]->name, r->errors[f].l1);
         snprintf(judged->verdict, sizeof judged->verdict, "%s%sL1 of%s; %s", gas,
-                 judged->wrong > JUDGE_FOREIGN ? "far from the solution of this case: " : "",
-                 errors, kernel);
+                 judged->far ? "far from the solution of this case: " : "", errors, kernel);
     }
-    if (judged->wrong > JUDGE_FOREIGN && !r->problem.problem->fieldless)
+    if (judged->far && !r->problem.problem->fieldless)
         snapshot_note(&judged->file.notes, "solution", "far from this case's",
                       "%s is off also away from jumps, by %.2g times what a scheme may be: another "
                       "gamma, time, x0 or case, too few particles, or a scheme that fails",

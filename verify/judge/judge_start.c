@@ -180,9 +180,8 @@ static void say(const struct start_gas *gas, unsigned fields, const char *what, 
     start_share(wrong, gas->snapshot->n, share, sizeof share);
     start_place(gas, fields, place, sizeof place);
     snprintf(text + strlen(text), size - strlen(text),
-             "%s%s of the particles (%zu of %zu) have the "
-             "wrong %s%s%s%s",
-             *text ? "; " : "", share, wrong, gas->snapshot->n, what, place, *cause ? ": " : "",
+             "%s%s of the particles (%zu of %zu) %s the wrong %s%s%s%s", *text ? "; " : "", share,
+             wrong, gas->snapshot->n, wrong == 1 ? "has" : "have", what, place, *cause ? ": " : "",
              cause);
 }
 

@@ -10,7 +10,8 @@
  * not into the transcript. "$ compute report FOLDER" puts results drawn at random for all that a
  * quick report computes (made_pieces.h) into that cache. "$ damage FROM TO vx=vy 1 2 9" exchanges
  * two columns of the snapshot FROM in every second row from the first to the ninth (all of them
- * unless that is said); "u*2" doubles one, "x+1" adds to it. With SPHPROOF_KEEP=FOLDER the
+ * unless that is said); "u*2" doubles one, "x+1" adds to it. "u!" gives it a name that
+ * nobody reads. With SPHPROOF_KEEP=FOLDER the
  * transcripts are written there as they should be, and NAME.whole with the outputs whole, to be
  * compared with those of another build. */
 #include "test.h"
@@ -309,7 +310,7 @@ static void damage(char **words, int n)
 {
     const long first = n > 3 ? atol(words[3]) : 1, stride = n > 4 ? atol(words[4]) : 1,
                last = n > 5 ? atol(words[5]) : 1L << 30;
-    const size_t length = strcspn(words[2], "=*+");
+    const size_t length = strcspn(words[2], "=*+!");
     const char how = words[2][length], *by = words[2] + length + 1;
     char *text = read_all(words[0]);
     struct buffer to = {0};
@@ -317,7 +318,13 @@ static void damage(char **words, int n)
     const int column = column_of(text, words[2], length),
               other = how == '=' ? column_of(text, by, strlen(by)) : column;
     long row = 0;
-    for (char *line = text, *next; *line; line = next) {
+    char *line = text, *next;
+    if (how == '!') {
+        for (int k = 0; k < column; k++) line += strcspn(line, ",") + 1;
+        buffer_add_bytes(&to, text, (size_t)(line - text));
+        buffer_add(&to, "no_");
+    }
+    for (; *line; line = next) {
         double values[COLUMNS];
         next = line + strcspn(line, "\n") + 1;
         const size_t columns = numbers_of(line, values);
