@@ -142,8 +142,7 @@ static size_t object_length(const char *path)
 /* Is another figure within the object of the one at path? */
 static bool within(const char *path, size_t object, const char *other)
 {
-    return other != path && strncmp(path, other, object) == 0 &&
-           (!object || other[object] == '.' || other[object] == '[');
+    return other != path && strncmp(path, other, object) == 0 && (!object || other[object] == '.');
 }
 
 static bool says_broke_down(const struct metric *metric)

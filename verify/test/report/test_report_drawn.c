@@ -10,9 +10,11 @@
 #include <string.h>
 
 #include "buffer.h"
+#include "claims.h"
 #include "made_document.h"
 #include "made_pieces.h"
 #include "made_place.h"
+#include "pairing.h"
 #include "report.h"
 #include "report_piece.h"
 #include "result.h"
@@ -134,4 +136,92 @@ TEST(reports)
     report_destroy(planned(&kept, REPORT_NIGHTLY)); /* it would be judged as by day */
     made_close(&kept);
     json_decref(template);
+}
+
+/* ---- what is said of claims, and of kernels that pair ---- */
+
+static void all_say(json_t *list, const char *verdict)
+{
+    const json_t *claim;
+    size_t i;
+    json_array_foreach(list, i, claim)
+        if (strncmp(value_text(claim, "verdict"), verdict, strlen(verdict)))
+            fail_msg("%s: %s", value_text(claim, "name"), value_text(claim, "verdict"));
+    assert_true(json_array_size(list) > 0);
+    json_decref(list);
+}
+
+/* Runs with what a claim speaks of come after those without. */
+TEST(claims_in_words)
+{
+    static const char *const figures[] = {"growth_rate", "velocity_rms"};
+    struct claims claims = {0};
+    struct pool pool = {0};
+    struct error error = {0};
+    assert_int_equal(claims_plan(&claims, false, &pool, &error), STATUS_OK);
+    all_say(claims_judge(&claims, &pool), "not shown: nothing to compare");
+    for (int better = 0; better < 2; better++) {
+        for (size_t i = 0; i < pool.count; i++) {
+            const double off = ldexp(1, better ? -(int)i : (int)i);
+            json_t *functionals = json_array();
+            for (int k = 0; k < 2; k++)
+                json_array_append_new(functionals, json_pack("{s:s, s:f, s:f}", "name", figures[k],
+                                                             "value", 1 + off, "reference", 1.));
+            json_decref(pool.jobs[i].document);
+            pool.jobs[i].document =
+                json_pack("{s:s, s:o}", "status", "ok", "functionals", functionals);
+        }
+        all_say(claims_judge(&claims, &pool), better ? "holds" : "does not hold");
+    }
+    claims_free(&claims);
+    pool_free(&pool);
+}
+
+/* Kernels pair, or not, where their transforms become negative, or elsewhere. */
+TEST(pairing_in_words)
+{
+    static const struct {
+        double others, wendland; /* pairs; NaN: the runs broke down */
+        const char *verdict, *of_cubic;
+    } rows[] = {
+        {(double)NAN, (double)NAN, "not shown: runs broke down", "all runs broke down"},
+        {0.02, 0.01, "holds", "pairs from 16 on"},
+        {0.005, 0, "not shown: no other kernel has pairs", "no pairs up to "},
+        {0.02, (double)NAN, "not shown: runs broke down", "pairs from 16 on"},
+        {0, 0.5, "does not hold: wendland_c2 in 2D has 50.0 % in pairs at ", "no pairs up to "}};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        struct pairing pairing = {0};
+        struct pool pool = {0};
+        struct error error = {0};
+        json_t *kernels = json_array(), *list, *ladder;
+        size_t k;
+        assert_int_equal(pairing_plan(&pairing, false, &pool, &error), STATUS_OK);
+        for (size_t i = 0; i < pool.count; i++) {
+            const struct run *run = pool.jobs[i].context;
+            char kernel[SETTING_TEXT_MAX];
+            settings_text(&run->settings, SETTING_kernel, kernel);
+            const bool wendland = strncmp(kernel, "wendland", 8) == 0;
+            const double paired = wendland ? rows[r].wendland : rows[r].others;
+            if (!isnan(paired))
+                pool.jobs[i].document = json_pack("{s:s, s:{s:f, s:f}}", "status", "ok",
+                                                  "regularity", "paired", paired, "nearest", 0.5);
+            json_array_append_new(kernels, json_pack("{s:s, s:i, s:o, s:{s:o}}", "kernel", kernel,
+                                                     "dim", 2, "pairing_neighbours",
+                                                     wendland ? json_null() : json_real(16),
+                                                     "fourier", "first_negative_kh",
+                                                     wendland ? json_null() : json_real(5)));
+        }
+        list = pairing_judge(&pairing, &pool, kernels);
+        json_array_foreach(json_object_get(json_array_get(list, 0), "ladders"), k, ladder)
+            if (strcmp(value_text(ladder, "kernel"), "cubic_spline") == 0 &&
+                value_member(ladder, "dim") == 2 &&
+                (strncmp(value_text(ladder, "verdict"), rows[r].of_cubic,
+                         strlen(rows[r].of_cubic)) ||
+                 strstr(value_text(ladder, "verdict"), "before")))
+                fail_msg("row %zu: %s", r, value_text(ladder, "verdict"));
+        all_say(list, rows[r].verdict);
+        json_decref(kernels);
+        pairing_free(&pairing);
+        pool_free(&pool);
+    }
 }
