@@ -82,7 +82,7 @@ enum status history_append(const json_t *results, const char *path, struct error
     char *text = malloc(length + 3), last = '\n';
     const int file = open(path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     enum status status = STATUS_OK;
-    if (lseek(file, -1, SEEK_END) >= 0 && read(file, &last, 1) != 1) last = '\n';
+    if (file >= 0 && lseek(file, -1, SEEK_END) >= 0 && read(file, &last, 1) != 1) last = '\n';
     const int total =
         text ? snprintf(text, length + 3, "%s%s\n", last == '\n' ? "" : "\n", body) : 0;
     if (file < 0 || !text || write(file, text, (size_t)total) != total)

@@ -30,6 +30,7 @@ static const struct kind {
     {"signal", NULL, "1", "\"nan\"", VERDICT_INCOMPARABLE, VERDICT_INCOMPARABLE, false},
     {"outcome", NULL, "\"ok\"", "\"wrong\"", VERDICT_WORSE, VERDICT_BETTER, true},
     {"state", NULL, "\"pass\"", "\"none\"", VERDICT_WORSE, VERDICT_BETTER, true},
+    {"status", NULL, "\"pass\"", "\"undetermined\"", VERDICT_WORSE, VERDICT_BETTER, true},
     {"same_bits", NULL, "true", "false", VERDICT_WORSE, VERDICT_BETTER, true},
     {"left_wave", NULL, "\"shock\"", "\"rarefaction\"", VERDICT_INCOMPARABLE, VERDICT_INCOMPARABLE,
      false},
@@ -88,6 +89,62 @@ TEST(each_kind)
                         "nothing was compared: the documents have no figure in common");
     diff_free(&diff);
     json_decref(none);
+}
+
+/* ---- names ---- */
+
+/* A document with a list `key` of one entry that is called by so many letters. */
+static json_t *called(const char *key, int letters, const char *command)
+{
+    char name[1000];
+    snprintf(name, sizeof name, "%0*d", letters, 0);
+    return json_pack("{s:s, s:f, s:[{s:s, s:s, s:f}, {s:s, s:s, s:f}]}", "command", "run",
+                     "error_l1", 1., key, "label", name, "reproduce", command, "error", 2., "label",
+                     "b", "reproduce", "b", "error", 3.);
+}
+
+/* What stands in a list is found again by its name, which has room for 898 letters; an object by
+ * its path. */
+TEST(names)
+{
+    struct diff diff;
+    for (int more = 0; more < 2; more++) {
+        json_t *old = called("errors", 898 + more, "a"), *new = json_deep_copy(old);
+        assert_int_equal(differ(old, new, &diff), more ? STATUS_BAD_INPUT : STATUS_OK);
+        diff_free(&diff);
+        json_decref(old), json_decref(new);
+        /* two names, of which the first leaves no room */
+        old = called("errors", 896 + more, "a"), new = json_deep_copy(old);
+        json_object_set_new(json_array_get(json_object_get(new, "errors"), 0), "name",
+                            json_string("x"));
+        assert_int_equal(differ(old, new, &diff), STATUS_BAD_INPUT);
+        diff_free(&diff);
+        json_decref(old), json_decref(new);
+        /* a path of 1535 letters and more */
+        old = json_pack("{s:s, s:f, s:{}}", "command", "run", "error_l1", 1., "e");
+        json_t *inside = json_object_get(old, "e");
+        for (int level = 0; level < 16; level++) {
+            char key[120];
+            snprintf(key, sizeof key, "%0*d", level ? 101 : 18 + more, level);
+            json_object_set_new(inside, key, json_pack("{s:f}", "error", 1.));
+            inside = json_object_get(inside, key);
+        }
+        new = json_deep_copy(old);
+        assert_int_equal(differ(old, new, &diff), more ? STATUS_BAD_INPUT : STATUS_OK);
+        diff_free(&diff);
+        json_decref(old), json_decref(new);
+    }
+    /* of skips and autopsies, which may be of one case twice, by what computes them */
+    static const char *const keys[] = {"skips", "autopsies", "errors"};
+    for (int k = 0; k < 3; k++) {
+        char path[64];
+        json_t *old = called(keys[k], 1, "run sod"), *new = json_deep_copy(old);
+        assert_int_equal(differ(old, new, &diff), STATUS_OK);
+        snprintf(path, sizeof path, "%s[0%s].error", keys[k], k < 2 ? ", run sod" : "");
+        assert_non_null(find(&diff, path));
+        diff_free(&diff);
+        json_decref(old), json_decref(new);
+    }
 }
 
 /* ---- lists ---- */

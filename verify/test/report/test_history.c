@@ -144,6 +144,26 @@ TEST(the_newest_are_kept)
     }
 }
 
+/* A history that cannot be opened: below a file there is none. */
+TEST(no_place)
+{
+    const struct night night = usual_night(1);
+    json_t *results = results_of(&night), *history;
+    struct error error = {0};
+    char path[300];
+    fclose(fopen(path_of("history"), "w"));
+    snprintf(path, sizeof path, "%s/night", path_of("history"));
+    assert_int_equal(history_append(results, path, &error), STATUS_ENVIRONMENT);
+    assert_non_null(strstr(error.message, "cannot write the history '"));
+    assert_non_null(strstr(error.message, "history/night': Not a directory"));
+    error = (struct error){0};
+    assert_int_equal(history_tell(results, path, &history, &error), STATUS_ENVIRONMENT);
+    assert_non_null(strstr(error.message, "history/night': Not a directory"));
+    assert_null(history);
+    unlink(path_of("history"));
+    json_decref(results);
+}
+
 /* The change of one figure from `before` to `after` at night `at` of `count`, as it is told. */
 static json_t *changed(const char *path, double before, double after, int at, int count)
 {
