@@ -420,7 +420,7 @@ TEST(clouds)
 
 /* ---- figures of an operator ---- */
 
-enum { POINTS_MAX = 9000, FIGURES_MAX = 40, ETA_TENTHS = 24 };
+enum { POINTS_MAX = 9000, FIGURES_MAX = 40, ETA_TENTHS = 22 };
 
 /* A "gradient" that is none, of all that an operator is given. */
 static double planted(const struct sphproof_cloud *cloud, const double *f, size_t i, int a)

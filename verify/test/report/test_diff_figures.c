@@ -147,6 +147,33 @@ TEST(names)
     }
 }
 
+/* ---- wholes and parts ---- */
+
+/* A whole that fails because its part does is no regression of its own, be it the first figure of
+ * all or the last; one that fails alone is. */
+TEST(whole_and_part)
+{
+    static const char *const wholes[] = {"outcome", "status"}, *const parts[] = {"studies", "runs"};
+    for (int w = 0; w < 2; w++)
+        for (int p = 0; p < 2; p++)
+            for (int fails = 0; fails < 2; fails++) {
+                json_t *old = json_pack("{s:s, s:s, s:[{s:s, s:s}]}", "command", "run", wholes[w],
+                                        "ok", parts[p], "label", "a", "outcome", "ok"),
+                       *new = json_pack("{s:s, s:s, s:[{s:s, s:s}]}", "command", "run", wholes[w],
+                                        "fail", parts[p], "label", "a", "outcome",
+                                        fails ? "wrong" : "ok");
+                struct diff diff;
+                char part[64];
+                snprintf(part, sizeof part, "%s[a].outcome", parts[p]);
+                assert_int_equal(differ(old, new, &diff), STATUS_CHECK_FAILED);
+                assert_int_equal(diff.regressions, 1);
+                assert_int_equal(find(&diff, wholes[w])->regression, !fails);
+                assert_int_equal(find(&diff, part)->regression, fails);
+                diff_free(&diff);
+                json_decref(old), json_decref(new);
+            }
+}
+
 /* ---- lists ---- */
 
 static const char *path_of(const struct difference *d)
