@@ -9,6 +9,7 @@
 
 #include "layout.h"
 #include "markup.h"
+#include "page_plot.h"
 #include "plot.h"
 #include "process.h"
 
@@ -309,6 +310,30 @@ TEST(missing_gnuplot)
     assert_int_equal(status, PLOT_NO_GNUPLOT);
     assert_null(svg);
     assert_non_null(strstr(message, "gnuplot-nox"));
+}
+
+/* Names of plots are ids and files, and fit on one page. */
+TEST(names)
+{
+    static const char *const made[][2] = {
+        {"sod", "sod-x"}, {"a_B-9", "a_B-9-x"}, {"./my case.ini", "c_my_case_ini-x"},
+        {"2d", "cd-x"},   {"0", "c-x"},         {"9", "c-x"},
+        {"-", "c-x"},     {"_", "c-x"},         {":", "c-x"},
+        {"", "cx"}};
+    static const char *const bad[] = {NULL, "", "1a", "_a", "a b", "a/b", "a."};
+    char name[64], *svg, message[512];
+    for (size_t k = 0; k < sizeof made / sizeof *made; k++) {
+        page_plot_name(name, sizeof name, made[k][0], "x");
+        assert_string_equal(name, made[k][1]);
+    }
+    struct plot plot = stack;
+    for (size_t k = 0; k < 2 + sizeof bad / sizeof *bad; k++) {
+        plot.name = k < 2 ? "stack" : bad[k - 2];
+        plot.panel_count = k == 0 ? 0 : k == 1 ? LAYOUT_PANELS + 1 : 2;
+        assert_int_equal(plot_svg(NULL, &plot, &svg, message, sizeof message), PLOT_FAILED);
+        assert_string_equal(message,
+                            "a plot needs a name of letters, digits, _ and - and 1 to 8 panels");
+    }
 }
 
 /* What judges in the other tests must itself be able to fail. */

@@ -45,6 +45,9 @@ TEST(alone)
          "'group': 'g', 'check': 'c', 'mutant': 'm'}]}}",
          "fail", "1 failure: detection c, m"},
         {"{'trouble': [{'name': 'a', 'message': 'b'}]}", "fail", "1 failure: harness a"},
+        {"{'runs': [{'status': 'ok'}], 'stress': {'failures': [{'name': 'far', 'command': "
+         "'sphproof stress', 'detail': 'worse'}]}}",
+         "fail", "1 failure: stress far"},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         char text[256];
