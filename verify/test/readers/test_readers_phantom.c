@@ -267,16 +267,14 @@ TEST(every_form)
 
 TEST(left_out)
 {
-    static const char *const says[ARRAYS] = {"need real arrays x, y, z and h; they have:",
-                                             "need real arrays x, y, z and h; they have:",
-                                             "need real arrays x, y, z and h; they have:",
-                                             "need real arrays x, y, z and h; they have:",
-                                             "no vx",
-                                             "no vy",
-                                             "no vz",
-                                             NULL,
-                                             NULL,
-                                             NULL};
+    static const char *const says[ARRAYS] = {
+        "need real arrays x, y, z and h; they have: itype y z h vx vy vz u pressure",
+        "need real arrays x, y, z and h; they have: itype x z h vx",
+        "need real arrays x, y, z and h; they have: itype x y h vx",
+        "need real arrays x, y, z and h; they have: itype x y z vx",
+        "no vx",
+        "no vy",
+        "no vz"};
     for (int a = 0; a < ARRAYS; a++) {
         struct dump d = made();
         d.kind[a] = -1;
