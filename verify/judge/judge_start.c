@@ -24,8 +24,8 @@ static bool fills_room(const struct start_gas *gas, size_t i)
     const struct snapshot *s = gas->snapshot;
     const size_t last = s->n - 1;
     if (gas->problem->domain.dim > 1) return false;
-    const double before = i ? s->x[0][i] - s->x[0][i - 1] : s->x[0][1] - s->x[0][0],
-                 after = i < last ? s->x[0][i + 1] - s->x[0][i] : before,
+    const double after = s->x[0][i < last ? i + 1 : i] - s->x[0][i < last ? i : i - 1],
+                 before = i ? s->x[0][i] - s->x[0][i - 1] : after,
                  room = s->m[i] / gas->exact[i].rho;
     return room > 0.95 * fmin(before, after) && room < 1.05 * fmax(before, after);
 }
