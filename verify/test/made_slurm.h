@@ -20,7 +20,7 @@
 #include "clock.h"
 #include "pool.h"
 
-enum { MADE_TASKS = 40, MADE_TRIES = 4, MADE_SHARES = 4 };
+enum { MADE_TASKS = 40, MADE_TRIES = 4, MADE_SHARES = 8 };
 
 /* What becomes of a task. */
 enum fate {
