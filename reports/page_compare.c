@@ -63,24 +63,25 @@ static void table(struct buffer *to, const json_t *document)
     size_t k;
     html_table(to, "errors", "error|#a|#b|#b/a - 1 in %|b is");
     json_array_foreach(json_object_get(document, "comparisons"), k, figure) {
-        const double change = 100 * value_member(figure, "change"),
-                     half = 100 * value_member(figure, "half");
+        const double change = value_member(figure, "change"), ratio = 1 + change,
+                     half = value_member(figure, "half");
         const char *verdict = value_text(figure, "verdict");
         if (!isfinite(change)) continue;
         html_format(to, "<tr><td>%-s</td><td class=\"n\">%f</td><td class=\"n\">%f</td>",
                     value_text(figure, "name"), value_member(figure, "a"),
                     value_member(figure, "b"));
-        const int places = half > 0 && half < 10 ? 2 : 0;
-        buffer_format(to, "<td class=\"n\">%+.*f", places, change);
-        if (!isnan(half)) buffer_format(to, " ± %.*f", places, half);
+        const int places = half > 0 && half < 0.1 ? 2 : 0;
+        buffer_format(to, "<td class=\"n\">%+.*f", places, 100 * change);
+        if (!isnan(half)) /* Student's interval is one of the logarithm */
+            buffer_format(to, " (%+.*f to %+.*f)", places, 100 * (ratio * exp(-half / ratio) - 1),
+                          places, 100 * (ratio * exp(half / ratio) - 1));
         html_format(to, "</td><td>%s</td></tr>\n",
                     strcmp(verdict, "none") ? verdict : "no different");
     }
     html_table_end(to);
     buffer_format(to,
-                  "<p>Geometric means over %g draws, of fields L1, of values |found - exact|; ± is "
-                  "half of the interval that holds all "
-                  "of them with 95 %% (Student, pairs of draws).",
+                  "<p>Geometric means over %g draws, of fields L1, of values |found - exact|; the "
+                  "intervals hold all of the changes with 95 %% (Student, pairs of draws).",
                   value_member(document, "draws"));
     if (json_is_object(cpu))
         buffer_format(to, " CPU time, b over a: %.3g (%.3g to %.3g).", value_member(cpu, "ratio"),

@@ -297,15 +297,24 @@ static void say(char *text, size_t size, const char *format, ...)
     va_end(arguments);
 }
 
-/* "12 +- 3 %", with as many digits as the interval leaves. */
+/* "12 % (9 to 15 %)": the change and its interval, with as many digits as that leaves. */
 static void say_change(char *text, size_t size, const struct paired *of, bool sign)
 {
-    const double change = 100 * (sign ? of->change : fabs(of->change)), half = 100 * of->half;
-    const double step = isnan(half) ? fabs(change) / 10 : half;
+    const double ratio = 1 + of->change, half = of->half / ratio; /* of its logarithm */
+    const double turn = !sign && of->change < 0 ? -100 : 100;
+    const double step = isnan(half) ? fabs(10 * of->change) : 100 * of->half;
     const int places = step > 0 ? (int)fmax(0, fmin(6, ceil(1 - log10(step)))) : 0;
-    say(text, size, sign ? "%+.*f" : "%.*f", places, change);
-    if (!isnan(half)) say(text, size, " +- %.*f", places, half);
+    const char *format = sign ? "%+.*f" : "%.*f";
+    const double low = turn * (ratio * exp(turn < 0 ? half : -half) - 1),
+                 high = turn * (ratio * exp(turn < 0 ? -half : half) - 1);
+    say(text, size, format, places, turn * of->change);
     say(text, size, " %%");
+    if (isnan(half)) return;
+    say(text, size, " (");
+    say(text, size, format, places, low);
+    say(text, size, " to ");
+    say(text, size, format, places, high);
+    say(text, size, " %%)");
 }
 
 static void conclude(struct comparison *c)
@@ -393,24 +402,24 @@ static void print_all(const struct comparison *c, const struct options *options)
     for (int s = 0; s < 2; s++)
         printf("%s%s%s  %s, n=%zu\n", style.bold, c->sides[s].name, style.end, c->sides[s].text,
                c->sides[s].n[0]);
-    printf("\n%s%-18s %12s %12s %24s  %s%s\n", style.bold, "error", "a", "b", "b/a - 1", "b is",
+    printf("\n%s%-18s %12s %12s %32s  %s%s\n", style.bold, "error", "a", "b", "b/a - 1", "b is",
            style.end);
     for (size_t k = 0; k < c->sides[0].count; k++) {
         const struct paired *of = &c->of[k];
         char change[64] = "";
         if (!of->n) continue;
         say_change(change, sizeof change, of, true);
-        printf("%-18s %12.4e %12.4e %24s  %s%s%s\n", c->sides[0].figures[k], of->a, of->b, change,
+        printf("%-18s %12.4e %12.4e %32s  %s%s%s\n", c->sides[0].figures[k], of->a, of->b, change,
                of->verdict == PAIRED_BETTER  ? style.good
                : of->verdict == PAIRED_WORSE ? style.bad
                                              : style.faint,
                of->verdict == PAIRED_NONE ? "no different" : paired_verdicts[of->verdict],
                style.end);
     }
-    printf("%sgeometric means, of fields L1, of values |found - exact|; +- is half of the interval "
-           "that holds all of them with 95 %% "
-           "(Student, pairs of draws)%s\n",
-           style.faint, style.end);
+    printf(
+        "%sgeometric means, of fields L1, of values |found - exact|; the intervals hold all of the "
+        "changes with 95 %% (Student, pairs of draws)%s\n",
+        style.faint, style.end);
     if (!isnan(c->cpu))
         printf("%-18s b/a = %.3g (%.3g to %.3g)\n", "CPU time", c->cpu, c->cpu_low, c->cpu_high);
     else if (!c->sides[0].is_snapshot && !c->sides[1].is_snapshot)

@@ -51,7 +51,7 @@ static const struct {
      {{1}},
      {{1.25}},
      {{2}, {1}},
-     "density              1.0000e+00   1.2500e+00                  +25.0 %  [.unknown]\n",
+     "density              1.0000e+00   1.2500e+00                          +25.0 %  [.unknown]\n",
      "CPU time           b/a = 0.5 (0.5 to 0.5)\n",
      "a single draw does not tell how much of the difference is chance: density more by 25.0 % (1 "
      "draw); b takes 0.5 times the CPU time (0.5 to 0.5)"},
@@ -61,8 +61,9 @@ static const struct {
      {{1}, {2}},
      {{0.5}, {2}},
      {{(double)NAN}, {(double)NAN}},
-     "density              1.0000e+00   5.0000e-01                  -50.0 %  [.unknown]\n"
-     "velocity             2.0000e+00   2.0000e+00                     +0 %  [.no different]\n",
+     "density              1.0000e+00   5.0000e-01                          -50.0 %  [.unknown]\n"
+     "velocity             2.0000e+00   2.0000e+00                             +0 %  [.no "
+     "different]\n",
      "",
      "a single draw does not tell how much of the difference is chance: density less by 50.0 %; no "
      "difference can be told in velocity (1 draw)"},
@@ -72,7 +73,8 @@ static const struct {
      {{1, 2}},
      {{1, 2}},
      {{1, 1}, {2, 3}},
-     "density              1.4142e+00   1.4142e+00                +0 +- 0 %  [.no different]\n",
+     "density              1.4142e+00   1.4142e+00                +0 % (+0 to +0 %)  [.no "
+     "different]\n",
      "CPU time           b/a = 3 (2 to 3)\n",
      "no difference can be told in density (2 draws); b takes 3 times the CPU time (2 to 3)"},
     {2,
@@ -81,16 +83,17 @@ static const struct {
      {{1, 2}},
      {{1.5, 2.9}},
      {{1, 1}, {(double)NAN, (double)NAN}},
-     "density              1.4142e+00   2.0857e+00              +47 +- 55 %  [-worse]\n",
+     "density              1.4142e+00   2.0857e+00             +47 % (+2 to +114 %)  [-worse]\n",
      "",
-     "b is worse in density by 47 +- 55 % (2 draws)"},
+     "b is worse in density by 47 % (2 to 114 %) (2 draws)"},
     {2,
      1,
      {true, false},
      {{1, 1}},
      {{1.5, 1.6}},
      {{(double)NAN, (double)NAN}, {1, 1}},
-     "density              1.0000e+00   1.5492e+00             +55 +- 110 %  [.no different]\n",
+     "density              1.0000e+00   1.5492e+00            +55 % (-24 to +215 %)  [.no "
+     "different]\n",
      "",
      "no difference can be told in density (2 draws)"},
     {3,
@@ -99,19 +102,20 @@ static const struct {
      {{1, 1, 1}},
      {{1.5, 1.6, 1.55}},
      {{1, 1, 1}, {2, 3, 1}},
-     "density              1.0000e+00   1.5495e+00              +55 +- 12 %  [-worse]\n",
+     "density              1.0000e+00   1.5495e+00             +55 % (+43 to +68 %)  [-worse]\n",
      "CPU time           b/a = 2 (1 to 3)\n",
-     "b is worse in density by 55 +- 12 % (3 draws)"},
+     "b is worse in density by 55 % (43 to 68 %) (3 draws)"},
     {4,
      2,
      {false, false},
      {{1, 2, 3, 4}, {1, 1, 1, 1}},
      {{0.5, 1.01, 1.49, 2.02}, {2, 2.01, 1.99, 2.02}},
      {{4, 1, 2, 8}, {4, 3, 4, 8}},
-     "density              2.2134e+00   1.1103e+00         -49.83 +- 0.85 %  [+better]\n"
-     "velocity             1.0000e+00   2.0050e+00          +100.5 +- 2.7 %  [-worse]\n",
+     "density              2.2134e+00   1.1103e+00    -49.83 % (-50.68 to -48.97 %)  [+better]\n"
+     "velocity             1.0000e+00   2.0050e+00     +100.5 % (+97.8 to +103.2 %)  [-worse]\n",
      "CPU time           b/a = 2 (1 to 3)\n",
-     "b is better in density by 49.83 +- 0.85 %; b is worse in velocity by 100.5 +- 2.7 % (4 "
+     "b is better in density by 49.83 % (48.97 to 50.68 %); b is worse in velocity by 100.5 % "
+     "(97.8 to 103.2 %) (4 "
      "draws)"},
     {3,
      2,
@@ -119,7 +123,8 @@ static const struct {
      {{1, 2, 3}, {0}},
      {{1, 2.5, 2.5}, {1, 1, 1}},
      {{1, 1, 0}, {3, 2, 1}},
-     "density              1.8171e+00   1.8420e+00               +1 +- 74 %  [.no different]\n",
+     "density              1.8171e+00   1.8420e+00             +1 % (-51 to +110 %)  [.no "
+     "different]\n",
      "CPU time           too short for this clock\n",
      "no difference can be told in density (3 draws)"},
     {2,
@@ -128,20 +133,23 @@ static const struct {
      {{1, 1}, {1, 1}},
      {{40, 45}, {1.0000105, 1.00001}},
      {{1, 1}, {1, 1.5}},
-     "density              1.0000e+00   4.2426e+01          +4143 +- 6359 %  [-worse]\n"
-     "velocity             1.0000e+00   1.0000e+00    +0.00102 +- 0.00064 %  [.no different]\n",
+     "density              1.0000e+00   4.2426e+01       +4143 % (+848 to +18893 %)  [-worse]\n"
+     "velocity             1.0000e+00   1.0000e+00 +0.00102 % (+0.00039 to +0.00166 %)  [.no "
+     "different]\n",
      "CPU time           b/a = 1.5 (1 to 1.5)\n",
-     "b is worse in density by 4143 +- 6359 %; no difference can be told in velocity (2 draws)"},
+     "b is worse in density by 4143 % (848 to 18893 %); no difference can be told in velocity (2 "
+     "draws)"},
     {2,
      2,
      {false, false},
      {{1, 1}, {1, 1}},
      {{0.9, 0.9}, {0.9, 0.9}},
      {{1, 1}, {0.5, 0.6}},
-     "density              1.0000e+00   9.0000e-01               -10 +- 0 %  [+better]\n"
-     "velocity             1.0000e+00   9.0000e-01               -10 +- 0 %  [+better]\n",
+     "density              1.0000e+00   9.0000e-01             -10 % (-10 to -10 %)  [+better]\n"
+     "velocity             1.0000e+00   9.0000e-01             -10 % (-10 to -10 %)  [+better]\n",
      "CPU time           b/a = 0.6 (0.5 to 0.6)\n",
-     "b is better in density by 10 +- 0 %, velocity by 10 +- 0 % (2 draws); b takes 0.6 times the "
+     "b is better in density by 10 % (10 to 10 %), velocity by 10 % (10 to 10 %) (2 draws); b "
+     "takes 0.6 times the "
      "CPU time (0.5 to 0.6)"},
     {2,
      1,
@@ -149,16 +157,18 @@ static const struct {
      {{1, 1}},
      {{1.1, 1.1000000001}},
      {{1, 1}, {0.5, 1}},
-     "density              1.0000e+00   1.1000e+00 +10.000000 +- 0.000000 %  [-worse]\n",
+     "density              1.0000e+00   1.1000e+00 +10.000000 % (+10.000000 to +10.000000 %)  "
+     "[-worse]\n",
      "CPU time           b/a = 1 (0.5 to 1)\n",
-     "b is worse in density by 10.000000 +- 0.000000 % (2 draws)"},
+     "b is worse in density by 10.000000 % (10.000000 to 10.000000 %) (2 draws)"},
     {2,
      1,
      {false, false},
      {{1, 1}},
      {{1, 1.000023}},
      {{0, 1}, {0, 1}},
-     "density              1.0000e+00   1.0000e+00        +0.001 +- 0.015 %  [.no different]\n",
+     "density              1.0000e+00   1.0000e+00    +0.001 % (-0.013 to +0.016 %)  [.no "
+     "different]\n",
      "CPU time           too short for this clock\n",
      "no difference can be told in density (2 draws)"},
 };
@@ -223,9 +233,9 @@ TEST(what_is_said)
     static const char *const names[] = {"density", "velocity"};
     static const char frame[] =
         "[*a]  its words, n=100\n[*b]  others, n=110\n\n"
-        "[*error                         a            b                  b/a - 1  b is]\n%s"
-        "[.geometric means, of fields L1, of values |found - exact|; +- is half of the interval "
-        "that holds all of them with 95 %% (Student, pairs of draws)]\n%s\n[*";
+        "[*error                         a            b                          b/a - 1  b is]\n%s"
+        "[.geometric means, of fields L1, of values |found - exact|; the intervals hold all "
+        "of the changes with 95 %% (Student, pairs of draws)]\n%s\n[*";
     static struct comparison c;
     static char text[4096], markup[4096], expected[4096];
     for (size_t row = 0; row < sizeof planted / sizeof *planted; row++) {
