@@ -2,19 +2,15 @@
 """gates.py SPHPROOF: gates of cases whose gates ask for the error alone. The default scheme passes them at small
 sizes; schemes that are known to do worse fail the gates that are named here, and no other."""
 import json
-import os
-import subprocess
-import sys
-import tempfile
 
-PROGRAM = os.path.abspath(sys.argv[1])
+from script import call, play, write
+
 
 
 def gates(*words):
     """Exit status, and each gate's: {"growth_rate": "pass", "density_l1": "fail"}."""
-    done = subprocess.run([PROGRAM, "converge", *words, "--json", "-"], capture_output=True, text=True, timeout=300)
-    if done.returncode not in (0, 1):
-        sys.exit("%s: exit status %d\n%s" % (" ".join(words), done.returncode, done.stderr))
+    done = call("converge", *words, "--json", "-")
+    assert done.returncode in (0, 1), done
     found = {}
     for order in json.loads(done.stdout)["orders"]:
         if order["gate"] is None:
@@ -58,25 +54,19 @@ def main():
     passes(*blast, gates=["shock_radius", "peak_density", "pressure_l1", "velocity_l1",
                           "kinetic_energy", "outward_momentum", "thermal_radius", "asymmetry"])
     # a square whose particles have equal spacing stays as it is, to the last bit
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "spacing.ini")
-        with open(path, "w", encoding="ascii") as f:
-            f.write("[case]\ntitle = A square\ndimension = 2\nreference = square\n[domain]\nlo = 0\nhi = 1\n"
-                    "[initial]\nkind = square\nequal_masses = no\n[run]\nt_end = 0.3\nn = 400\n"
-                    "[measure]\nexact = density velocity pressure internal_energy\n"
-                    "[converge]\nn = 12^2 16^2 20^2 24^2\nvelocity_rms = 0 1e-12\npressure_l1 = 0 4e-3\n")
-        passes(path, gates=["velocity_rms", "pressure_l1"])
-        fails(path, "volume_element=mass", gates=["velocity_rms", "pressure_l1"])
+    write("spacing.ini", "[case]\ntitle = A square\ndimension = 2\nreference = square\n[domain]\nlo = 0\nhi = 1\n"
+          "[initial]\nkind = square\nequal_masses = no\n[run]\nt_end = 0.3\nn = 400\n"
+          "[measure]\nexact = density velocity pressure internal_energy\n"
+          "[converge]\nn = 12^2 16^2 20^2 24^2\nvelocity_rms = 0 1e-12\npressure_l1 = 0 4e-3\n")
+    passes("./spacing.ini", gates=["velocity_rms", "pressure_l1"])
+    fails("./spacing.ini", "volume_element=mass", gates=["velocity_rms", "pressure_l1"])
     # without a gate on what is not exact, and with one on a field's error alone, which no order saves
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "wave.ini")
-        text = ("[case]\ntitle = A wave\ndimension = 2\nreference = simple_wave\n[domain]\nlo = 0\nhi = 1\n"
-                "[initial]\nkind = sound_wave\nbackground = 1 0 1\ndirection = 1 0\namplitude = 0.01\n[run]\nt_end = 0.3\nn = 400\n[converge]\n"
-                "n = 12^2 14^2 16^2 20^2\n")
-        for bound, good in ((1, True), (1e-7, False)):
-            with open(path, "w", encoding="ascii") as f:
-                f.write(text + "velocity_l1 = 1 %g\n" % bound)
-            (passes if good else fails)(path, gates=["velocity_l1"])
+    text = ("[case]\ntitle = A wave\ndimension = 2\nreference = simple_wave\n[domain]\nlo = 0\nhi = 1\n"
+            "[initial]\nkind = sound_wave\nbackground = 1 0 1\ndirection = 1 0\namplitude = 0.01\n[run]\nt_end = 0.3\nn = 400\n[converge]\n"
+            "n = 12^2 14^2 16^2 20^2\n")
+    for bound, judged in ((1, passes), (1e-7, fails)):
+        write("wave.ini", text + "velocity_l1 = 1 %g\n" % bound)
+        judged("./wave.ini", gates=["velocity_l1"])
 
 
-main()
+play(main)

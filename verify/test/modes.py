@@ -7,102 +7,85 @@ amplitude; the two parities of a periodic layer do not mix; a boost changes noth
 real: at 64 spacings a wavelength, by night. What the default scheme is held to there, also from a
 disturbed start; and that the two viscosities and the two gradients differ as they are said to: with
 plain constant viscosity the mode is damped whatever the gradient, without it ia is nearer."""
-import json
-import os
-import subprocess
 import sys
+
+from script import expect, json_of, play
 
 CASE = "kelvin_helmholtz_mode"
 STRATIFIED = "rayleigh_taylor_mode"
 RATES = {"sinuous": 1.705572193, "varicose": 1.481793027}  # of two other methods
 
 
-def run(program, *words, case=CASE, n="24^2"):
-    done = subprocess.run([program, "run", case, "n=" + n, *words, "--json", "-"], capture_output=True,
-                          text=True, timeout=900)
-    if done.returncode:
-        sys.exit("%s: exit %d: %s" % (" ".join(words), done.returncode, done.stderr))
-    document = json.loads(done.stdout)
+def run(*words, case=CASE, n="24^2"):
+    document = json_of("run", case, "n=" + n, *words, timeout=900)
     return tuple({entry["name"]: entry[what] for entry in document["functionals"]} for what in ("value", "reference"))
 
 
-def check(bad, what, value, bound):
-    if not value <= bound:
-        print("%s: %.3g, more than %.3g" % (what, value, bound))
-        bad.append(what)
+def most(what, value, bound):
+    expect(what, value <= bound, "%.3g, more than %.3g" % (value, bound))
 
 
-def starts(program, bad):
+def starts():
     """Right after the start, U = 1/2: on a lattice sums are nearly integrals."""
     for parity in RATES:
-        values, _ = run(program, "t_end=1e-9", "amplitude=2e-3", "parity=" + parity)
-        check(bad, parity + ": amplitude of the start", abs(values["mode_amplitude"] / 1e-3 - 1), 1e-5)
-        check(bad, parity + ": error of the start", values["mode_error"], 1e-3)
-        check(bad, parity + ": noise of the start", values["mode_noise"], 1e-3)
-        check(bad, parity + ": the other parity at the start", values["other_parity"], 1e-10)
+        values, _ = run("t_end=1e-9", "amplitude=2e-3", "parity=" + parity)
+        most(parity + ": amplitude of the start", abs(values["mode_amplitude"] / 1e-3 - 1), 1e-5)
+        most(parity + ": error of the start", values["mode_error"], 1e-3)
+        most(parity + ": noise of the start", values["mode_noise"], 1e-3)
+        most(parity + ": the other parity at the start", values["other_parity"], 1e-10)
 
 
-def grows(program, bad):
+def grows():
     """With 24 spacings a wavelength nothing is known better than to some percent."""
     for parity, rate in RATES.items():
-        values, exact = run(program, "parity=" + parity, *(["t_end=1"] if parity == "varicose" else []))
-        check(bad, parity + ": its exact rate", abs(exact["growth_rate"] / rate - 1), 1e-8)
-        check(bad, parity + ": rate", abs(values["growth_rate"] / rate - 1), 0.15)
-        check(bad, parity + ": shape", values["mode_error"], 0.15)
-        check(bad, parity + ": the other parity", values["other_parity"], 1e-10)
+        values, exact = run("parity=" + parity, *(["t_end=1"] if parity == "varicose" else []))
+        most(parity + ": its exact rate", abs(exact["growth_rate"] / rate - 1), 1e-8)
+        most(parity + ": rate", abs(values["growth_rate"] / rate - 1), 0.15)
+        most(parity + ": shape", values["mode_error"], 0.15)
+        most(parity + ": the other parity", values["other_parity"], 1e-10)
 
 
-def is_linear(program, bad):
+def is_linear():
     """Viscosity is not, but less so than the mode grows."""
-    ends = [run(program, "t_end=0.5", "amplitude=" + amplitude, *more)[0]["mode_amplitude"] / float(amplitude)
+    ends = [run("t_end=0.5", "amplitude=" + amplitude, *more)[0]["mode_amplitude"] / float(amplitude)
             for amplitude, more in (("1e-4", []), ("1e-5", []), ("1e-4", ["boost=1 0.5"]))]
-    check(bad, "a tenth of the amplitude", abs(ends[1] / ends[0] - 1), 1e-3)
-    check(bad, "boosted", abs(ends[2] / ends[0] - 1), 1e-6)
+    most("a tenth of the amplitude", abs(ends[1] / ends[0] - 1), 1e-3)
+    most("boosted", abs(ends[2] / ends[0] - 1), 1e-6)
 
 
-def is_heavy(program, bad):
+def is_heavy():
     """Dense gas over thin gas: as above; in a box twice as high with half the gravity it takes twice as
     long."""
-    values, exact = run(program, "t_end=0.9", case=STRATIFIED, n="512")
-    check(bad, "stratified: its exact rate", abs(exact["growth_rate"] / 1.170903153 - 1), 1e-8)
-    check(bad, "stratified: rate", abs(values["growth_rate"] / 1.170903153 - 1), 0.15)
-    check(bad, "stratified: shape", values["mode_error"], 0.2)
-    values, _ = run(program, "t_end=1e-9", case=STRATIFIED, n="1152")
-    check(bad, "stratified: amplitude of the start", abs(values["mode_amplitude"] / 5e-4 - 1), 1e-5)
-    check(bad, "stratified: error of the start", values["mode_error"], 1e-3)
-    _, large = run(program, "t_end=1e-9", "lo=0 -1", "hi=1 1", "gravity=0 -0.25", case=STRATIFIED, n="512")
-    check(bad, "stratified, twice as large: rate", abs(2 * large["growth_rate"] / exact["growth_rate"] - 1), 1e-10)
+    values, exact = run("t_end=0.9", case=STRATIFIED, n="512")
+    most("stratified: its exact rate", abs(exact["growth_rate"] / 1.170903153 - 1), 1e-8)
+    most("stratified: rate", abs(values["growth_rate"] / 1.170903153 - 1), 0.15)
+    most("stratified: shape", values["mode_error"], 0.2)
+    values, _ = run("t_end=1e-9", case=STRATIFIED, n="1152")
+    most("stratified: amplitude of the start", abs(values["mode_amplitude"] / 5e-4 - 1), 1e-5)
+    most("stratified: error of the start", values["mode_error"], 1e-3)
+    _, large = run("t_end=1e-9", "lo=0 -1", "hi=1 1", "gravity=0 -0.25", case=STRATIFIED, n="512")
+    most("stratified, twice as large: rate", abs(2 * large["growth_rate"] / exact["growth_rate"] - 1), 1e-10)
 
 
-def off(program, *words, **more):
-    values, exact = run(program, *words, **more)
+def off(*words, **more):
+    values, exact = run(*words, **more)
     return abs(values["growth_rate"] / exact["growth_rate"] - 1)
 
 
-def is_accurate(program, bad):
-    coarse, fine = off(program, n="32^2"), off(program, n="64^2")
-    check(bad, "shear", fine, 0.01)
-    check(bad, "shear: half the spacing", 2 ** 1.8 * fine, coarse)
-    check(bad, "shear, jitter", off(program, "jitter=0.05", n="64^2"), 0.05)
-    check(bad, "stratified", off(program, case=STRATIFIED, n="8192"), 0.01)
+def is_accurate():
+    coarse, fine = off(n="32^2"), off(n="64^2")
+    most("shear", fine, 0.01)
+    most("shear: half the spacing", 2 ** 1.8 * fine, coarse)
+    most("shear, jitter", off("jitter=0.05", n="64^2"), 0.05)
+    most("stratified", off(case=STRATIFIED, n="8192"), 0.01)
 
 
-def gradients_differ(program, bad):
-    standard = off(program, "gradient=standard", n="64^2")
-    check(bad, "ia against standard", 2 * off(program, n="64^2"), standard)
+def gradients_differ():
+    standard = off("gradient=standard", n="64^2")
+    most("ia against standard", 2 * off(n="64^2"), standard)
     cubic = ["kernel=cubic_spline", "viscosity=constant"]
-    check(bad, "constant viscosity, ia", 0.1, off(program, *cubic, "gradient=ia", n="64^2"))
-    check(bad, "constant viscosity, standard", 0.1, off(program, *cubic, "gradient=standard", n="64^2"))
+    most("constant viscosity, ia", 0.1, off(*cubic, "gradient=ia", n="64^2"))
+    most("constant viscosity, standard", 0.1, off(*cubic, "gradient=standard", n="64^2"))
 
 
-def main():
-    program, bad = os.path.abspath(sys.argv[1]), []
-    real = sys.argv[2:] == ["real"]
-    for part in (is_accurate, gradients_differ) if real else (starts, grows, is_linear, is_heavy):
-        part(program, bad)
-    print("growing modes: %d faults" % len(bad))
-    return len(bad) > 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+play(*((is_accurate, gradients_differ) if sys.argv[2:] == ["real"] else (starts, grows, is_linear, is_heavy)))

@@ -9,13 +9,12 @@ import random
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import xml.etree.ElementTree
 
 from schema import Validator
+from script import call, play, program, read, write
 
-program = os.path.abspath(sys.argv[1])
 with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "schema", "sphproof-1.schema.json"), encoding="ascii") as text:
     validator = Validator(json.load(text))
 
@@ -166,19 +165,14 @@ BAD = ((GOOD, "", "is empty"), ("title", "titel", "did you mean 'title'"), ("[ca
        ("velocity_l1", "shock_radius", "exclude each other"))
 
 
-def write(name, text):
-    with open(name, "w", encoding="ascii") as file:
-        file.write(text)
-
-
-def call(*words, status=0, environment=None):
-    done = subprocess.run([program, *words], capture_output=True, text=True, timeout=100, env=environment)
-    assert done.returncode == status or (status is None and done.returncode < 2), (words, done)
+def answer(*words, status=0, environment=None):
+    done = call(*words, status=status, env=environment)
+    assert status is not None or done.returncode < 2, (words, done)
     return done.stdout, done.stderr
 
 
 def document(*words, status=0):
-    found = json.loads(call(*words, "--json", "-", status=status)[0])
+    found = json.loads(answer(*words, "--json", "-", status=status)[0])
     faults = list(validator.faults(found, validator.root))
     assert not faults, (words, faults)
     return found
@@ -224,10 +218,10 @@ def test_same(draw):
             same(ours[key], theirs[key], case + "/" + key, 1e-9 if key in ("h", "regularity", "budget") else 1e-12)
         assert theirs["conservation"]["energy"] < 1e-12 and theirs["status"] == "ok", theirs
         code = theirs["code"]
-        assert code["title"] == "Stand-in" and code["sha256"] == hashlib.sha256(code_bytes).hexdigest() and code["exit_status"] == 0, code
+        assert code["title"] == "Stand-in" and code["sha256"] == hashlib.sha256(read("code.py").encode()).hexdigest() and code["exit_status"] == 0, code
         assert "mode good" in code["log"] and theirs["cost"]["cpu_s"] > 0 and theirs["cost"]["steps"] is None, theirs
         assert "kernel" not in theirs["settings"] and theirs["judged"]["assumptions"], theirs
-    said = call("run", "sod", "n=198", "--code", "good.ini")[0]
+    said = answer("run", "sod", "n=198", "--code", "good.ini")[0]
     assert "computed by Stand-in" in said and "density " in said, said
 
 
@@ -252,8 +246,8 @@ def test_again():
     """A run that failed is not kept for good: the next command tries it again, a share does not."""
     write("once.ini", FILE % ("once sod", 60, "none"))
     ladder = ("converge", "sod", "--n", "60,61,62,63", "--replicates", "1", "--code", "once.ini", "--cache", "again")
-    call(*ladder, status=3)
-    call(*ladder, "--shard", "1/1", status=0)
+    answer(*ladder, status=3)
+    answer(*ladder, "--shard", "1/1", status=0)
     for name in ("first", "second"):
         found = document(*ladder, status=None)
         assert found["status"] != "failed", (name, found)
@@ -264,13 +258,13 @@ def test_refused():
     for old, new, told in BAD:
         assert old in GOOD, old
         write("bad.ini", GOOD.replace(old, new, 1))
-        out, said = call("run", "sod", "--code", "bad.ini", "--work", "refused", status=2)
+        out, said = answer("run", "sod", "--code", "bad.ini", "--work", "refused", status=2)
         assert not out and any(part in said for part in told.split("|")), (new, said)
     for words, told in ((("run", "noh_2d"), "gresho"), (("run", "sod", "kernel=cubic_spline"), "kernel"),
                         (("run", "sod", "--snapshot", "a.csv"), "--work"), (("run", "sod", "n=2"), "n")):
-        out, said = call(*words, "--code", "good.ini", "--work", "refused", status=2)
+        out, said = answer(*words, "--code", "good.ini", "--work", "refused", status=2)
         assert not out and told in said, (words, said)
-    assert "--code" in call("run", "sod", "--work", "refused", status=2)[1]
+    assert "--code" in answer("run", "sod", "--work", "refused", status=2)[1]
     assert not os.path.exists("refused") and not os.path.exists("a.csv")
 
 
@@ -280,16 +274,14 @@ def test_work():
     write("line.ini", GOOD.replace("[case sod]", "parameters = par.txt.in\nshell = yes\n[case sod]")
           .replace("./code.py good sod", "test -f @PARAMETERS@ && @HERE@/code.py good sod", 1))
     done = document("run", "sod", "n=100", "--code", "line.ini", "--work", "kept")
-    with open(os.path.join(done["code"]["folder"], "par.txt"), encoding="ascii") as file:
-        assert file.read() == ("n 100 dim 1 gamma 1.4 box -1 1 end 0.2 out out ic ic.csv seed 1 spacing 0.02"), done
+    assert read(os.path.join(done["code"]["folder"], "par.txt")) == ("n 100 dim 1 gamma 1.4 box -1 1 end 0.2 out out ic ic.csv seed 1 spacing 0.02"), done
     assert {"ic.csv", "out_1.csv", "par.txt", "stderr", "stdout"} == set(os.listdir(done["code"]["folder"]))
-    for entry in json.loads(call("list", "formats", "--json", "-")[0])["families"]["formats"]:
+    for entry in json.loads(answer("list", "formats", "--json", "-")[0])["families"]["formats"]:
         if entry["name"] == "sph_exa":  # which is for 3D
             continue
         write("format.ini", GOOD.replace("[case sod]", "parameters = par.txt.in\nic = %s\n[case sod]" % entry["name"], 1))
         done = document("run", "sod", "n=100", "--code", "format.ini", "--work", "kept")
-        with open(os.path.join(done["code"]["folder"], "par.txt"), encoding="ascii") as file:
-            words = file.read().split()
+        words = read(os.path.join(done["code"]["folder"], "par.txt")).split()
         assert os.path.exists(os.path.join(done["code"]["folder"], words[words.index("ic") + 1])), entry
         assert ("box 0 2" if "gadget" in entry["name"] or entry["name"] == "swift" else "box -1 1") in " ".join(words), (entry, words)
     write("start.ini", GOOD.replace("[case sod]", "ic = ./start.sh @IC@ @N@\n[case sod]"))
@@ -321,12 +313,12 @@ def test_slab(draw):
     assert theirs["conservation"]["mass"] < 1e-12 and theirs["conservation"]["energy"] < 1e-12, theirs["conservation"]
     assert any(one["what"] == "plane" and "slab" in one["value"] for one in theirs["judged"]["assumptions"]), theirs["judged"]
     write("slab.ini", GOOD.replace("[case gresho]", "as_3d = 3.5\n[case gresho]"))
-    assert "a number of layers" in call(*words, "--code", "slab.ini", status=2)[1]
+    assert "a number of layers" in answer(*words, "--code", "slab.ini", status=2)[1]
 
 
 def test_no_errors():
     """A case without an exact solution has no errors and orders to print."""
-    said = call("converge", "kelvin_helmholtz", "--n", "12^2,14^2,16^2,18^2", "--replicates", "1", status=None)[0]
+    said = answer("converge", "kelvin_helmholtz", "--n", "12^2,14^2,16^2,18^2", "--replicates", "1", status=None)[0]
     assert "nan" not in said and "mode_amplitude" in said and "no errors of fields" in said, said
 
 
@@ -357,7 +349,7 @@ def test_ladder(draw):
     done = document("converge", "gresho", "--code", "bad.ini", "--work", "runs", status=3)
     assert done["status"] == "failed" and "no such table" in done["message"] and "n = 256" in done["message"], done
     for words, told in (("--vary", "kernel"), "kernel"), (("eta=3",), "eta"):
-        assert told in call("converge", "gresho", *words, "--code", "good.ini", status=2)[1], words
+        assert told in answer("converge", "gresho", *words, "--code", "good.ini", status=2)[1], words
     write("tight.ini", GOOD.replace("0.5 10", "0.5 1e-9"))
     document("converge", "gresho", "--n", ladder, "--code", "tight.ini", "--cache", "cache", status=1)
     # the old bound at the end of the case's own ladder stands for a larger one at the end of a shorter ladder
@@ -411,8 +403,7 @@ def test_calibrate():
         assert abs(width**2 / gate["floor"] / gate["change"] - 1) < 1e-6, gate
         assert gate["least"] == 0 or gate["least"] == max(gate["value"] / 2, 2 * gate["value"] - gate["bound"]), gate
     assert gates["velocity_l1"]["least"] > 0 and not gates["momentum"]["least"], gates
-    with open("mine.calibrated.ini", encoding="ascii") as file:
-        text = file.read()
+    text = read("mine.calibrated.ini")
     assert "; my own" in text and "density_l1 = 0 1\n\n" in text and "velocity_l1 = 0.5 10" not in text, text
     assert "mass = " not in text.replace("angular_momentum", ""), text
 
@@ -429,27 +420,26 @@ def test_calibrate():
         why = [order["why"] for order in wrong["orders"] if order["status"] == "fail"]
         assert len(why) == 1 and ("strangely below" if factor > 1 else "exceeds") in why[0], why
     document("calibrate", "mine.calibrated.ini", "gresho", "--runs", "3", *keep, "--out", "again.ini", status=1)
-    with open("again.ini", encoding="ascii") as file:
-        assert file.read() == text
+    assert read("again.ini") == text
     write("free.ini", text.split("[fault")[0].replace(ladder, ladder.replace("10", "11")))
     free = document("calibrate", "free.ini", "gresho", "--runs", "2", *keep)
     assert {gate["status"] for gate in free["cases"][0]["gates"]} == {"free"} and not free["cases"][0]["faults"], free
     os.mkdir("elsewhere")
     write("none.ini", text.replace(command % "viscous", "command = ./none.py"))
-    assert "command = ./none.py" in call("calibrate", "none.ini", "gresho", status=2)[1]
+    assert "command = ./none.py" in answer("calibrate", "none.ini", "gresho", status=2)[1]
     for words, told in ((("--runs", "1"), "from 2 to 16"), (("--out", "elsewhere/a.ini"), "in the folder of mine.ini"),
                         (("sedd",), "sedd"), (("gresho", "gresho"), "given twice"), (("--jobs", "0"), "--jobs")):
-        said = call("calibrate", "mine.ini", *words, status=2)
+        said = answer("calibrate", "mine.ini", *words, status=2)
         assert told in said[1] and not said[0], (words, said)
     assert not os.listdir("elsewhere")
-    assert "sees no fault" in call("calibrate", "mine.ini", "gresho", "--runs", "3", *keep, status=1)[0]
+    assert "sees no fault" in answer("calibrate", "mine.ini", "gresho", "--runs", "3", *keep, status=1)[0]
 
 
 def test_shares():
     """Three shares into one folder, and the plain command that finds everything there."""
     words = ("converge", "gresho", "--code", "good.ini", "--work", "shared_runs", "--cache", "shared")
     for share in 1, 2, 3:
-        call(*words, "--shard", "%d/3" % share)
+        answer(*words, "--shard", "%d/3" % share)
     assert len(os.listdir("shared_runs")) == 4
     assert [level["n"] for level in document(*words)["levels"]] == [256, 400, 576, 784]
     assert len(os.listdir("shared_runs")) == 4
@@ -481,9 +471,9 @@ def test_report():
     failed = found["verdict"]["failures"]
     assert sorted(failure["area"] for failure in failed) == ["run", "run", "study", "study"], failed
     assert sorted("no such table" in failure["detail"] or 2 * (none in failure["detail"]) for failure in failed) == [1, 1, 2, 2], failed
-    assert ":8: command = ./none.py" in call("converge", "sound_wave", "--code", "third.ini", status=2)[1]
+    assert ":8: command = ./none.py" in answer("converge", "sound_wave", "--code", "third.ini", status=2)[1]
     assert sorted(len(bench["points"]) for bench in found["bench"]) == [12, 16], found["bench"]
-    page = xml.etree.ElementTree.fromstring(open("out/index.html", encoding="utf-8").read().replace("<!DOCTYPE html>", ""))
+    page = xml.etree.ElementTree.fromstring(read("out/index.html").replace("<!DOCTYPE html>", ""))
     text = "".join(page.itertext())
     for word in none, "Stand-in", "Broken", "exit_status", "What was assumed of", "sphproof converge gresho --code bad.ini", "textbook SPH":
         assert word in text, word
@@ -500,9 +490,9 @@ def test_report():
     for name, missing in ("Broken", "225 256 400 576 625 784 order"), ("Third", "256 784"), ("default", "225 625"):
         column = rows[0].index(name)
         assert [row[0] for row in rows if row[column] == "—"] == missing.split(), (name, rows)
-    assert "Broken" in open("out/junit.xml", encoding="utf-8").read()
+    assert "Broken" in read("out/junit.xml")
     for words, told in ((("--nightly",), "--nightly and --code"), (("--code", "both.ini"), "two codes are called")):
-        assert told in call("report", "--code", "both.ini", *words, "--out", "none", status=2)[1], words
+        assert told in answer("report", "--code", "both.ini", *words, "--out", "none", status=2)[1], words
     assert not os.path.exists("none")
 
 
@@ -511,7 +501,7 @@ def test_corner():
     write("corner.ini", (FILE % ("corner sod", 60, "none")).split("[case gresho]")[0] + "n = 60 80 100 120\n")
     words = ("report", "--code", "corner.ini", "--out", "corner", "--jobs", "2")
     found = document(*words, status=None)
-    assert "plots are missing: no plot: gnuplot" in call(*words, status=4, environment={**os.environ, "PATH": "/nowhere"})[1]
+    assert "plots are missing: no plot: gnuplot" in answer(*words, status=4, environment={**os.environ, "PATH": "/nowhere"})[1]
     runs = {run["label"]: run["profile"] for run in found["runs"]}
     for x in (runs["Stand-in"]["x"], runs["Stand-in"]["exact"]["x"]):
         assert -0.51 < min(x) < -0.45 and 0.45 < max(x) < 0.51, (min(x), max(x))
@@ -535,15 +525,14 @@ def test_bench():
     found = document("bench", "gresho", "--code", "bad.ini", *brief)
     told = [scheme for scheme in found["excluded"] if scheme["scheme"] == "Broken" or "no such table" in json.dumps(scheme)]
     assert told and not [point for point in found["points"] if point["scheme"] == "Stand-in"], found["excluded"]
-    assert "exclude each other" in call("bench", "--kernels", "--code", "good.ini", status=2)[1]
+    assert "exclude each other" in answer("bench", "--kernels", "--code", "good.ini", status=2)[1]
 
 
 def test_nothing_left():
     for mode in ("grandchild", "daemon"):
         write("bad.ini", FILE % (mode + " sod", 60, "none"))
         document("run", "sod", "n=60", "--code", "bad.ini")
-        with open("child", encoding="ascii") as file:
-            name = "sleep " + file.read()
+        name = "sleep " + read("child")
         assert not running(name), (mode, running(name))
     write("bad.ini", FILE % ("hang sod", 60, "none"))
     words = "code.py hang sod 61"
@@ -558,29 +547,17 @@ def test_nothing_left():
 
 seed = random.randrange(10**6) if len(sys.argv) < 3 else int(sys.argv[2])
 print("seed", seed)
-with tempfile.TemporaryDirectory() as work:
-    os.chdir(work)
+
+
+def lay():
+    work = os.getcwd()
     os.mkdir("tmp")
     os.environ["TMPDIR"] = os.path.abspath("tmp")
     write("code.py", CODE % (sys.executable, program, work, work, work))
-    with open("code.py", "rb") as file:
-        code_bytes = file.read()
     os.chmod("code.py", 0o700)
     write("good.ini", GOOD)
-    test_same(random.Random(seed))
-    test_failures()
-    test_starts(random.Random(seed))
-    test_again()
-    test_refused()
-    test_work()
-    test_slab(random.Random(seed))
-    test_no_errors()
-    test_ladder(random.Random(seed))
-    test_motion()
-    test_calibrate()
-    test_shares()
-    test_report()
-    test_corner()
-    test_bench()
-    test_nothing_left()
-    os.chdir("/")
+
+
+drawing = [lambda test=test: test(random.Random(seed)) for test in (test_same, test_starts, test_slab, test_ladder)]
+play(lay, *drawing, test_failures, test_again, test_refused, test_work, test_no_errors, test_motion, test_calibrate, test_shares, test_report,
+     test_corner, test_bench, test_nothing_left)

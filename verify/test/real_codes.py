@@ -1,22 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """real_codes.py SPHPROOF: PySPH, which nobody here wrote, computes Sod's tube and Gresho's vortex by its code file, within its
 file's gates; it starts from our particles; and what is planted into it is told: another gamma, viscosity, particles of its own."""
-import json
 import os
 import shutil
 import subprocess
 import sys
-import tempfile
 
-PROGRAM = os.path.abspath(sys.argv[1])
+from script import json_of, play, read, write
+
 CODES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "examples", "codes")
 COMMAND = "command = /usr/bin/python3 pysph_driver.py @IC@ @OUT@ --t-end @T_END@\n"
 
 
 def document(*words, status=0):
-    done = subprocess.run([PROGRAM, *words, "--code", "pysph.ini", "--json", "-"], capture_output=True, text=True, timeout=600)
-    assert done.returncode == status, (words, done)
-    return json.loads(done.stdout)
+    return json_of(*words, "--code", "pysph.ini", status=status, timeout=600)
 
 
 def gates(case, status, keys=()):
@@ -27,8 +24,9 @@ def gates(case, status, keys=()):
 
 
 def test_pysph():
-    with open(os.path.join(CODES, "pysph.ini"), encoding="ascii") as file:
-        text = file.read()
+    for name in "pysph.ini", "pysph_driver.py":
+        shutil.copy(os.path.join(CODES, name), name)
+    text = read("pysph.ini")
     faults = dict(part.split("]\n", 1) for part in text.split("[fault ")[1:])
     assert set(faults) == {"gamma", "viscosity"} and text.count(COMMAND) == 1, faults
     document("run", "sod", "n=60")  # compiles its equations for 1D
@@ -38,11 +36,9 @@ def test_pysph():
     right = document("run", "gresho", "n=16^2")
     assert right["conservation"]["momentum"] < 1e-12 and 1e-6 < right["conservation"]["energy"] < 1e-3, right["conservation"]
     for name, case in ("gamma", "sod"), ("viscosity", "gresho"):
-        with open("pysph.ini", "w", encoding="ascii") as file:
-            file.write(text.replace(COMMAND, faults[name].strip().splitlines()[0] + "\n"))
+        write("pysph.ini", text.replace(COMMAND, faults[name].strip().splitlines()[0] + "\n"))
         gates(case, "fail")
-    with open("pysph.ini", "w", encoding="ascii") as file:
-        file.write(text.replace(COMMAND, COMMAND.replace("\n", " --shift 0.3\n")))
+    write("pysph.ini", text.replace(COMMAND, COMMAND.replace("\n", " --shift 0.3\n")))
     own = document("run", "sod", "n=100", status=3)
     assert own["reason"] == "ignored_ic" and "out_000.csv: positions along x" in own["message"], own["message"]
 
@@ -50,9 +46,4 @@ def test_pysph():
 if subprocess.run(["/usr/bin/python3", "-c", "import pysph.solver.application, pysph.base.nnps"], capture_output=True).returncode:
     print("no PySPH (Debian's package python3-pysph): skipped")
     sys.exit(77)
-with tempfile.TemporaryDirectory() as work:
-    os.chdir(work)
-    for name in "pysph.ini", "pysph_driver.py":
-        shutil.copy(os.path.join(CODES, name), work)
-    test_pysph()
-    os.chdir("/")
+play(test_pysph)

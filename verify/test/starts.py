@@ -4,13 +4,10 @@
 Particles of a file are the same as those of the case that wrote it; a file beside a case file is
 found from anywhere; without a reference there are no errors but null; walls and gravity of a case
 are those of `rates` with the same words."""
-import json
-import os
-import subprocess
 import sys
-import tempfile
 
-SPHPROOF = os.path.abspath(sys.argv[1])
+from script import call, json_of, play, read, write
+
 
 CASE = """[case]
 title = Particles of a file
@@ -31,21 +28,8 @@ t_end = 0.05
 """
 
 
-def call(*words, status=0):
-    done = subprocess.run([SPHPROOF, *words, "--json", "-", "--threads", "1"], capture_output=True, text=True)
-    if done.returncode != status:
-        sys.exit("%s: exit %d, not %d: %s" % (" ".join(words), done.returncode, status, done.stderr))
-    return json.loads(done.stdout) if done.stdout else None
-
-
-def write(path, text):
-    with open(path, "w", encoding="ascii") as f:
-        f.write(text)
-
-
-def read(path):
-    with open(path, encoding="utf-8", errors="surrogateescape") as f:
-        return f.read()
+def found(*words):
+    return json_of(*words, "--threads", "1")
 
 
 def rows(path):
@@ -65,63 +49,56 @@ def demand(condition, what):
         sys.exit(what)
 
 
-def files(folder):
-    start, ours, theirs = (os.path.join(folder, name) for name in ("start.csv", "a.csv", "b.csv"))
+def files():
+    start, ours, theirs = "start.csv", "a.csv", "b.csv"
     keys = ["n=24^2", "jitter=0.1", "shifting=none"]
-    call("run", "gresho", *keys, "t_end=0", "--snapshot", start)
-    plain = call("run", "gresho", *keys, "t_end=0.05", "--snapshot", ours)
-    case = os.path.join(folder, "judged.ini")
+    found("run", "gresho", *keys, "t_end=0", "--snapshot", start)
+    plain = found("run", "gresho", *keys, "t_end=0.05", "--snapshot", ours)
+    case = "./judged.ini"
     write(case, CASE % ("gresho", ""))
-    judged = call("run", case, "--snapshot", theirs)
+    judged = found("run", case, "--snapshot", theirs)
     demand(judged["n"] == judged["settings"]["n"] == 576, "the number of particles is the file's")
     demand(apart(ours, theirs) <= 1e-8, "particles of a file move otherwise than those of the case: %g" % apart(ours, theirs))
-    for found in (judged, call("run", "gresho", "file=" + start, "t_end=0.05", "shifting=none")):
+    for document in (judged, found("run", "gresho", "file=" + start, "t_end=0.05", "shifting=none")):
         for field, norms in plain["errors"].items():
             for norm, value in (norms or {}).items():
-                other = found["errors"][field][norm]
+                other = document["errors"][field][norm]
                 demand(value is other or abs(other - value) <= 1e-6 * abs(value), "%s %s: %r, not %r" % (field, norm, other, value))
-    case = os.path.join(folder, "alone.ini")
+    case = "./alone.ini"
     write(case, CASE % ("none", ""))
-    alone = call("run", case, "--snapshot", theirs)
+    alone = found("run", case, "--snapshot", theirs)
     # their first guess of the density is another one
     demand(apart(ours, theirs) <= 1e-8, "particles of a file move otherwise without a reference")
     demand(all(v is None for f, e in alone["errors"].items() if e for v in e.values()), "errors of what is not known")
     demand(alone["conservation"]["energy"] <= 1e-12, "conservation without a reference")
     write(case, CASE % ("riemann", ""))
-    done = subprocess.run([SPHPROOF, "run", case], capture_output=True, text=True)
+    done = call("run", case)
     demand(done.returncode == 2 and "left" in done.stderr, "a reference's own keys are needed: " + done.stderr)
 
 
-def ends(folder):
+def ends():
     """A case's boundary and gravity against the same words of rates; defaults by the case file."""
-    start, case = os.path.join(folder, "start.csv"), os.path.join(folder, "ends.ini")
+    start, case = "start.csv", "./ends.ini"
     for boundary in ("periodic reflecting", "open", "reflecting"):
         write(case, CASE % ("none", "boundary = %s\ngravity = 0.25 -1" % boundary))
-        found = call("rates", case)
-        want = call("rates", start, "lo=0", "hi=1", "gamma=1.6666666666666667", "boundary=" + boundary, "gravity=0.25 -1")
-        for one, two in zip(found["particles"], want["particles"]):
+        own = found("rates", case)
+        want = found("rates", start, "lo=0", "hi=1", "gamma=1.6666666666666667", "boundary=" + boundary, "gravity=0.25 -1")
+        for one, two in zip(own["particles"], want["particles"]):
             same = all(abs(a - b) <= 1e-9 for a, b in zip([one["rho"], *one["force"]], [two["rho"], *two["force"]]))
             demand(same and one["neighbours"] == two["neighbours"], "boundary=%s of a case" % boundary)
         words = boundary.split()
-        demand(found["settings"]["boundary"] == (words if len(words) > 1 else boundary), "boundary as used")
-        demand(found["settings"]["gravity"] == [0.25, -1], "gravity as used")
-    walls = call("rates", "gresho", "n=24^2", "boundary=reflecting")
-    demand(walls["particles"] != call("rates", "gresho", "n=24^2")["particles"], "walls change nothing")
-    demand(call("rates", "gresho", "n=24^2")["settings"]["boundary"] == "periodic", "boundary by default")
+        demand(own["settings"]["boundary"] == (words if len(words) > 1 else boundary), "boundary as used")
+        demand(own["settings"]["gravity"] == [0.25, -1], "gravity as used")
+    walls = found("rates", "gresho", "n=24^2", "boundary=reflecting")
+    demand(walls["particles"] != found("rates", "gresho", "n=24^2")["particles"], "walls change nothing")
+    demand(found("rates", "gresho", "n=24^2")["settings"]["boundary"] == "periodic", "boundary by default")
     # momentum that walls take is no error: along them it is kept
-    run = call("run", "rest_2d", "n=16^2", "t_end=0.2", "boundary=periodic,reflecting")
+    run = found("run", "rest_2d", "n=16^2", "t_end=0.2", "boundary=periodic,reflecting")
     demand(run["conservation"]["momentum"] <= 1e-13, "momentum along walls")
     # layers that are kept drag what is beside them: nobody asks for momentum along them
     keys = ["kernel=cubic_spline", "eta=1.8", "gradient=standard", "viscosity=constant"]
-    run = call("run", "rest_2d", "n=28^2", "t_end=0.05", "boundary=periodic,fixed", *keys)
+    run = found("run", "rest_2d", "n=28^2", "t_end=0.05", "boundary=periodic,fixed", *keys)
     demand(run["conservation"]["momentum"] == 0, "momentum along layers")
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        files(folder)
-        ends(folder)
-    print("particles of files and ends of boxes are what the cases say")
-
-
-main()
+play(files, ends)
