@@ -6,8 +6,7 @@
 uint64_t fortran_unsigned(const unsigned char *bytes, size_t size, bool swapped)
 {
     uint64_t value = 0;
-    const uint16_t one = 1;
-    const bool little = *(const unsigned char *)&one == 1;
+    const bool little = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__;
     for (size_t k = 0; k < size; k++) {
         const size_t at = little != swapped ? size - 1 - k : k;
         value = value << 8 | bytes[at];

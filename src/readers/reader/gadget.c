@@ -140,9 +140,8 @@ static size_t width_of(const struct record *record, size_t count)
 
 /* ---- which record is what ---- */
 
-enum { POSITIONS, VELOCITIES, IDS, MASSES, ENERGIES, DENSITIES, WIDTHS, ACCELERATIONS, BLOCKS };
-static const char *const tags[BLOCKS] = {"POS ", "VEL ", "ID  ", "MASS",
-                                         "U   ", "RHO ", "HSML", "ACCE"};
+enum { POSITIONS, VELOCITIES, MASSES, ENERGIES, DENSITIES, WIDTHS, ACCELERATIONS, BLOCKS };
+static const char *const tags[BLOCKS] = {"POS ", "VEL ", "MASS", "U   ", "RHO ", "HSML", "ACCE"};
 
 struct layout {
     const struct record *block[BLOCKS]; /* NULL: there is none */
@@ -236,7 +235,6 @@ static enum status infer(const struct binary *b, struct layout *layout,
                          b->source->path, b->count,
                          fits ? "more than one choice fits" : "none fit");
     *layout = found;
-    layout->block[IDS] = &b->record[3];
     char value[64];
     snprintf(value, sizeof value, "%s from record %zu on", b->massive ? "masses" : "energies",
              where + 1);

@@ -92,10 +92,9 @@ static size_t width_of(const char *type)
 
 static double number_at(const char *type, const char *at)
 {
-    const uint16_t one = 1;
     unsigned char bytes[8];
     const size_t width = width_of(type);
-    const bool little = *(const unsigned char *)&one;
+    const bool little = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__;
     for (size_t k = 0; k < width; k++) bytes[k] = (unsigned char)at[little ? width - 1 - k : k];
 #define KIND(word, c_type)                                                                         \
     if (!strcmp(type, word)) {                                                                     \

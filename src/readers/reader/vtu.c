@@ -410,10 +410,10 @@ static bool take_field(const struct vtk *vtk, const struct tag *tag, const struc
 
 static bool begin(struct vtk *vtk, const struct tag *tag)
 {
-    const uint16_t one = 1;
     char word[WORD];
     value_of(tag, "byte_order", word);
-    vtk->swapped = !strcmp(word, *(const unsigned char *)&one ? "BigEndian" : "LittleEndian");
+    vtk->swapped =
+        !strcmp(word, __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? "BigEndian" : "LittleEndian");
     vtk->head = strcmp(value_of(tag, "header_type", word), "UInt64") ? 4 : 8;
     vtk->compressed = *value_of(tag, "compressor", word);
     if (vtk->compressed && strcmp(word, "vtkZLibDataCompressor"))
