@@ -108,7 +108,8 @@ struct problem {
     bool heavy;           /* it takes gravity: any other has no solution in it */
     bool steady; /* the exact flow is the same at all times, but for where the boost carries it */
     bool shifts; /* closed gradients and particle shifting make its errors smaller */
-    bool smooth; /* neither jumps nor shocks, for as long as it is solved */
+    bool shifts_equal_masses; /* they do with equal_masses=yes, whose particles are in disorder */
+    bool smooth;              /* neither jumps nor shocks, for as long as it is solved */
     struct problem_ends ends[3];
     /* NULL, but where energy starts in the middle of the window: the sample at t = 0 does not show
      * it, and later u has no bound there. Energy over mass of the ball of radius r round it. */

@@ -101,7 +101,9 @@ static void choose_shifting(const struct prepared *p, struct settings *settings)
 {
     struct setting_value *shifting = &settings->value[SETTING_shifting];
     if (!shifting->automatic) return;
-    bool closed = p->problem->shifts && p->domain.dim > 1;
+    const bool wanted = p->problem->shifts || (p->problem->shifts_equal_masses &&
+                                               settings_choice(settings, SETTING_equal_masses));
+    bool closed = wanted && p->domain.dim > 1;
     for (int d = 0; d < p->domain.dim; d++)
         closed &= p->boundary[d] == BOUNDARY_PERIODIC || p->boundary[d] == BOUNDARY_REFLECTING;
     shifting->choice = closed ? SHIFTING_CLOSED : SHIFTING_NONE;

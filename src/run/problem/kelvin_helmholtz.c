@@ -40,8 +40,9 @@ static void sample(const struct prepared *p, const double x[3], double t,
 
 static double amplitude_measured(const struct prepared *p, const struct snapshot *s)
 {
-    double *x = malloc(3 * s->n * sizeof *x), *y = x + s->n, *vy = y + s->n;
+    double *x = malloc(3 * s->n * sizeof *x);
     if (!x) return NAN;
+    double *y = x + s->n, *vy = y + s->n;
     for (size_t i = 0; i < s->n; i++) {
         double place[3], unit[2], v[3];
         problem_place(p, s, i, place);
@@ -78,6 +79,7 @@ const struct problem problem_kelvin_helmholtz = {
     .carried = true,
     .fieldless = true,
     .smooth = true,
+    .shifts_equal_masses = true,
     .keys = keys,
     .key_count = sizeof keys / sizeof *keys,
     .prepare = prepare,

@@ -71,7 +71,7 @@ static void put(const struct dump *d, double value, int size, bool real)
 {
     unsigned char word[8];
     const float half = (float)value;
-    const int64_t whole = (int64_t)value;
+    const int64_t whole = real ? 0 : (int64_t)value;
     if (real && size == 4)
         memcpy(word, &half, sizeof half);
     else if (real)

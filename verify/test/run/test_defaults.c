@@ -255,6 +255,8 @@ TEST(what_shifts)
         {"sod_2d", {"shifting=closed"}, SHIFTING_CLOSED},
         {"rest_3d", {0}, SHIFTING_NONE},
         {"kelvin_helmholtz", {0}, SHIFTING_NONE},
+        {"kelvin_helmholtz", {"equal_masses=yes"}, SHIFTING_CLOSED},
+        {"kelvin_helmholtz", {"equal_masses=yes", "gradient=standard"}, SHIFTING_NONE},
         {"rotation", {0}, SHIFTING_NONE},
         {"sound_wave_3d", {0}, SHIFTING_NONE},
         {"rayleigh_taylor_mode", {0}, SHIFTING_NONE},
