@@ -89,6 +89,7 @@ setup_missing() {
     setup_library hdf5 || echo libhdf5-dev
     setup_has gnuplot || echo gnuplot-nox
     case $1 in full | nightly)
+        setup_has ccache || echo ccache # some tests build copies of the tree, one after the other
         setup_compiles clang || echo clang
         setup_compiles clang -fopenmp || echo libomp-dev
         setup_libclang || echo python3-clang
@@ -131,9 +132,10 @@ setup_packages() {
     # shellcheck disable=SC2046 # words on purpose
     setup_install $(setup_missing "${1:-}")
     # clang's sanitizers are a package of their own, named after clang's version.
-    if [ "${1:-}" = nightly ] && ! setup_compiles clang -fsanitize=thread; then
-        setup_install "libclang-rt-$(clang -dumpversion | cut -d. -f1)-dev"
-    fi
+    case ${1:-} in full | nightly)
+        setup_compiles clang -fsanitize=address ||
+            setup_install "libclang-rt-$(clang -dumpversion | cut -d. -f1)-dev" ;;
+    esac
 }
 
 # setup_report: out, the folder of the report.

@@ -9,10 +9,14 @@ import fnmatch
 import json
 import os
 import re
+import resource
 import shlex
 import shutil
 import subprocess
 import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "mutants"))
+from mutants import OPTIONS  # noqa: E402: those of other copies that tests build, so that ccache has much of it already
 
 
 def keys(program, readme):
@@ -54,6 +58,7 @@ PLACES = {
         "sphproof converge sod kernel=cubic_spline eta=4.8  # exit 1",  # its gate is not for this scheme
     "sphproof run CASE": "sphproof run sod",
     "sphproof verify GROUP": "sphproof verify kernels",
+    "sphproof verify --mutants": "sphproof verify norms --mutants",  # of all groups: the quick suite
     "sphproof run CASE n=64^2": "sphproof run gresho n=24^2 t_end=0.1",
     "sphproof diff OLD.json NEW.json": "sphproof run sod --json try/a.json; sphproof diff try/a.json try/a.json",
     "sphproof kernel ./mine.so --dim 3":
@@ -163,13 +168,21 @@ def scripts(program, source, work):
     print("scripts are right")
 
 
+def cpu():
+    """What all commands that ended have taken, s of a processor."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def stories(source, work):
     tree = os.path.join(work, "tree")
     shutil.rmtree(work, ignore_errors=True)
     shutil.copytree(source, tree, ignore=shutil.ignore_patterns("build*", ".git", "out"))
-    subprocess.run(["meson", "setup", "build", "-Dclones=false", "-Doptimization=1", "-Dtests=false"],
-                   cwd=tree, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["meson", "setup", os.path.join(work, "build"), tree, *OPTIONS, "-Dtests=false"],
+                   check=True, stdout=subprocess.DEVNULL)
+    os.symlink(os.path.join("..", "build"), os.path.join(tree, "build"))
     subprocess.run(["ninja", "-C", "build"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
+    print("  %6.1f s  the build" % cpu())
     environment = dict(os.environ, PATH=os.path.join(tree, "build") + os.pathsep + os.environ["PATH"])
     text = pages(tree)
     blocks = [part.split("```", 1)[0] for part in text.split("```sh\n")[1:]]
@@ -182,9 +195,10 @@ def stories(source, work):
                  if command.startswith("reports/run")]
     for command in commands:
         wanted = int(command.rsplit("# exit ", 1)[1]) if "# exit " in command else 0
+        began = cpu()
         result = subprocess.run(["sh", "-c", command], cwd=tree, env=environment,
                                 capture_output=True, text=True, stdin=subprocess.DEVNULL)
-        print("%d  %s" % (result.returncode, command), flush=True)
+        print("%d %6.1f s  %s" % (result.returncode, cpu() - began, command), flush=True)
         if result.returncode != wanted:
             sys.exit("exit %d instead of %d\n%s%s" % (result.returncode, wanted,
                                                       result.stdout[-2000:], result.stderr[-2000:]))
