@@ -45,7 +45,7 @@ static json_t *map_json(const struct run_result *result)
     struct error error;
     if (map_create(&map, &result->problem.domain, s, CLOUD_MAP_CELLS, &error)) return NULL;
     const size_t cells = map.nx * map.ny;
-    double *values = malloc((s->n + cells) * sizeof *values), *z = values + s->n;
+    double *values = malloc((s->n + cells) * sizeof *values), *z = values ? values + s->n : NULL;
     json_t *object = values ? json_object() : NULL;
     if (object) {
         json_object_set_new(object, "x", result_numbers(map.x, map.nx));

@@ -81,10 +81,10 @@ static enum status suspect(struct run_result *result, const double *const *measu
     static const char *const names[] = {"density", "velocity", "pressure", "energy"};
     const struct snapshot *s = &result->snapshot;
     double *inside = malloc((2 * FIELDS + 1) * s->n * sizeof *inside); /* the window's particles */
+    if (!inside) return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
     double *volume = inside + 2 * FIELDS * s->n;
     const double *value[FIELDS], *exact[FIELDS];
     size_t n = 0;
-    if (!inside) return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
     for (size_t field = 0; field < FIELDS; field++) {
         value[field] = inside + field * s->n;
         exact[field] = inside + (FIELDS + field) * s->n;

@@ -261,8 +261,9 @@ enum { SIDE = 400 };
 static double amplitude_of(const struct mode_subject *mode, bool flat, double phase)
 {
     enum { N = SIDE * SIDE };
-    double *x = malloc(4 * (size_t)N * sizeof *x), *y = x + N, *vy = y + N, *w = vy + N;
+    double *x = malloc(4 * (size_t)N * sizeof *x);
     if (!x) return NAN;
+    double *y = x + N, *vy = y + N, *w = vy + N;
     for (int i = 0; i < N; i++) {
         const int row = i / SIDE;
         x[i] = (i % SIDE + 0.5) / SIDE;

@@ -53,8 +53,9 @@ static enum status evaluate(const struct lattice_waves *lattice, const struct di
     const struct initial *from = &lattice->at_rest;
     const struct domain *domain = &lattice->run.problem.domain;
     const size_t n = from->n;
-    double *arrays = calloc(3 * n, sizeof *arrays), *x = arrays, *v = x + n, *u = v + n;
+    double *arrays = calloc(3 * n, sizeof *arrays);
     if (!arrays) return error_set(error, STATUS_ENVIRONMENT, "no memory for a lattice");
+    double *x = arrays, *v = x + n, *u = v + n;
     const double lo = domain->lo[by->axis], length = domain_length(domain, by->axis);
     for (size_t i = 0; i < n; i++) {
         x[i] = from->x[by->axis][i] + by->shift * by->wave[i];

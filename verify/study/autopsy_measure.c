@@ -298,10 +298,10 @@ static enum status look_at_conductivity(const struct scene *s, const struct rate
                                         struct autopsy_level *level, struct error *error)
 {
     const double gamma = s->run->problem.gamma, c = sqrt(gamma * (gamma - 1) * mean_energy(s));
-    double *rate = calloc(2 * s->n, sizeof *rate), *none = rate + s->n;
-    double *const rates[3] = {rate, none, none};
-    struct autopsy_split *size = &level->size[AUTOPSY_CONDUCTION];
+    double *rate = calloc(2 * s->n, sizeof *rate);
     if (!rate) return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", s->n);
+    double *const none = rate + s->n, *const rates[3] = {rate, none, none};
+    struct autopsy_split *size = &level->size[AUTOPSY_CONDUCTION];
     for (size_t i = 0; i < s->n; i++)
         rate[i] = (gamma - 1) * (with->dU[i] - without->dU[i]) / (s->m[i] * c);
     *size = autopsy_split(&s->cells, rates, NULL);

@@ -66,7 +66,7 @@ static void set_gas(struct hdf5_image *image, const struct run_result *result)
 {
     const struct snapshot *s = &result->snapshot;
     const struct domain *box = &result->problem.domain;
-    double *vectors = calloc(6 * s->n, sizeof *vectors), *v = vectors + 3 * s->n;
+    double *vectors = calloc(6 * s->n, sizeof *vectors), *v = vectors ? vectors + 3 * s->n : NULL;
     uint64_t *number = malloc(s->n * sizeof *number);
     image->good &= vectors && number;
     for (size_t i = 0; image->good && i < s->n; i++) {
