@@ -6,7 +6,7 @@ be checked and be part of a report. A fault put into it must be noticed where th
 
   adding.py SOURCE WORK [WORD ...]   WORD: only rows whose name contains one of them
 
-All rows share one copy and its three builds: with all that they add, with what some add to the oracle, and
+All rows share one copy and its three builds (-O0): with all that they add, with what some add to the oracle, and
 with all faults. Exit status 1: a row does not hold, or the table has a row without a test here."""
 import json
 import os
@@ -15,9 +15,6 @@ import shutil
 import subprocess
 import sys
 import time
-
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "mutants"))
-from mutants import OPTIONS  # noqa: E402: those of other copies that tests build, so that ccache has much of it already
 
 
 class Failed(Exception):
@@ -42,7 +39,7 @@ class Tree:
 
     def build(self):
         if not os.path.exists(self.folder):
-            self.call(["meson", "setup", self.folder, self.root, *OPTIONS, "-Dtests=false"])
+            self.call(["meson", "setup", self.folder, self.root, "-Doptimization=0", "-Dclones=false", "-Dtests=false"])
         self.call(["ninja", "-C", self.folder, "sphproof"])
         self.verified = {}
 
@@ -574,8 +571,8 @@ file: src/statistics/norm.c
     tree.checked("", "norms")
     yield
     yield  # it leaves a program with the fault behind: all others have been looked at
+    sys.path.insert(0, os.path.dirname(script))
     import mutants
-    mutants.LIST = tree.path("verify/mutants/mutants.txt")
     added = [m for m in mutants.read_list() if m.name == "src_norm_twice"]
     worker = object.__new__(mutants.Worker)  # with the copy and the build that are there
     worker.tree, worker.build = tree.root, tree.folder
