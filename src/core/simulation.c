@@ -63,7 +63,7 @@ static enum status check_particle(const struct setup *setup, size_t i, struct er
 
 /* Particles at a surface would shift into the vacuum, those that are kept give away what they keep,
  * and the potential energy of what is exchanged is in no flux. */
-static enum status check_shifting(const struct setup *setup, struct error *error)
+enum status simulation_check_shifting(const struct setup *setup, struct error *error)
 {
     const char *chosen = scheme_shifting_family.members[setup->scheme.shifting]->name;
     for (int k = 0; k < setup->dim && setup->scheme.shifting != SHIFTING_NONE; k++) {
@@ -105,7 +105,7 @@ static enum status check_setup(const struct setup *setup, struct error *error)
         const enum status status = check_particle(setup, i, error);
         if (status) return status;
     }
-    const enum status shifting = check_shifting(setup, error);
+    const enum status shifting = simulation_check_shifting(setup, error);
     return shifting ? shifting : scheme_check(&setup->scheme, setup->dim, error);
 }
 

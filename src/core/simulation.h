@@ -85,6 +85,10 @@ struct conservation { /* sums over all particles; extensive, code units */
 size_t plan_explain(const struct setup *setup, struct plan_line *lines, size_t max, char *warnings,
                     size_t warnings_size);
 
+/* Checks that shifting goes with the setup's ends and gravity, which simulation_create does as well;
+ * of the particles nothing is read. STATUS_BAD_INPUT names the two that exclude each other. */
+enum status simulation_check_shifting(const struct setup *setup, struct error *error);
+
 struct simulation;
 
 /* Allocates all that a run needs; simulation_run asks for more only where neighbours get eight

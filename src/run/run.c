@@ -49,8 +49,11 @@ enum status run_resolve(struct run *run, const struct run_settings *asked, struc
     const int dim = asked->file.dimension;
     run->asked = *asked;
     run->settings = asked->settings;
-    const enum status status = problem_prepare(&run->problem, &run->settings, dim, error);
-    return status ? status : settings_scheme(&run->settings, dim, &run->scheme, error);
+    enum status status = problem_prepare(&run->problem, &run->settings, dim, error);
+    if (!status) status = settings_scheme(&run->settings, dim, &run->scheme, error);
+    if (status) return status;
+    const struct setup setup = run_setup(run, &(struct initial){0});
+    return simulation_check_shifting(&setup, error);
 }
 
 struct setup run_setup(const struct run *run, const struct initial *initial)

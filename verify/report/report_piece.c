@@ -92,11 +92,9 @@ static enum status compute_league(json_t **document, struct error *error)
 }
 
 /* Schemes that answer the first two questions: which kernel is best, and then which gradient at
- * shocks, or which viscosity in smooth flow; in 2D and 3D also what shifting is worth, which is not
- * there with gravity. */
+ * shocks, or which viscosity in smooth flow; in 2D and 3D also what shifting is worth. */
 static const char *vary(const struct settings *settings)
 {
-    if (problem_of(settings)->heavy) return "kernel=cubic_spline,wendland_c2,wendland_c4,gradient";
     if (settings->dim > 1)
         return "kernel=cubic_spline,wendland_c2,wendland_c4,gradient,shifting=none,closed";
     return problem_of(settings)->smooth

@@ -682,6 +682,27 @@ TEST(test_signal)
 
 /* A vortex in 2D: errors of the velocity along its circles, in parts of how far it is from uniform;
  * work grows as n^(3/2), and the merit at order 2 is error^(3/2) x CPU. */
+/* A scheme that the case's gravity excludes is told, and the others are measured. */
+TEST(test_what_gravity_excludes)
+{
+    static struct run_settings settings;
+    static const size_t ladder[] = {288};
+    struct sweep sweep;
+    struct precision precision;
+    struct error error = {0};
+    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 1};
+    char *keys[] = {"t_end=0.001"};
+    assert_int_equal(run_prepare(&settings, "rayleigh_taylor_mode", 1, keys, &error), 0);
+    settings.threads = 1;
+    assert_int_equal(sweep_parse(&sweep, "shifting=none,closed", &error), 0);
+    assert_int_equal(precision_measure(&settings, &sweep, ladder, 1, &brief, &precision, &error),
+                     0);
+    assert_int_equal(precision.schemes[0].count, 1);
+    assert_int_equal(precision.schemes[1].count, 0);
+    assert_non_null(strstr(precision.schemes[1].excluded, "gravity=-0.5 exclude each other"));
+    precision_free(&precision);
+}
+
 TEST(test_plane)
 {
     static struct run_settings settings;
