@@ -52,7 +52,8 @@ def lasting(value):
 def computed(value):
     """Everything that must be the same in two reports of one program."""
     if isinstance(value, dict):
-        drop = ("cost", "cpu_s", "wall_s", "seconds", "date", "found", "history", "bench", "ns_per_point", "ns_per_pair")
+        drop = ("cost", "cpu_s", "wall_s", "seconds", "date", "found", "history", "bench", "ns_per_point", "ns_per_pair",
+                "cpu_s_without_skip", "saves") + (("spread",) if "saves" in value else ())
         return {k: computed(v) for k, v in value.items() if k not in drop}
     return [computed(v) for v in value] if isinstance(value, list) else value
 
