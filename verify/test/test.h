@@ -1,14 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What every test in C includes first: cmocka, with what it asks for, and TEST. A file of tests
- * needs neither a list of them nor main. */
+ * What every test in C includes first: cmocka, with what it asks for, the standard library's usual
+ * headers, comparisons of numbers, and TEST. A file of tests needs neither a list of them nor
+ * main. */
 #ifndef TEST_H
 #define TEST_H
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <cmocka.h>
+
+#include "near.h"
 
 /* TEST(name) { ... } is a test without a state of cmocka's; it runs in its turn in the file. */
 #define TEST(name)                                                                                 \

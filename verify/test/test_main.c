@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "test.h"
 
-#include <stdlib.h>
-
 static struct CMUnitTest tests[64];
 static size_t count;
 static CMFixtureFunction first, last;

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The macros of near.h: what they must accept and, above all, what they must refuse. */
-#include "test.h"
-
 #include <stdbool.h>
-#include <stdio.h>
-#include <string.h>
 
 static int refused;
 static char message[256];
@@ -14,7 +10,7 @@ static char message[256];
         snprintf(message, sizeof message, __VA_ARGS__);                                            \
         refused++;                                                                                 \
     } while (0)
-#include "near.h"
+#include "test.h"
 
 #define REFUSES(comparison)                                                                        \
     do {                                                                                           \

@@ -3,9 +3,6 @@
  * baseline against the solver. */
 #include "test.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <gsl/gsl_rng.h>
 
 #include "bench.h"
@@ -14,7 +11,6 @@
 #include "bench_loops.h"
 #include "bench_scaling.h"
 #include "bench_skips.h"
-#include "near.h"
 #include "precision.h"
 #include "worst.h"
 

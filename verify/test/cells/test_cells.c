@@ -5,12 +5,8 @@
 #include "test.h"
 
 #include <gsl/gsl_rng.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "integrator.h"
-#include "near.h"
 #include "simulation.h"
 
 enum { POINTS_MAX = 4096, DRAWS = 6 };

@@ -2,11 +2,7 @@
  * What a scheme's numbers do in 2D and 3D: beta where there is no alpha, and signal speeds. */
 #include "test.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "made_lattice.h"
-#include "near.h"
 #include "solver.h"
 
 #include "cells/cells.h"

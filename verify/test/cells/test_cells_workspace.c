@@ -4,13 +4,8 @@
  * scheme. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "made_bytes.h"
 #include "made_lattice.h"
-#include "near.h"
 #include "solver.h"
 #include "width.h"
 

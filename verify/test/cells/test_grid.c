@@ -4,14 +4,10 @@
 #include "test.h"
 
 #include <gsl/gsl_rng.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "cube_root.h"
 #include "cells/gather.h"
 #include "grid.h"
-#include "near.h"
 
 enum { DRAWS = 120, POINTS_MAX = 600 };
 

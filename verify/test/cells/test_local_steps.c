@@ -4,15 +4,9 @@
  * particles are on one level, and that neighbours are never further apart than two levels. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "made_bytes.h"
 #include "made_lattice.h"
 #include "made_simulation.h"
-#include "near.h"
 #include "settings.h"
 #include "solver.h"
 

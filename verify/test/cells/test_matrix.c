@@ -3,11 +3,7 @@
  * whose singular values are known; the weights of their moments. */
 #include "test.h"
 
-#include "near.h"
-
 #include <float.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
 

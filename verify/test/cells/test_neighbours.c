@@ -2,9 +2,6 @@
  * What the neighbour search of clouds refuses, word for word. */
 #include "test.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "draw.h"
 #include "neighbours.h"
 

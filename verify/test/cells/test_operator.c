@@ -3,11 +3,8 @@
 #include "test.h"
 
 #include <float.h>
-#include <math.h>
-#include <stdlib.h>
 
 #include "clouds.h"
-#include "near.h"
 #include "summation.h"
 
 enum { FIELDS = 2 };

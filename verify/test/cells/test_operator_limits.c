@@ -4,12 +4,8 @@
 #include "test.h"
 
 #include <float.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "draw.h"
-#include "near.h"
 #include "operator.h"
 
 enum { POINTS_MAX = 200, FIELDS = 2 };

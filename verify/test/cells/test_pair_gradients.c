@@ -5,7 +5,6 @@
 #include "test.h"
 
 #include "draw.h"
-#include "near.h"
 
 #include "cells/lanes.h"
 #include "cells/pairs.h"

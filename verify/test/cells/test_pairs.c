@@ -4,10 +4,6 @@
 #include "test.h"
 
 #include "draw.h"
-#include "near.h"
-
-#include <stdlib.h>
-#include <string.h>
 
 #include "cells/pairs.h"
 

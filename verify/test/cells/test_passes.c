@@ -4,9 +4,6 @@
 
 #include "draw.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "cells/lanes.h"
 #include "matrix.h"
 #include "cells/pairs.h"

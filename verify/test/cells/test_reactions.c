@@ -3,10 +3,7 @@
  * boxes of any shape, boundaries, widths, schemes, particles that sleep. */
 #include "test.h"
 
-#include <string.h>
-
 #include "draw.h"
-#include "near.h"
 
 #include "cells/lanes.h"
 

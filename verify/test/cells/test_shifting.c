@@ -5,15 +5,10 @@
  * compared with the oracle's by the check clouds/rates. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "draw.h"
 #include "made_bytes.h"
 #include "made_lattice.h"
 #include "made_simulation.h"
-#include "near.h"
 #include "settings.h"
 #include "solver.h"
 

@@ -5,11 +5,8 @@
 #include "test.h"
 
 #include <float.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "draw.h"
-#include "near.h"
 #include "summation.h"
 #include "width.h"
 

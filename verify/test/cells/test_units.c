@@ -3,10 +3,6 @@
  * the kernel they were made for. */
 #include "test.h"
 
-#include <math.h>
-#include <stdlib.h>
-
-#include "near.h"
 #include "shapes.h"
 #include "cells/units.h"
 

@@ -4,10 +4,6 @@
  */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "draw.h"
 #include "cells/cells.h"
 #include "grid.h"

@@ -5,8 +5,6 @@
 #include "test.h"
 
 #include <stdatomic.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "run.h"
 

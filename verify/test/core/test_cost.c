@@ -2,9 +2,6 @@
  * What a run says that it has done, on lattices whose neighbours can be counted on paper. */
 #include "test.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "settings.h"
 #include "simulation.h"
 

@@ -3,8 +3,6 @@
  * words and in a document, where there are some and where none. */
 #include "test.h"
 
-#include <math.h>
-
 #include "run_output.h"
 #include "solver.h"
 

@@ -2,11 +2,7 @@
  * An evaluation with sums that are known: gravity, and the limit of the time step. */
 #include "test.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "draw.h"
-#include "near.h"
 #include "solver.h"
 
 enum { N = 9 };

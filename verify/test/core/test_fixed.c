@@ -3,11 +3,7 @@
  * another order than the setup's. */
 #include "test.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "fixed.h"
-#include "near.h"
 #include "settings.h"
 #include "solver.h"
 

@@ -4,9 +4,6 @@
  * None writes beyond the particles. A particle that is left without internal energy is named. */
 #include "test.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "hydro_setup.h"
 #include "memory.h"
 #include "settings.h"

@@ -4,15 +4,10 @@
 #include "test.h"
 
 #include <float.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include <gsl/gsl_integration.h>
 
 #include "kernel.h"
-#include "near.h"
 #include "oracle_kernel.h"
 
 /* W, dW/dr and dW/dh beside the oracle's, which are written a second time in long double. */

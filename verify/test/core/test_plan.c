@@ -3,11 +3,6 @@
  * reasons that are true of the scheme, and warns where it should. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "integrator.h"
 #include "plan.h"
 #include "run.h"

@@ -3,15 +3,9 @@
  * over its particles, the length of a step, and how a breakdown is told. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "draw.h"
 #include "breakdown.h"
 #include "made_simulation.h"
-#include "near.h"
 #include "solver.h"
 
 typedef long double real;

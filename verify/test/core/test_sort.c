@@ -3,10 +3,6 @@
  * the start of a simulation, whose particles may come in any order. */
 #include "test.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "hydro_setup.h"
 #include "simulation.h"
 #include "sort.h"

@@ -3,11 +3,7 @@
  * extended precision, on sums that are drawn; what lies beside a range stays. */
 #include "test.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "draw.h"
-#include "near.h"
 #include "state.h"
 
 typedef long double real;

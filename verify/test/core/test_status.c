@@ -4,7 +4,6 @@
 #include "test.h"
 
 #include <stdbool.h>
-#include <string.h>
 
 #include "status.h"
 

@@ -4,16 +4,11 @@
  * and what is kept and restored. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 #include "line/line.h"
 #include "made_bytes.h"
 #include "made_simulation.h"
-#include "near.h"
 #include "solver.h"
 
 /* --- steps ------------------------------------------------------------------------------------ */

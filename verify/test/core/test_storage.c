@@ -4,13 +4,9 @@
  * particles. Large pages are asked for where arrays are as long as one, and only there. */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "made_bytes.h"
-#include "near.h"
 #include "pages.h"
 #include "particles.h"
 

@@ -3,9 +3,6 @@
  * whenever other programs start and end. */
 #include "test.h"
 
-#include <math.h>
-
-#include "near.h"
 #include "team.h"
 
 /* A second of steps of `pace` seconds each; more threads take `ratio` times as long as one. Returns

@@ -3,12 +3,7 @@
  * 3.11 in extended precision. */
 #include "test.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "draw.h"
-#include "near.h"
 #include "solver.h"
 #include "width.h"
 

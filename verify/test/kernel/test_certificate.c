@@ -4,10 +4,7 @@
  * pairing (Dehnen & Aly 2012 and relaxation runs). */
 #include "test.h"
 
-#include <math.h>
-
 #include "certificate.h"
-#include "near.h"
 
 struct known {
     const char *name;

@@ -3,17 +3,11 @@
  * who sleeps, each against a plain count over all particles. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include <float.h>
 
 #include "draw.h"
 #include "line/line.h"
 #include "made_simulation.h"
-#include "near.h"
 
 enum { GHOSTS = 256, SETUPS = 40 };
 

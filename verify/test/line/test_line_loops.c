@@ -4,12 +4,8 @@
  * themselves are compared by the checks hydro/rates and hydro/specialised. */
 #include "test.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "line/loops.h"
 #include "draw.h"
-#include "near.h"
 
 typedef long double real;
 

@@ -3,11 +3,7 @@
  * they find; widths that have a root or none; how room is made. */
 #include "test.h"
 
-#include <math.h>
 #include <stdatomic.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -19,7 +15,6 @@
 #include "line/line.h"
 #include "line/pass.h"
 #include "made_simulation.h"
-#include "near.h"
 
 /* --- passes ----------------------------------------------------------------------------------- */
 

@@ -5,11 +5,8 @@
 #include "test.h"
 
 #include <gsl/gsl_rng.h>
-#include <math.h>
-#include <string.h>
 
 #include "integrator.h"
-#include "near.h"
 #include "simulation.h"
 
 enum { MOST = 400, DRAWS = 60 };

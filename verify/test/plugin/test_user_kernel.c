@@ -4,16 +4,11 @@
  * program's exit status follows. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 
 #include <jansson.h>
 
 #include "certificate.h"
-#include "near.h"
 #include "user_figures.h"
 #include "user_kernel.h"
 

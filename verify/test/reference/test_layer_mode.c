@@ -4,11 +4,9 @@
 #include "test.h"
 
 #include <complex.h>
-#include <math.h>
 
 #include "layer_collocation.h"
 #include "layer_mode.h"
-#include "near.h"
 
 static const struct layer layers[] = {
     {1.4, 2 * M_PI, 0.07, 1.3, 0.2, 0.4, 1.7, 0, true, 0, false},

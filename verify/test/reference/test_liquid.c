@@ -5,7 +5,6 @@
 
 #include "draw.h"
 #include "liquid.h"
-#include "near.h"
 
 /* Couette flow from rest as images of the error function (Carslaw & Jaeger 1959, section 12.5). */
 static double by_images(double y, double t)

@@ -5,7 +5,6 @@
 #include "test.h"
 
 #include <float.h>
-#include <math.h>
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_rng.h>
@@ -13,7 +12,6 @@
 #include "disc.h"
 #include "kelvin_helmholtz.h"
 #include "layer.h"
-#include "near.h"
 #include "noh.h"
 #include "sedov.h"
 #include "vortex.h"

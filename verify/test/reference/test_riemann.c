@@ -7,12 +7,7 @@
 #include "test.h"
 
 #include <float.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include "near.h"
 #include "riemann.h"
 #include "riemann_property.h"
 

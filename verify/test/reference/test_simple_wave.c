@@ -4,13 +4,11 @@
 #include "test.h"
 
 #include <float.h>
-#include <math.h>
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_rng.h>
 #include <gsl/gsl_roots.h>
 
-#include "near.h"
 #include "simple_wave.h"
 
 static const struct simple_wave wave = {5. / 3, 2.385, -0.3, 0.7, 0.25, 1.7};

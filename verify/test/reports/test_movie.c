@@ -3,7 +3,6 @@
  * values are equal. (Movies themselves: movie.py.) */
 #include "test.h"
 
-#include "near.h"
 /* its own text, of which the ranges are asked */
 #include "movie.c"
 

@@ -4,9 +4,6 @@
  * so that it needs none. A change that is meant is kept by verify/test/keep. */
 #include "test.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "findings.h"
 #include "made_document.h"
 #include "markup.h"

@@ -3,7 +3,6 @@
  * fault of gnuplot ends in a status. */
 #include "test.h"
 
-#include <math.h>
 #include <signal.h>
 #include <time.h>
 

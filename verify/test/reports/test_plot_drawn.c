@@ -4,10 +4,6 @@
  * that file is renewed. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "buffer.h"
 #include "layout.h"
 #include "made_document.h"

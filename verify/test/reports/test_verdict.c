@@ -3,8 +3,6 @@
  * verdicts, JUnit files and summaries: test_page_drawn.) */
 #include "test.h"
 
-#include <stdio.h>
-
 #include "verdict.h"
 
 /* What alone makes a verdict: one figure that passed, one order, one run; faults do not. */

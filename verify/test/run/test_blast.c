@@ -4,9 +4,6 @@
  * solutions: the checks `exact blast` and `exact flow`. */
 #include "test.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "disc.h"
 #include "made_cloud.h"
 #include "noh.h"

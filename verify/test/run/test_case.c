@@ -3,11 +3,6 @@
  * key, value and what is allowed. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "cases.h"
 
 #define HEAD                                                                                       \

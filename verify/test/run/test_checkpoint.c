@@ -3,8 +3,6 @@
  * bit or refused with the reason. */
 #include "test.h"
 
-#include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

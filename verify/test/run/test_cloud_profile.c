@@ -4,11 +4,7 @@
  * one. */
 #include "test.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "map.h"
-#include "near.h"
 #include "run_output.h"
 #include "value.h"
 

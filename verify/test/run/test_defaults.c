@@ -5,13 +5,7 @@
  * Argument: CONVENTIONS.md. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "integrator.h"
-#include "near.h"
 #include "run.h"
 
 enum { ROWS = 32, CELL = 40 };

@@ -8,7 +8,6 @@
 #include "equal_masses.h"
 #include "gas.h"
 #include "initial.h"
-#include "near.h"
 
 /* What a seed makes of a coordinate of Sobol's sequence before it is shifted, worked out a second
  * time: thirty binary digits, added without carrying to those of a root times the seed less 1. */

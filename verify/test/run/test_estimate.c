@@ -2,13 +2,10 @@
  * What a run is thought to take, worked out a second time; the limit of what is allowed. */
 #include "test.h"
 
-#include <stdio.h>
-
 #include "allowance.h"
 #include "estimate.h"
 #include "integrator.h"
 #include "memory.h"
-#include "near.h"
 
 enum { N = 3 };
 

@@ -4,12 +4,8 @@
  * That their solutions are exact: the check `exact flow`. */
 #include "test.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "kelvin_helmholtz.h"
 #include "lattice.h"
-#include "near.h"
 #include "prepared.h"
 #include "vortex.h"
 

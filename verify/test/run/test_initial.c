@@ -4,14 +4,10 @@
 #include "test.h"
 
 #include <gsl/gsl_rng.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "gas.h"
 #include "initial.h"
 #include "lattice.h"
-#include "near.h"
 
 TEST(arrays_lie_apart)
 {

@@ -3,10 +3,7 @@
  * compared with, on results that are made here. */
 #include "test.h"
 
-#include <string.h>
-
 #include "judged.h"
-#include "near.h"
 
 enum { N = 5 };
 /* and one behind the last, which is none of them */

@@ -2,9 +2,6 @@
  * How many cells of a lattice fit into a box, and that quasi-random points stay inside it. */
 #include "test.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "lattice.h"
 
 /* As many cells as fit best: 2.5 of them, and a little more or less. */

@@ -3,10 +3,7 @@
  * the mirrored problem), sums over its start, and errors at the centre of a blast. */
 #include "test.h"
 
-#include <math.h>
-
 #include "initial.h"
-#include "near.h"
 #include "run.h"
 
 static struct run resolved(const char *name, int n, const char *const *words)

@@ -3,11 +3,7 @@
  * that hold nobody. */
 #include "test.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "map.h"
-#include "near.h"
 
 /* So wide that no cell is beyond somebody's h. */
 static double wide[200];

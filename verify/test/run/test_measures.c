@@ -3,11 +3,6 @@
  * and error budgets: whole runs, test_mode and the transcripts.) */
 #include "test.h"
 
-#include "near.h"
-
-#include <stdlib.h>
-#include <string.h>
-
 #include "run_part.h"
 #include "shells.h"
 

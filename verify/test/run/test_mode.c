@@ -5,12 +5,7 @@
 
 #include <complex.h>
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "mode.h"
-#include "near.h"
 #include "problem_list.h"
 #include "problem_prepare.h"
 

@@ -3,13 +3,8 @@
  * ones to their order, and what is left out of them is told. */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "draw.h"
 #include "made_place.h"
-#include "near.h"
 #include "own_table.h"
 
 /* rho = 1 + a x + b y + c sin(2 pi x), P = 2 rho, v = (rho, -rho). */

@@ -3,13 +3,9 @@
  * file. */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "initial.h"
-#include "near.h"
 #include "particle_file.h"
 #include "problem.h"
 

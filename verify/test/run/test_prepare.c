@@ -3,12 +3,7 @@
  * makes of the rest, and up to which times it holds. */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "functional.h"
-#include "near.h"
 #include "prepared.h"
 
 TEST(what_cannot_be_is_refused)

@@ -4,14 +4,9 @@
  * dimensions that is not in the list, and rejects copies of descriptors with one planted fault. */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "cases.h"
 #include "functional.h"
 #include "initial.h"
-#include "near.h"
 #include "problem.h"
 #include "problem_list.h"
 #include "problem_prepare.h"

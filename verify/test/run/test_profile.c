@@ -3,9 +3,6 @@
  * where one of its fields bends, and nowhere else; the particles are those of the window. */
 #include "test.h"
 
-#include <string.h>
-
-#include "near.h"
 #include "run_output.h"
 #include "value.h"
 

@@ -3,11 +3,9 @@
  * amplitude and its table. */
 #include "test.h"
 
-#include <math.h>
 #include <stdbool.h>
 
 #include "kelvin_helmholtz.h"
-#include "near.h"
 #include "vortex.h"
 
 /* McNally, Lyra & Passy 2012, eqs 1 and 3: 1.5 in the middle of a layer, half a unit away from it

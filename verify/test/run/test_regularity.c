@@ -3,10 +3,7 @@
  * that are periodic and open; what lies exactly on a limit. */
 #include "test.h"
 
-#include <stdlib.h>
-
 #include "kernel.h"
-#include "near.h"
 #include "problem.h"
 #include "regularity.h"
 #include "run_output.h"

@@ -2,13 +2,8 @@
  * Glasses, pushed apart a second time, and how they are kept. */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "gas.h"
 #include "initial.h"
-#include "near.h"
 #include "regularity.h"
 #include "relax.h"
 

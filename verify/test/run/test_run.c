@@ -3,14 +3,10 @@
  * they have started, what conservation is of, who is told on the way; states of other codes. */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include "initial.h"
-#include "near.h"
 #include "run.h"
 #include "run_part.h"
 

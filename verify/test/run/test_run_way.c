@@ -3,13 +3,9 @@
  * nothing, amplitudes that grow. */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "initial.h"
-#include "near.h"
 #include "precision.h"
 #include "run.h"
 

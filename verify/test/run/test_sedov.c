@@ -4,9 +4,6 @@
  */
 #include "test.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "made_cloud.h"
 #include "sedov.h"
 #include "shells.h"

@@ -3,13 +3,8 @@
  * for what the documentation says; what keys are in words and in documents. */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "certificate.h"
 #include "integrator.h"
-#include "near.h"
 #include "plugin_kernel.h"
 #include "problem.h"
 #include "problem_prepare.h"

@@ -3,12 +3,7 @@
  * undisturbed. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "bench_possible.h"
-#include "near.h"
 
 enum { KEYS = 8 };
 

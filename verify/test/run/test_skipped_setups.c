@@ -4,12 +4,7 @@
  * something skipped each time. Times are short: no scheme has amplified anything yet. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "draw.h"
-#include "near.h"
 #include "settings.h"
 #include "simulation.h"
 

@@ -2,10 +2,6 @@
  * What a run writes as its snapshot in HDF5. */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "run.h"
 #include "snapshot_file.h"
 

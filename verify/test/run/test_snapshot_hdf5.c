@@ -4,10 +4,6 @@
  * way of the linker's --wrap (meson.build). */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "made_place.h"
 #include "snapshot_writer.h"
 

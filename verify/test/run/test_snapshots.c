@@ -2,9 +2,6 @@
  * Snapshots on the way: how many, when, where; what a run keeps to go on from. */
 #include "test.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "made_simulation.h"
 #include "snapshot_writer.h"
 #include "snapshots.h"

@@ -5,9 +5,6 @@
 
 /* after the four that it needs */
 
-#include <math.h>
-
-#include "near.h"
 #include "run.h"
 #include "run_output.h"
 #include "value.h"

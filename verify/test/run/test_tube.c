@@ -2,11 +2,7 @@
  * Tubes: their gases and how their particles are laid, each worked out a second time. */
 #include "test.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "gases.h"
-#include "near.h"
 
 /* ---- the gas ---- */
 

@@ -4,12 +4,9 @@
  * drawn at random or made by hand. */
 #include "test.h"
 
-#include <math.h>
-
 #include <gsl/gsl_rng.h>
 
 #include "gases.h"
-#include "near.h"
 
 /* ---- tubes drawn at random ---- */
 

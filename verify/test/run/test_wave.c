@@ -3,11 +3,7 @@
  * how long it is known. The wave itself is tested in test_simple_wave.c. */
 #include "test.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "lattice.h"
-#include "near.h"
 #include "prepared.h"
 #include "simple_wave.h"
 

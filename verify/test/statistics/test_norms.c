@@ -2,12 +2,8 @@
  * Norms, bins and the worst of many, by hand. */
 #include "test.h"
 
-#include <math.h>
-#include <string.h>
-
 #include <gsl/gsl_errno.h>
 
-#include "near.h"
 #include "norm.h"
 #include "worst.h"
 

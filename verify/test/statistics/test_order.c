@@ -2,13 +2,9 @@
  * Orders, their intervals, classes and gates, and what three values extrapolate to. */
 #include "test.h"
 
-#include <math.h>
-#include <string.h>
-
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_errno.h>
 
-#include "near.h"
 #include "order.h"
 
 /* The 97.5 % point of Student's t for two degrees of freedom, in closed form. */

@@ -2,9 +2,6 @@
  * Errors drawn in pairs: what is better, by how much, and how often chance is taken for it. */
 #include "test.h"
 
-#include <math.h>
-
-#include "near.h"
 #include "paired.h"
 
 /* By hand: ratios 0.8, 0.9, 1.0 with t(0.975, 2) = 4.302653; five with t(0.975, 4) = 2.776445. */

@@ -2,10 +2,6 @@
  * What looks as if nothing had been compared. */
 #include "test.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "near.h"
 #include "suspicion.h"
 
 /* A field is another one's if it is nearer to that one's exact values than half of what these

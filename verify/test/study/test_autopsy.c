@@ -2,12 +2,8 @@
  * The autopsy names what has been planted: into schemes, into an exact solution, into figures. */
 #include "test.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "autopsy_state.h"
 #include "draw.h"
-#include "near.h"
 #include "problem_list.h"
 
 enum { LEVELS = 4, KEYS = 8 };

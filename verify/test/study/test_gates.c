@@ -3,12 +3,7 @@
  * reach, and which conserved quantities are asked of which scheme. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "gates.h"
-#include "near.h"
 #include "value.h"
 
 static const char text[] =

@@ -4,8 +4,6 @@
 #define _GNU_SOURCE /* nftw */
 #include "test.h"
 
-#include <math.h>
-
 #ifdef __linux__
 #include <malloc.h>
 #endif
@@ -15,7 +13,6 @@
 #include <time.h>
 
 #include "made_jobs.h"
-#include "near.h"
 #include "output.h"
 
 TEST(any_number_of_processes)

@@ -6,7 +6,6 @@
 #include "gates.h"
 #include "made_study.h"
 #include "measure.h"
-#include "near.h"
 
 static double factor;
 

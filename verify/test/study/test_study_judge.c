@@ -5,7 +5,6 @@
 
 #include "made_study.h"
 #include "measure.h"
-#include "near.h"
 
 static double mean_log(int f, int m, size_t l, size_t replicates)
 {

@@ -4,7 +4,6 @@
 
 #include "judged.h"
 #include "made_study.h"
-#include "near.h"
 #include "result.h"
 
 static json_t *pack_norms(const double values[NORMS])

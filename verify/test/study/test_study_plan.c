@@ -3,12 +3,8 @@
  * run's result and is its key, how long it will take, and what is refused. */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
-#include "near.h"
 #include "run_job.h"
 #include "run_output.h"
 #include "study.h"

@@ -3,9 +3,6 @@
  * alike; ladders; what is refused. */
 #include "test.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "sweep.h"
 #include "value.h"
 

@@ -3,12 +3,8 @@
  * out already. */
 #include "test.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "check_run.h"
 #include "clock.h"
-#include "near.h"
 
 static const struct check check = {.group = "a", .name = "check", .property = "p"};
 

@@ -2,10 +2,6 @@
  * Which of many failing figures is told first, in which words, and of whom. */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "suite_output.h"
 #include "value.h"
 

@@ -3,15 +3,10 @@
  * in order. Arguments: the groups that meson runs, one test each. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "check_registry.h"
 #include "made_checks.h"
-#include "near.h"
 #include "suite.h"
 #include "suite_output.h"
 #include "worst.h"

@@ -2,9 +2,6 @@
  * Suites that are put together from checks that ran elsewhere. */
 #include "test.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "made_checks.h"
 
 /* Everything that a suite says of its figures and mutants, but for seconds. */

@@ -3,10 +3,6 @@
  * count is another one, word for word as written down in data/suite. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "buffer.h"

@@ -4,7 +4,6 @@
 
 #include "allowance.h"
 #include "made_place.h"
-#include "near.h"
 
 static void put(const char *folder, const char *name, const char *text)
 {

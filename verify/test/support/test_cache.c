@@ -3,8 +3,6 @@
 #define _GNU_SOURCE /* nftw */
 #include "test.h"
 
-#include <math.h>
-
 #include <fcntl.h>
 #include <time.h>
 #include <sys/wait.h>

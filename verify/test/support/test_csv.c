@@ -3,9 +3,7 @@
  * with the line it stood on. What is spoilt at one place must be refused with that place. */
 #include "test.h"
 
-#include <math.h>
 #include <stdbool.h>
-#include <string.h>
 
 #include "csv.h"
 #include "made_place.h"

@@ -3,10 +3,7 @@
  * floor. */
 #include "test.h"
 
-#include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "finding.h"
 

@@ -3,12 +3,8 @@
 #include "test.h"
 
 #include <locale.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
-#include "near.h"
 #include "output.h"
 #include "sha256.h"
 #include "text.h"

@@ -3,10 +3,7 @@
 #include "test.h"
 
 #include <float.h>
-#include <math.h>
-#include <stdlib.h>
 
-#include "near.h"
 #include "result.h"
 #include "value.h"
 
