@@ -2,8 +2,12 @@
 #include "bench_scaling.h"
 
 #include <gsl/gsl_fit.h>
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "bench_skips.h"
 #include "precision.h"
@@ -23,6 +27,7 @@ enum part { PART_SHORT, PART_LONG, PART_RUN, PARTS };
 struct job {
     struct run run;
     uint64_t most_steps; /* 0: to t_end */
+    int processes;       /* that do the work at once, each all of it */
     bool keep;           /* the last state, to compare; else memory is measured without it */
     struct run_result last;
     double peak_rss; /* after the first call */
@@ -53,6 +58,35 @@ static enum status work(void *context, uint64_t times, struct clock_taken *taken
     return STATUS_OK;
 }
 
+/* The work of one thread in several processes at once, which share nothing but the machine: what
+ * threads would gain that never wait for one another. Until the last of them has ended. */
+static enum status work_at_once(void *context, uint64_t times, struct clock_taken *taken,
+                                struct error *error)
+{
+    const struct job *job = context;
+    struct clock_taken own = {0};
+    const double began = clock_wall();
+    int children = 0;
+    for (; children < job->processes - 1; children++) {
+        const pid_t child = fork();
+        if (child < 0) break;
+        if (child == 0) _exit((int)work(context, times, &own, error));
+    }
+    enum status status = STATUS_OK;
+    if (children < job->processes - 1)
+        status = error_set(error, STATUS_ENVIRONMENT, "no process: %s", strerror(errno));
+    if (!status) status = work(context, times, &own, error);
+    for (; children; children--) {
+        int ended;
+        while (wait(&ended) < 0 && errno == EINTR) continue;
+        if (!status && ended)
+            status = error_set(error, STATUS_ENVIRONMENT, "a process of the benchmark ended early");
+    }
+    taken->wall_s += clock_wall() - began;
+    taken->cpu_s += own.cpu_s;
+    return status;
+}
+
 /* Steps of a state in motion: no particle may sleep, and t_end does not come. */
 static enum status prepare(struct job *job, const struct run_settings *settings, size_t n,
                            uint64_t most_steps, int threads, struct error *error)
@@ -72,16 +106,18 @@ static enum status prepare(struct job *job, const struct run_settings *settings,
 
 struct bench {
     struct scaling *scaling;
-    struct job *jobs; /* PARTS a level, then two a thread level: one thread, more */
+    struct job *jobs; /* PARTS a level, then three a thread level: one thread, more, processes */
     struct bench_subject *subjects;
     size_t count;
 };
 
 static enum status add(struct bench *bench, size_t n, uint64_t most_steps, int threads,
-                       struct error *error)
+                       int processes, struct error *error)
 {
     struct job *job = &bench->jobs[bench->count];
-    bench->subjects[bench->count++] = (struct bench_subject){.work = work, .context = job};
+    job->processes = processes;
+    bench->subjects[bench->count++] =
+        (struct bench_subject){.work = processes > 1 ? work_at_once : work, .context = job};
     return prepare(job, bench->scaling->settings, n, most_steps, threads, error);
 }
 
@@ -146,7 +182,7 @@ static void read_level(struct bench *bench, size_t i, size_t first)
 
 static void read_threads(struct bench *bench, size_t i, size_t first, int threads)
 {
-    const struct bench_subject *one = &bench->subjects[first], *more = one + 1;
+    const struct bench_subject *one = &bench->subjects[first], *more = one + 1, *apart = one + 2;
     const struct run_result *last = &bench->jobs[first].last,
                             *with_more = &bench->jobs[first + 1].last;
     bench->scaling->threads[i] = (struct scaling_threads){
@@ -154,6 +190,7 @@ static void read_threads(struct bench *bench, size_t i, size_t first, int thread
         .threads = threads,
         .wall_s = more->time.wall_s / STEPS_THREADS,
         .gain = one->time.wall_s / more->time.wall_s,
+        .limit = threads * one->time.wall_s / apart->time.wall_s,
         .same_bits = !(bench_skips_difference(&last->snapshot, &with_more->snapshot,
                                               domain_length(&last->problem.domain, 0)) > 0)};
 }
@@ -163,7 +200,7 @@ enum status bench_scaling_measure(const struct run_settings *settings, const siz
                                   struct scaling *scaling, struct error *error)
 {
     *scaling = (struct scaling){.settings = settings, .level_count = count};
-    const size_t most = PARTS * count + 2 * THREAD_LEVELS;
+    const size_t most = PARTS * count + 3 * THREAD_LEVELS;
     size_t first[CASE_LADDER_MAX + THREAD_LEVELS];
     struct bench bench = {.scaling = scaling,
                           .jobs = calloc(most, sizeof *bench.jobs),
@@ -172,18 +209,19 @@ enum status bench_scaling_measure(const struct run_settings *settings, const siz
     if (!bench.jobs || !bench.subjects) status = error_set(error, STATUS_ENVIRONMENT, "no memory");
     for (size_t i = 0; i < count && !status; i++) {
         first[i] = bench.count;
-        status = add(&bench, ladder[i], STEPS_SHORT, 1, error);
-        if (!status) status = add(&bench, ladder[i], STEPS_LONG, 1, error);
-        if (!status && ladder[i] <= RUN_N_MAX) status = add(&bench, ladder[i], 0, 1, error);
+        status = add(&bench, ladder[i], STEPS_SHORT, 1, 1, error);
+        if (!status) status = add(&bench, ladder[i], STEPS_LONG, 1, 1, error);
+        if (!status && ladder[i] <= RUN_N_MAX) status = add(&bench, ladder[i], 0, 1, 1, error);
     }
     while (scaling->thread_count < THREAD_LEVELS && count &&
            thread_n[scaling->thread_count] <= ladder[count - 1])
         scaling->thread_count++;
     for (size_t i = 0; i < scaling->thread_count && !status; i++) {
         first[count + i] = bench.count;
-        for (int k = 0; k < 2 && !status; k++) {
-            status = add(&bench, thread_n[i], STEPS_THREADS, k ? threads : 1, error);
-            bench.jobs[bench.count - 1].keep = true;
+        for (int k = 0; k < 3 && !status; k++) {
+            status = add(&bench, thread_n[i], STEPS_THREADS, k == 1 ? threads : 1,
+                         k == 2 ? threads : 1, error);
+            bench.jobs[bench.count - 1].keep = k < 2;
         }
     }
     if (!status) status = bench_measure(bench.subjects, bench.count, rules, error);

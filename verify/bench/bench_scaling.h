@@ -30,6 +30,7 @@ struct scaling_threads {
     size_t n;
     int threads;
     double wall_s, gain; /* of a step with its share of the set-up; one thread over it */
+    double limit;        /* how much more work than one as many processes do in the same time */
     bool same_bits;
 };
 

@@ -40,9 +40,10 @@ void bench_scaling_add_json(const struct scaling *scaling, json_t *document)
     for (size_t i = 0; i < scaling->thread_count; i++) {
         const struct scaling_threads *t = &scaling->threads[i];
         json_array_append_new(
-            threads, json_pack("{s:I, s:i, s:o, s:o, s:b}", "n", (json_int_t)t->n, "threads",
+            threads, json_pack("{s:I, s:i, s:o, s:o, s:o, s:b}", "n", (json_int_t)t->n, "threads",
                                t->threads, "step_wall_s", result_number(t->wall_s), "gain",
-                               result_number(t->gain), "same_bits", t->same_bits));
+                               result_number(t->gain), "gain_limit", result_number(t->limit),
+                               "same_bits", t->same_bits));
     }
     if (scaling->step.n)
         json_array_append_new(exponents, exponent_json("step_cpu_s", &scaling->step));
@@ -95,9 +96,12 @@ void bench_scaling_print(const struct scaling *scaling, const struct table_style
            style->bold, style->end);
     for (size_t i = 0; i < scaling->thread_count; i++) {
         const struct scaling_threads *t = &scaling->threads[i];
-        printf("  n = %-8zu %d threads: %.3e s, %.2f times as fast, %s\n", t->n, t->threads,
-               t->wall_s, t->gain, t->same_bits ? "same bits" : "OTHER BITS");
+        printf("  n = %-8zu %d threads: %.3e s, %.2f times as fast, %s; at most %.2f\n", t->n,
+               t->threads, t->wall_s, t->gain, t->same_bits ? "same bits" : "OTHER BITS", t->limit);
     }
+    printf(
+        "%sat most: what as many runs of one thread at once gain, each in a process of its own%s\n",
+        style->faint, style->end);
 }
 
 enum status bench_scaling_plot(const struct scaling *scaling, const char *path, struct error *error)
