@@ -373,7 +373,7 @@ static void suspect_same(const struct reported *of, json_t *documents[ENTRIES])
     }
 }
 
-/* What gave no result: a piece whose process crashed. */
+/* What gave no result: a piece whose process crashed, or which was refused. */
 static void add_trouble(json_t *results, const char *name, const char *message)
 {
     json_t *list = json_object_get(results, "trouble");
@@ -511,12 +511,13 @@ static json_t *collect(struct report *report, const char *folder, double seconds
     return results;
 }
 
-/* What is no result: no memory, no process. A crash is one, see add_trouble. */
+/* No memory, no process: another day it may be there. A crash is a result, and so is a refusal,
+ * which only an error of the program's own brings about: see add_trouble. */
 static enum status sound(const struct pool *pool, struct error *error)
 {
     for (size_t k = 0; k < pool->count; k++) {
         const struct error *said = &pool->jobs[k].error;
-        if (said->status == STATUS_ENVIRONMENT || said->status == STATUS_BAD_INPUT)
+        if (said->status == STATUS_ENVIRONMENT)
             return error_set(error, said->status, "%s: %.400s", pool->jobs[k].name, said->message);
     }
     return STATUS_OK;

@@ -105,6 +105,15 @@ static struct report *planned(struct made_kept *kept, enum report_mode mode)
     return report;
 }
 
+static void refuse(struct pool *pool, const char *name)
+{
+    struct pool_job *job = pool->jobs;
+    while (strcmp(job->name, name)) job++;
+    json_decref(job->document);
+    job->document = NULL;
+    job->error = (struct error){STATUS_BAD_INPUT, "refused"};
+}
+
 TEST(reports)
 {
     json_t *template = made_template(test_word(1), "pieces.json"), *results;
@@ -124,14 +133,23 @@ TEST(reports)
     add_document(&text, results);
     compare(&kept, "report", 0, &text);
     json_decref(results);
-    for (int i = 0; i < 2; i++) { /* not a result */
-        struct error *said = &pool->jobs[i].error;
-        *said = (struct error){i ? STATUS_BAD_INPUT : STATUS_ENVIRONMENT, "no process"};
-        assert_int_equal(report_judge(report, NULL, &results, &error), said->status);
-        assert_non_null(strstr(error.message, ": no process"));
-        assert_null(results);
-        said->status = STATUS_OK;
-    }
+    struct error *said = &pool->jobs[0].error; /* not a result */
+    *said = (struct error){STATUS_ENVIRONMENT, "no process"};
+    assert_int_equal(report_judge(report, NULL, &results, &error), STATUS_ENVIRONMENT);
+    assert_non_null(strstr(error.message, ": no process"));
+    assert_null(results);
+    said->status = STATUS_OK;
+    refuse(pool, "league of operators"); /* the others are judged all the same */
+    assert_int_equal(report_judge(report, NULL, &results, &error), STATUS_OK);
+    json_t *trouble;
+    size_t k, told = 0;
+    json_array_foreach(json_object_get(results, "trouble"), k, trouble)
+        told += strcmp(value_text(trouble, "message"), "refused") == 0;
+    assert_int_equal(told, 1);
+    json_decref(results);
+    refuse(pool, "sod, n = 198"); /* a run of a study, which has no order without it */
+    assert_int_equal(report_judge(report, NULL, &results, &error), STATUS_BAD_INPUT);
+    assert_null(results);
     report_destroy(report);
     report_destroy(planned(&kept, REPORT_NIGHTLY)); /* it would be judged as by day */
     made_close(&kept);
