@@ -229,3 +229,22 @@ TEST(drawn)
         }
     assert_true(far > 4 && far < draws - 4);
 }
+
+/* In gas that is cold and fast, pressures and energies are measured in what its motion could make
+ * of them. */
+TEST(cold_gas)
+{
+    struct judge_request request = uniform_gas();
+    struct judged judged;
+    request.left = request.right = "4 3 0.001";
+    plant(1, 0, boxes[1]);
+    gas.has_P = true;
+    for (int i = 0; i < N; i++) {
+        gas.rho[i] = 4, gas.v[0][i] = 3, gas.P[i] = uniform(0, 0.5);
+        gas.u[i] = gas.P[i] / (0.4 * gas.rho[i]);
+    }
+    judges(&request, &judged);
+    is_wrong_by(&judged);
+    assert_int_equal(judged.wrong_field, FIELD_INTERNAL_ENERGY);
+    judge_free(&judged);
+}

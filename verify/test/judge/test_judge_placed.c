@@ -237,5 +237,10 @@ TEST(in_vain)
     plant(1, 0, "# box = 2\n");
     for (int i = 2; i < N; i++) gas.x[0][i] = uniform(0, 0.4);
     gas.x[0][1] = 0.4;
-    refuses(&request, "no particle lies in the window, ");
+    refuses(&request, "no particle lies in the window, 0.5 1.5; ");
+    request = (struct judge_request){
+        .case_name = "gresho", .time = {true, 0}, .kernel = -1, .radius = 1e-7};
+    plant(2, 0, "");
+    for (int i = 0; i < N; i++) gas.x[0][i] = gas.x[0][i] / 2 - 0.5, gas.x[1][i] -= 0.5;
+    refuses(&request, "no particle lies in the window, 1e-07 about the middle; ");
 }

@@ -53,6 +53,52 @@ TEST(noise)
 
 /* ---- sums ---- */
 
+/* No momentum where walls or plates or gravity push; what moves with the case's gas is no motion.
+ */
+TEST(sums_of_any_box)
+{
+    enum { FEW = 5 };
+    double x[3][FEW], v[3][FEW], m[FEW], u[FEW], rho[FEW], P[FEW];
+    const struct snapshot s = {.n = FEW,
+                               .x = {x[0], x[1], x[2]},
+                               .v = {v[0], v[1], v[2]},
+                               .m = m,
+                               .u = u,
+                               .rho = rho,
+                               .P = P};
+    struct run_settings settings;
+    struct run run;
+    struct error error = {0};
+    if (run_prepare(&settings, "rest_3d", 0, NULL, &error) || run_resolve(&run, &settings, &error))
+        fail_msg("%s", error.message);
+    for (int draw = 0; draw < 60; draw++) {
+        struct prepared *p = &run.problem;
+        struct conservation got = {0}, want = {0};
+        const double nowhere[3] = {0};
+        for (int d = 0; d < 3; d++) {
+            p->boost[d] = uniform(-1, 1);
+            p->gravity[d] = uniform(0, 1) < 0.3 ? uniform(-2, 2) : 0;
+            p->boundary[d] = (enum boundary)(draw / (d ? 4 * d : 1) % 4);
+        }
+        for (int i = 0; i < FEW; i++) {
+            m[i] = uniform(1, 2), u[i] = uniform(1, 2), rho[i] = 1, P[i] = 1;
+            want.energy += m[i] * u[i];
+            for (int d = 0; d < 3; d++) {
+                const bool pushed = p->boundary[d] == BOUNDARY_REFLECTING ||
+                                    p->boundary[d] == BOUNDARY_FIXED || p->gravity[d] != 0;
+                x[d][i] = uniform(-1, 1), v[d][i] = uniform(-1, 1);
+                want.energy += m[i] * (0.5 * v[d][i] * v[d][i] - p->gravity[d] * x[d][i]);
+                want.kinetic += 0.5 * m[i] * pow(v[d][i] - p->boost[d], 2);
+                want.momentum[d] += pushed ? 0 : m[i] * v[d][i];
+            }
+        }
+        judge_sum(p, &s, nowhere, &got);
+        near_relative(got.kinetic, want.kinetic, 1e-13);
+        near_absolute(got.energy, want.energy, 1e-13);
+        for (int d = 0; d < 3; d++) near_absolute(got.momentum[d], want.momentum[d], 1e-13);
+    }
+}
+
 TEST(sums)
 {
     for (int dim = 1; dim <= 3; dim++)

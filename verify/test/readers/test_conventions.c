@@ -66,7 +66,9 @@ static void sum_densities(const struct snapshot_file *file, const double box[3],
                 rho += file->column[SNAPSHOT_M][sum == DENSITY_MASSES ? j : i] *
                        kernel->w(kernel, r / H, file->dim);
         }
-        file->column[SNAPSHOT_RHO][i] = rho * kernel->constant[file->dim] / pow(H, file->dim);
+        rho *= kernel->constant[file->dim] / pow(H, file->dim);
+        /* what is no gas says nothing of its kernel */
+        file->column[SNAPSHOT_RHO][i] = i < file->gas ? rho : 3 * rho;
     }
 }
 

@@ -60,6 +60,29 @@ TEST(left_out)
 
 /* The same, read in a process of its own, also when that process cannot hand over what it has
  * read. */
+/* The file may begin behind a block of its writer's, of 512 bytes or twice as many, or that. */
+TEST(behind_a_block)
+{
+    static char bytes[1 << 16];
+    struct item items[ITEMS_MAX];
+    struct snapshot_file file;
+    struct error error = {0};
+    items_of(&layouts[0], items);
+    for (size_t block = 512; block <= 4096; block *= 2) {
+        write_items(path_of("a.hdf5"), items, layouts[0].count);
+        FILE *of = fopen(path_of("a.hdf5"), "r+");
+        assert_non_null(of);
+        const size_t n = fread(bytes + block, 1, sizeof bytes - block, of);
+        assert_true(n > 0 && n < sizeof bytes - block);
+        memset(bytes, '#', block);
+        rewind(of);
+        assert_true(fwrite(bytes, 1, block + n, of) == block + n && fclose(of) == 0);
+        if (snapshot_read(path_of("a.hdf5"), &here, &file, &error)) fail_msg("%s", error.message);
+        is_read(&layouts[0], items, &file);
+        snapshot_file_free(&file);
+    }
+}
+
 TEST(apart)
 {
     struct rlimit usual, none;
