@@ -6,6 +6,7 @@
 
 #include "buffer.h"
 #include "findings.h"
+#include "result.h"
 #include "value.h"
 
 enum { STATUSES = FINDING_SKIP + 1 };
@@ -95,19 +96,17 @@ json_t *verdict_make(const json_t *results)
     char *line = buffer_take(&words);
     gates_words(&words, &tally);
     char *judged = buffer_take(&words);
-    json_t *verdict = json_pack(
-        "{s:s, s:s, s:i, s:i, s:i, s:I, s:I, s:i, s:i, s:i, s:i, s:i, s:s, s:i, s:i, s:i, s:i, "
-        "s:o}",
-        "status", json_array_size(failures) ? "fail" : "pass", "headline", line ? line : "",
-        "figures_passed", checks[FINDING_PASS], "figures_failed", checks[FINDING_FAIL],
-        "figures_skipped", checks[FINDING_SKIP], "mutants",
-        json_integer_value(json_object_get(summary, "mutants")), "mutants_detected",
-        json_integer_value(json_object_get(summary, "detected")), "gates_passed",
-        gates[FINDING_PASS], "gates_failed", gates[FINDING_FAIL], "gates_smoke",
-        gates[FINDING_SMOKE], "gates_undetermined", gates[FINDING_UNDETERMINED], "gates_known",
-        gates[FINDING_KNOWN], "gates", judged ? judged : "", "runs", ran, "broke_down",
-        runs[FINDING_FAIL], "faults", faults, "faults_right", tally.faults[FINDING_PASS],
-        "failures", failures);
+    json_t *verdict = result_object(
+        "status=%s headline=%s figures_passed=%d figures_failed=%d figures_skipped=%d mutants=%d "
+        "mutants_detected=%d gates_passed=%d gates_failed=%d gates_smoke=%d gates_undetermined=%d "
+        "gates_known=%d gates=%s runs=%d broke_down=%d faults=%d faults_right=%d failures=%p",
+        json_array_size(failures) ? "fail" : "pass", line ? line : "", checks[FINDING_PASS],
+        checks[FINDING_FAIL], checks[FINDING_SKIP],
+        (int)json_integer_value(json_object_get(summary, "mutants")),
+        (int)json_integer_value(json_object_get(summary, "detected")), gates[FINDING_PASS],
+        gates[FINDING_FAIL], gates[FINDING_SMOKE], gates[FINDING_UNDETERMINED],
+        gates[FINDING_KNOWN], judged ? judged : "", ran, runs[FINDING_FAIL], faults,
+        tally.faults[FINDING_PASS], (void *)failures);
     free(line);
     free(judged);
     return verdict;

@@ -88,8 +88,9 @@ static _Noreturn void child(guard_work *work, const void *context, pid_t parent,
     prepare(parent, printed);
     const enum status status = work(context, &reply, &error);
     fflush(NULL);
-    json_t *document = json_pack("{s:i, s:s, s:o}", "status", (int)status, "message",
-                                 status ? error.message : "", "reply", reply ? reply : json_null());
+    json_t *document =
+        result_object("status=%d message=%s reply=%p", (int)status, status ? error.message : "",
+                      (void *)(reply ? reply : json_null()));
     char *text = document ? result_text(document) : NULL;
     const size_t length = text ? strlen(text) : 0;
     guard_watched->complete = 1;

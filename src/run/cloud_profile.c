@@ -200,12 +200,11 @@ json_t *cloud_profile_json(const struct run_result *result)
     struct curve curve = problem->circular ? over_R : over_x;
     json_t *profile = json_object(), *names = json_array();
     curve.result = result;
-    json_object_set_new(profile, "dim", json_integer(result->problem.domain.dim));
-    json_object_set_new(profile, "map", map_json(result));
+    result_add(profile, "dim=%d map=%p", result->problem.domain.dim, (void *)map_json(result));
     for (int q = 0; q < QUANTITIES && curve.names[q]; q++)
         json_array_append_new(names, json_string(curve.names[q]));
     if (!problem->fieldless && holds(&curve)) {
-        json_object_set_new(profile, "over", json_string(curve.around ? "R" : "x"));
+        result_add(profile, "over=%s", curve.around ? "R" : "x");
         json_object_set(profile, "quantities", names);
         add_particles(&curve, profile);
         json_object_set_new(profile, "exact", exact_json(&curve));

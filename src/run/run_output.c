@@ -11,11 +11,6 @@
 #include "run_output.h"
 #include "snapshot_writer.h"
 
-static void set_number(json_t *object, const char *name, double value)
-{
-    json_object_set_new(object, name, result_number(value));
-}
-
 static json_t *norms_json(const struct norms *of, bool known)
 {
     const double values[NORMS] = {of->l1, of->l2, of->linf, of->particle_mean, of->l1_whole};
@@ -77,18 +72,13 @@ json_t *run_errors_json(const struct run_result *result)
     return errors;
 }
 
-static void set_known(json_t *object, const char *name, bool means, double value)
-{
-    json_object_set_new(object, name, means && !isnan(value) ? result_number(value) : json_null());
-}
-
 void run_add_motion(const struct run_result *result, const struct trace_motion *motion,
                     json_t *conservation)
 {
     const bool steady = result->problem.problem->steady;
-    set_known(conservation, "ke_rebound", steady, motion->rebound);
-    set_known(conservation, "ke_asymmetry", steady, motion->asymmetry);
-    set_known(conservation, "centre", true, motion->centre / result->spacing);
+    result_add(conservation, "ke_rebound=%g? ke_asymmetry=%g? centre=%g?",
+               steady ? motion->rebound : (double)NAN, steady ? motion->asymmetry : (double)NAN,
+               motion->centre / result->spacing);
 }
 
 json_t *run_budget_json(const struct budget *budget)
@@ -102,7 +92,7 @@ json_t *run_budget_json(const struct budget *budget)
                                 result_number(budget->l1[r][f]));
         json_object_set_new(object, budget->regions->names[r], fields);
     }
-    json_object_set_new(object, "still", result_number_or_null(budget->still));
+    result_add(object, "still=%g?", budget->still);
     return object;
 }
 
@@ -116,22 +106,19 @@ static json_t *place_json(int dim, const double x[3])
 json_t *run_window_json(const struct window *window)
 {
     if (window->radius > 0)
-        return json_pack("{s:o, s:f}", "centre", place_json(window->dim, window->centre), "radius",
-                         window->radius);
+        return result_object("centre=%p radius=%g", (void *)place_json(window->dim, window->centre),
+                             window->radius);
     if (window->dim == 1) return json_pack("[f, f]", window->lo[0], window->hi[0]);
-    return json_pack("{s:o, s:o}", "lo", place_json(window->dim, window->lo), "hi",
-                     place_json(window->dim, window->hi));
+    return result_object("lo=%p hi=%p", (void *)place_json(window->dim, window->lo),
+                         (void *)place_json(window->dim, window->hi));
 }
 
 static json_t *conservation_json(const struct run_result *result)
 {
-    json_t *object = json_object();
-    set_number(object, "mass", result->mass);
-    set_number(object, "momentum", result->momentum);
-    json_object_set_new(object, "angular_momentum",
-                        result->problem.domain.dim == 1 ? json_null()
-                                                        : result_number(result->angular_momentum));
-    set_number(object, "energy", result->energy);
+    json_t *angular =
+        result->problem.domain.dim == 1 ? json_null() : result_number(result->angular_momentum);
+    json_t *object = result_object("mass=%g momentum=%g angular_momentum=%p energy=%g",
+                                   result->mass, result->momentum, (void *)angular, result->energy);
     run_add_motion(result, &result->motion, object);
     return object;
 }
@@ -154,8 +141,7 @@ static json_t *matrix_json(const struct run_result *result)
 {
     json_t *matrix = description_json(&result->matrix);
     if (json_is_object(matrix))
-        json_object_set_new(matrix, "fallen_back_most",
-                            json_integer((json_int_t)result->cost.fallen_back_most));
+        result_add(matrix, "fallen_back_most=%zu", (size_t)result->cost.fallen_back_most);
     return matrix;
 }
 
@@ -163,43 +149,36 @@ static json_t *plan_json(const struct run_result *result)
 {
     json_t *lines = json_array();
     for (size_t i = 0; i < result->plan_count; i++)
-        json_array_append_new(lines,
-                              json_pack("{s:s, s:b, s:s}", "pass", result->plan[i].pass, "runs",
-                                        result->plan[i].runs, "why", result->plan[i].why));
+        json_array_append_new(lines, result_object("pass=%s runs=%d? why=%s", result->plan[i].pass,
+                                                   result->plan[i].runs, result->plan[i].why));
     return lines;
 }
 
 void run_add_plan(const struct run_settings *settings, const struct run_result *result,
                   json_t *document)
 {
-    json_object_set_new(document, "case", json_string(settings->file.name));
-    json_object_set_new(document, "title", json_string(settings->file.title));
-    json_object_set_new(document, "settings", settings_json(&result->settings));
-    json_object_set_new(document, "n", json_integer((json_int_t)result->n));
-    json_object_set_new(document, "window", run_window_json(&result->problem.window));
+    result_add(document, "case=%s title=%s settings=%p n=%zu window=%p", settings->file.name,
+               settings->file.title, (void *)settings_json(&result->settings), result->n,
+               (void *)run_window_json(&result->problem.window));
     if (!isnan(result->start.density))
         json_object_set_new(document, "start",
-                            json_pack("{s:o, s:o, s:o}", "density_rms",
-                                      result_number(result->start.density), "gradient_rms",
-                                      result_number(result->start.gradient), "spread",
-                                      result_number(result->start.spread)));
-    json_object_set_new(document, "plan", plan_json(result));
-    json_object_set_new(document, "estimate",
-                        json_pack("{s:o, s:o, s:o}", "memory_bytes",
-                                  result_number(ceil(result->estimate.memory)), "steps",
-                                  result_number(result->estimate.steps), "cpu_s",
-                                  result_number(result->estimate.cpu_s)));
-    json_object_set_new(document, "warnings", json_string(result->warnings));
+                            result_object("density_rms=%g gradient_rms=%g spread=%g",
+                                          result->start.density, result->start.gradient,
+                                          result->start.spread));
+    result_add(document, "plan=%p estimate=%p warnings=%s", (void *)plan_json(result),
+               (void *)result_object("memory_bytes=%g steps=%g cpu_s=%g",
+                                     ceil(result->estimate.memory), result->estimate.steps,
+                                     result->estimate.cpu_s),
+               result->warnings);
 }
 
 json_t *run_functionals_json(const struct run_result *result)
 {
     json_t *list = json_array();
     for (size_t i = 0; i < result->functional_count; i++)
-        json_array_append_new(list,
-                              json_pack("{s:s, s:o, s:o}", "name", result->functionals[i].name,
-                                        "value", result_number(result->functionals[i].value),
-                                        "reference", result_number(result->functionals[i].exact)));
+        json_array_append_new(
+            list, result_object("name=%s value=%g reference=%g", result->functionals[i].name,
+                                result->functionals[i].value, result->functionals[i].exact));
     return list;
 }
 
@@ -209,9 +188,8 @@ void run_add_json(const struct run_settings *settings, const struct run_result *
     const bool broke_down = result->status == STATUS_BROKE_DOWN;
     const char *names[JUDGED_MAX];
     run_add_plan(settings, result, document);
-    set_number(document, "time", result->time);
-    json_object_set_new(document, "status", json_string(broke_down ? "broke_down" : "ok"));
-    if (broke_down) json_object_set_new(document, "message", json_string(result->message));
+    result_add(document, "time=%g status=%s", result->time, broke_down ? "broke_down" : "ok");
+    if (broke_down) result_add(document, "message=%s", result->message);
     json_object_set_new(document, "errors", run_errors_json(result));
     json_object_set_new(document, "conservation", conservation_json(result));
     json_object_set_new(document, "regularity", trace_regularity_json(&result->regularity));
@@ -221,11 +199,9 @@ void run_add_json(const struct run_settings *settings, const struct run_result *
     json_t *measured = json_array();
     const size_t count = judged_names_of(&settings->file, result, names);
     for (size_t i = 0; i < count; i++) json_array_append_new(measured, json_string(names[i]));
-    json_object_set_new(document, "measured", measured);
-    set_number(document, "spacing", result->spacing);
-    set_number(document, "h", result->h);
-    json_object_set_new(document, "budget", run_budget_json(&result->budget));
-    json_object_set_new(document, "suspicion", json_string(result->suspicion));
+    result_add(document, "measured=%p spacing=%g h=%g budget=%p suspicion=%s", (void *)measured,
+               result->spacing, result->h, (void *)run_budget_json(&result->budget),
+               result->suspicion);
 }
 
 enum status run_write_snapshot(const struct run_result *result, const char *path,

@@ -3,6 +3,7 @@
 
 #include "own_reference.h"
 #include "problem_list.h"
+#include "result.h"
 
 static json_t *choices_json(const struct setting_key *key, const struct setting_value *value)
 {
@@ -47,7 +48,6 @@ json_t *settings_json(const struct settings *settings)
         }
         json_object_set_new(object, key->name, item);
     }
-    if (settings->reference > 0)
-        json_object_set_new(object, "reference", json_string(own_name(settings->reference)));
+    if (settings->reference > 0) result_add(object, "reference=%s", own_name(settings->reference));
     return object;
 }

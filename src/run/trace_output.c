@@ -7,10 +7,9 @@
 
 json_t *trace_regularity_json(const struct regularity *regularity)
 {
-    return json_pack(
-        "{s:o, s:o, s:o, s:o, s:o}", "nearest", result_number(regularity->nearest), "spread",
-        result_number(regularity->spread), "paired", result_number(regularity->paired), "density",
-        result_number(regularity->density), "gradient", result_number(regularity->gradient));
+    return result_object("nearest=%g spread=%g paired=%g density=%g gradient=%g",
+                         regularity->nearest, regularity->spread, regularity->paired,
+                         regularity->density, regularity->gradient);
 }
 
 static json_t *seen_json(const struct trace *trace)

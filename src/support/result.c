@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -65,6 +66,52 @@ json_t *result_numbers(const double *values, size_t n)
     json_t *array = json_array();
     for (size_t i = 0; i < n; i++) json_array_append_new(array, result_number(values[i]));
     return array;
+}
+
+/* -1: a value is NULL, for lack of memory. */
+static int add(json_t *object, const char *members, va_list values)
+{
+    int status = 0;
+    for (const char *at = members; *at; at += strcspn(at, " "), at += *at == ' ') {
+        char name[64];
+        const char *kind = strchr(at, '%') + 1;
+        json_t *value;
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(at, "="), at);
+        if (*kind == 'g') {
+            const double number = va_arg(values, double);
+            value = kind[1] == '?' ? result_number_or_null(number) : result_number(number);
+        } else if (*kind == 'd') {
+            const int number = va_arg(values, int);
+            value = kind[1] == '?' ? json_boolean(number) : json_integer(number);
+        } else if (*kind == 'z')
+            value = json_integer((json_int_t)va_arg(values, size_t));
+        else if (*kind == 's')
+            value = json_string(va_arg(values, const char *));
+        else
+            value = va_arg(values, void *);
+        if (json_object_set_new(object, name, value)) status = -1;
+    }
+    return status;
+}
+
+void result_add(json_t *object, const char *members, ...)
+{
+    va_list values;
+    va_start(values, members);
+    add(object, members, values);
+    va_end(values);
+}
+
+json_t *result_object(const char *members, ...)
+{
+    json_t *object = json_object();
+    va_list values;
+    va_start(values, members);
+    const int status = add(object, members, values);
+    va_end(values);
+    if (!status) return object;
+    json_decref(object);
+    return NULL;
 }
 
 char *result_text(const json_t *document)

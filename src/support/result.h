@@ -21,6 +21,15 @@ json_t *result_number_or_null(double value);
 /* An array of n numbers. */
 json_t *result_numbers(const double *values, size_t n);
 
+/* Adds members to an object:
+ *     result_add(object, "case=%s steps=%zu cpu_s=%g", "sod", steps, 0.2);
+ * As printf has it: %s string, %d int, %zu size_t, %g double, as result_number writes it. And %g?
+ * as result_number_or_null writes it, %d? bool, %p a value, whose reference is taken. */
+void result_add(json_t *object, const char *members, ...) __attribute__((format(printf, 2, 3)));
+
+/* A new object with such members; NULL: no memory. */
+json_t *result_object(const char *members, ...) __attribute__((format(printf, 1, 2)));
+
 /* The document as text, 17 significant digits; malloced, NULL: no memory. */
 char *result_text(const json_t *document);
 

@@ -14,19 +14,18 @@ void bench_kernels_add_json(const struct bench_kernels *result, json_t *document
         const struct bench_kernel_row *row = &result->rows[i];
         const bool limit = isfinite(row->limit.ns_per_pair);
         json_array_append_new(
-            rows,
-            json_pack(
-                "{s:s, s:s, s:s, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "kernel",
-                row->kernel, "of", row->on_cloud ? "operator" : "solver", "what", row->what, "dim",
-                row->dim, "pairs_per_particle", result_number(row->pairs), "ns_per_particle",
-                result_number(row->ns_per_particle), "share", result_number_or_null(row->share),
-                "ns_per_pair", result_number(row->specialised.ns_per_pair), "spread",
-                result_number(row->specialised.spread), "ns_per_pair_generic",
-                result_number(row->generic.ns_per_pair), "ns_per_pair_limit",
-                limit ? result_number(row->limit.ns_per_pair) : json_null(), "limit_over_this",
-                limit ? result_number(row->limit.ns_per_pair / row->specialised.ns_per_pair)
-                      : json_null(),
-                "error", row->on_cloud ? result_number(row->error) : json_null()));
+            rows, result_object(
+                      "kernel=%s of=%s what=%s dim=%d pairs_per_particle=%g ns_per_particle=%g "
+                      "share=%g? ns_per_pair=%g spread=%g ns_per_pair_generic=%g "
+                      "ns_per_pair_limit=%p limit_over_this=%p error=%p",
+                      row->kernel, row->on_cloud ? "operator" : "solver", row->what, row->dim,
+                      row->pairs, row->ns_per_particle, row->share, row->specialised.ns_per_pair,
+                      row->specialised.spread, row->generic.ns_per_pair,
+                      (void *)(limit ? result_number(row->limit.ns_per_pair) : json_null()),
+                      (void *)(limit ? result_number(row->limit.ns_per_pair /
+                                                     row->specialised.ns_per_pair)
+                                     : json_null()),
+                      (void *)(row->on_cloud ? result_number(row->error) : json_null())));
     }
     json_object_set_new(document, "kernels", rows);
 }

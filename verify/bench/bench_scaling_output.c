@@ -10,8 +10,8 @@
 
 static json_t *exponent_json(const char *of, const struct order_fit *fit)
 {
-    return json_pack("{s:s, s:o, s:o, s:o}", "of", of, "exponent", result_number(-fit->order),
-                     "low", result_number(-fit->high), "high", result_number(-fit->low));
+    return result_object("of=%s exponent=%g low=%g high=%g", of, -fit->order, -fit->high,
+                         -fit->low);
 }
 
 void bench_scaling_add_json(const struct scaling *scaling, json_t *document)
@@ -20,40 +20,35 @@ void bench_scaling_add_json(const struct scaling *scaling, json_t *document)
            *exponents = json_array();
     for (size_t i = 0; i < scaling->level_count; i++) {
         const struct scaling_level *level = &scaling->levels[i];
-        json_array_append_new(
-            levels,
-            json_pack("{s:I, s:o, s:o, s:o, s:o, s:o}", "n", (json_int_t)level->n, "step_cpu_s",
-                      result_number(level->step_cpu_s), "ns_per_particle",
-                      result_number(1e9 * level->step_cpu_s / (double)level->n), "set_up_cpu_s",
-                      result_number(level->set_up_cpu_s), "spread", result_number(level->spread),
-                      "peak_rss_bytes", result_number(level->peak_rss)));
+        json_array_append_new(levels,
+                              result_object("n=%zu step_cpu_s=%g ns_per_particle=%g "
+                                            "set_up_cpu_s=%g spread=%g peak_rss_bytes=%g",
+                                            level->n, level->step_cpu_s,
+                                            1e9 * level->step_cpu_s / (double)level->n,
+                                            level->set_up_cpu_s, level->spread, level->peak_rss));
         if (!isfinite(level->run_cpu_s)) continue;
-        json_array_append_new(points,
-                              json_pack("{s:o, s:I, s:o, s:o, s:o, s:o, s:I, s:b}", "settings",
-                                        settings_json(&level->settings), "n", (json_int_t)level->n,
-                                        "error", result_number(level->error), "wall_s",
-                                        result_number(level->run_wall_s), "cpu_s",
-                                        result_number(level->run_cpu_s), "pair_interactions",
-                                        result_number(level->run_pairs), "steps",
-                                        (json_int_t)level->run_steps, "on_front", level->on_front));
+        json_array_append_new(points, result_object("settings=%p n=%zu error=%g wall_s=%g cpu_s=%g "
+                                                    "pair_interactions=%g steps=%zu on_front=%d?",
+                                                    (void *)settings_json(&level->settings),
+                                                    level->n, level->error, level->run_wall_s,
+                                                    level->run_cpu_s, level->run_pairs,
+                                                    (size_t)level->run_steps, level->on_front));
     }
     for (size_t i = 0; i < scaling->thread_count; i++) {
         const struct scaling_threads *t = &scaling->threads[i];
         json_array_append_new(
-            threads, json_pack("{s:I, s:i, s:o, s:o, s:o, s:b}", "n", (json_int_t)t->n, "threads",
-                               t->threads, "step_wall_s", result_number(t->wall_s), "gain",
-                               result_number(t->gain), "gain_limit", result_number(t->limit),
-                               "same_bits", t->same_bits));
+            threads,
+            result_object("n=%zu threads=%d step_wall_s=%g gain=%g gain_limit=%g same_bits=%d?",
+                          t->n, t->threads, t->wall_s, t->gain, t->limit, t->same_bits));
     }
     if (scaling->step.n)
         json_array_append_new(exponents, exponent_json("step_cpu_s", &scaling->step));
     if (scaling->run.n) json_array_append_new(exponents, exponent_json("cpu_s", &scaling->run));
-    json_object_set_new(document, "case", json_string(scaling->settings->file.name));
-    json_object_set_new(document, "points", points);
-    json_object_set_new(document, "scaling",
-                        json_pack("{s:o, s:o, s:o, s:o}", "levels", levels, "exponents", exponents,
-                                  "threads", threads, "bytes_per_particle",
-                                  result_number(scaling->bytes_per_particle)));
+    result_add(document, "case=%s points=%p scaling=%p", scaling->settings->file.name,
+               (void *)points,
+               (void *)result_object("levels=%p exponents=%p threads=%p bytes_per_particle=%g",
+                                     (void *)levels, (void *)exponents, (void *)threads,
+                                     scaling->bytes_per_particle));
 }
 
 static void print_exponent(const char *what, const struct order_fit *fit)

@@ -49,30 +49,27 @@ void bench_skips_add_json(const struct bench_skips *result, bool maps, json_t *d
         const struct bench_skip *skip = &result->skips[s];
         const struct bench_shares *shares = skip->shares;
         json_array_append_new(
-            list,
-            json_pack(
-                "{s:s, s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:s, s:o, s:o, s:s}",
-                "case", result->cases[skip->case_index].file.name, "n",
-                (json_int_t)result->n[skip->case_index], "skip", skip->name, "against", skip->keys,
-                "cpu_s", result_number(skip->cpu_s[BENCH_WITHOUT]), "cpu_s_without_skip",
-                result_number(skip->cpu_s[BENCH_WITH]), "saves",
-                result_number(skip->cpu_s[BENCH_WITH] / skip->cpu_s[BENCH_WITHOUT]), "spread",
-                result_number(skip->spread), "skipped_fraction",
-                result_number_or_null(shares ? shares->skipped : (double)NAN), "possible_fraction",
-                result_number_or_null(shares ? shares->possible : (double)NAN),
-                "without_viscosity_fraction", result_number_or_null(skip->without_viscosity),
-                "without_slope_fraction", result_number_or_null(skip->without_slope), "promise",
-                promises[skip->promise], "difference", result_number_or_null(skip->difference),
-                "bound", skip->promise == PROMISE_UNUSED ? json_null() : result_number(skip->bound),
-                "status", skip->kept && skip->enough ? "pass" : "fail"));
+            list, result_object(
+                      "case=%s n=%zu skip=%s against=%s cpu_s=%g cpu_s_without_skip=%g saves=%g "
+                      "spread=%g skipped_fraction=%g? possible_fraction=%g? "
+                      "without_viscosity_fraction=%g? without_slope_fraction=%g? promise=%s "
+                      "difference=%g? bound=%p status=%s",
+                      result->cases[skip->case_index].file.name, result->n[skip->case_index],
+                      skip->name, skip->keys, skip->cpu_s[BENCH_WITHOUT], skip->cpu_s[BENCH_WITH],
+                      skip->cpu_s[BENCH_WITH] / skip->cpu_s[BENCH_WITHOUT], skip->spread,
+                      shares ? shares->skipped : (double)NAN,
+                      shares ? shares->possible : (double)NAN, skip->without_viscosity,
+                      skip->without_slope, promises[skip->promise], skip->difference,
+                      (void *)(skip->promise == PROMISE_UNUSED ? json_null()
+                                                               : result_number(skip->bound)),
+                      skip->kept && skip->enough ? "pass" : "fail"));
         json_t *entry = json_array_get(list, json_array_size(list) - 1);
         if (skip->promise != PROMISE_UNUSED) add_drift(entry, skip);
         if (!shares) continue;
-        json_object_set_new(entry, "allowed_fraction", result_number_or_null(shares->allowed));
-        json_object_set_new(entry, "reached_fraction", result_number(shares->reached));
-        json_object_set_new(entry, "layers_fraction", result_number(shares->layers));
-        json_object_set_new(entry, "possible_by",
-                            json_string(shares->coarse ? "coarse threshold" : "exact solution"));
+        result_add(entry,
+                   "allowed_fraction=%g? reached_fraction=%g layers_fraction=%g possible_by=%s",
+                   shares->allowed, shares->reached, shares->layers,
+                   shares->coarse ? "coarse threshold" : "exact solution");
         if (maps) json_object_set_new(entry, "asleep", map_json(shares));
     }
     json_object_set_new(document, "skips", list);

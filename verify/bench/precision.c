@@ -431,14 +431,12 @@ static json_t *measured_json(const struct bench_subject *subject, const struct j
 {
     const struct precision_point *point = job->point;
     const struct bench_time *time = &subject->time;
-    return json_pack("{s:i, s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:i, s:s, s:o}", "status",
-                     (int)subject->failure.status, "message", subject->failure.message, "n",
-                     (json_int_t)point->n, "error", result_number(point->error), "error_spread",
-                     result_number(point->error_spread), "pairs", result_number_or_null(point->pairs),
-                     "wall_s", result_number(time->wall_s), "cpu_s", result_number(time->cpu_s),
-                     "spread", result_number(time->spread), "times", (json_int_t)time->times,
-                     "samples", time->samples, "error_of", job->judged.name ? job->judged.name : "",
-                     "signal", result_number(job->judged.signal));
+    return result_object("status=%d message=%s n=%zu error=%g error_spread=%g pairs=%g? wall_s=%g "
+                         "cpu_s=%g spread=%g times=%zu samples=%d error_of=%s signal=%g",
+                         (int)subject->failure.status, subject->failure.message, point->n,
+                         point->error, point->error_spread, point->pairs, time->wall_s, time->cpu_s,
+                         time->spread, (size_t)time->times, time->samples,
+                         job->judged.name ? job->judged.name : "", job->judged.signal);
 }
 
 static enum status measure_level(const void *context, json_t **document, struct error *error)

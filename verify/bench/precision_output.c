@@ -260,18 +260,14 @@ static json_t *point_json(const struct precision *precision, const struct precis
 {
     static const char *const references[] = {"", "graded", "seed", "seed_plain"};
     const struct precision_scheme *scheme = &precision->schemes[point->scheme];
-    json_t *item = json_pack(
-        "{s:s, s:o, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:o, s:o, s:b}", "scheme",
-        scheme->label, "settings", settings_json(&point->settings), "n", (json_int_t)point->n,
-        "error", result_number(point->error), "error_over_signal", result_number(point->relative),
-        "error_spread", result_number(point->error_spread), "wall_s",
-        result_number(point->time.wall_s), "cpu_s", result_number(point->time.cpu_s), "spread",
-        result_number(point->time.spread), "samples", point->time.samples, "pair_interactions",
-        result_number_or_null(point->pairs), "figure_of_merit",
-        result_number(precision_merit(precision, point->error, point->time.cpu_s)), "on_front",
-        point->on_front);
-    if (scheme->reference)
-        json_object_set_new(item, "reference", json_string(references[scheme->reference]));
+    json_t *item = result_object(
+        "scheme=%s settings=%p n=%zu error=%g error_over_signal=%g error_spread=%g wall_s=%g "
+        "cpu_s=%g spread=%g samples=%d pair_interactions=%g? figure_of_merit=%g on_front=%d?",
+        scheme->label, (void *)settings_json(&point->settings), point->n, point->error,
+        point->relative, point->error_spread, point->time.wall_s, point->time.cpu_s,
+        point->time.spread, point->time.samples, point->pairs,
+        precision_merit(precision, point->error, point->time.cpu_s), point->on_front);
+    if (scheme->reference) result_add(item, "reference=%s", references[scheme->reference]);
     return item;
 }
 
@@ -284,33 +280,26 @@ void precision_add_json(const struct precision *precision, json_t *document)
     for (size_t i = 0; i < precision->scheme_count; i++) {
         const struct precision_scheme *scheme = &precision->schemes[i];
         if (!scheme->count)
-            json_array_append_new(excluded, json_pack("{s:s, s:s}", "scheme", scheme->label,
-                                                      "reason", scheme->excluded));
+            json_array_append_new(
+                excluded, result_object("scheme=%s reason=%s", scheme->label, scheme->excluded));
         else
-            json_array_append_new(schemes,
-                                  json_pack("{s:s, s:o, s:o}", "scheme", scheme->label,
-                                            "figure_of_merit", result_number(scheme->merit),
-                                            "seed_plain_over_this", result_number(scheme->gain)));
+            json_array_append_new(
+                schemes, result_object("scheme=%s figure_of_merit=%g seed_plain_over_this=%g",
+                                       scheme->label, scheme->merit, scheme->gain));
     }
     for (size_t t = 0; t < PRECISION_TARGETS; t++) {
         const struct precision_way *way = &precision->cheapest[t];
         const bool reached = isfinite(way->cpu_s);
         json_array_append_new(
             ways,
-            json_pack("{s:f, s:o, s:o, s:o}", "target", precision_target(precision, t), "error",
-                      result_number(way->error), "cpu_s",
-                      reached ? result_number(way->cpu_s) : json_null(), "scheme",
-                      reached ? json_string(precision->schemes[way->scheme].label) : json_null()));
+            result_object("target=%g error=%g cpu_s=%p scheme=%p", precision_target(precision, t),
+                          way->error, (void *)(reached ? result_number(way->cpu_s) : json_null()),
+                          (void *)(reached ? json_string(precision->schemes[way->scheme].label)
+                                           : json_null())));
     }
-    json_object_set_new(document, "case", json_string(precision->settings->file.name));
-    json_object_set_new(document, "title", json_string(precision->settings->file.title));
-    json_object_set_new(document, "mean_density", result_number(precision->mean_density));
-    json_object_set_new(document, "signal", result_number(precision->signal));
-    json_object_set_new(document, "dimension", json_integer(precision->dim));
-    json_object_set_new(document, "error_of", json_string(precision->error_of));
-    json_object_set_new(document, "expected_order", json_integer(precision->order));
-    json_object_set_new(document, "points", points);
-    json_object_set_new(document, "schemes", schemes);
-    json_object_set_new(document, "cheapest", ways);
-    json_object_set_new(document, "excluded", excluded);
+    result_add(document, "case=%s title=%s mean_density=%g signal=%g dimension=%d error_of=%s",
+               precision->settings->file.name, precision->settings->file.title,
+               precision->mean_density, precision->signal, precision->dim, precision->error_of);
+    result_add(document, "expected_order=%d points=%p schemes=%p cheapest=%p excluded=%p",
+               precision->order, (void *)points, (void *)schemes, (void *)ways, (void *)excluded);
 }

@@ -123,16 +123,13 @@ static json_t *fault_list(const struct code *code, const bool *which)
 static json_t *gate_json(const struct code *code, const struct calibrate_gate *gate)
 {
     const bool fault = gate->smallest >= 0;
-    return json_pack(
-        "{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:b, s:s}", "name", gate->name,
-        "value", result_number(gate->value), "spread", result_number(gate->spread), "floor",
-        result_number(gate->floor), "least", result_number_or_null(gate->least), "bound",
-        result_number_or_null(gate->bound), "order_low", result_number_or_null(gate->low),
-        "order_high", result_number_or_null(gate->high), "smallest",
-        fault ? json_string(code->faults[gate->smallest].name) : json_null(), "change",
-        fault ? result_number(gate->change[gate->smallest]) : json_null(), "sees",
-        fault_list(code, gate->sees), "order_lost", gate->order_lost, "status",
-        calibrate_sights[gate->sight]);
+    return result_object(
+        "name=%s value=%g spread=%g floor=%g least=%g? bound=%g? order_low=%g? order_high=%g? "
+        "smallest=%p change=%p sees=%p order_lost=%d? status=%s",
+        gate->name, gate->value, gate->spread, gate->floor, gate->least, gate->bound, gate->low,
+        gate->high, (void *)(fault ? json_string(code->faults[gate->smallest].name) : json_null()),
+        (void *)(fault ? result_number(gate->change[gate->smallest]) : json_null()),
+        (void *)fault_list(code, gate->sees), gate->order_lost, calibrate_sights[gate->sight]);
 }
 
 static json_t *fault_json(const struct calibrate *calibrate, const struct calibrate_case *one,
@@ -142,12 +139,12 @@ static json_t *fault_json(const struct calibrate *calibrate, const struct calibr
     json_t *by = json_array();
     for (size_t g = 0; g < one->gate_count; g++)
         if (one->gates[g].sees[f]) json_array_append_new(by, json_string(one->gates[g].name));
-    json_t *fault = json_pack("{s:s, s:s, s:o}", "name", calibrate->code->faults[f].name, "status",
-                              one->breaks[f] ? "failed"
-                              : one->seen[f] ? "seen"
-                                             : "unseen",
-                              "gates", by);
-    if (one->breaks[f]) json_object_set_new(fault, "message", json_string(result->message));
+    json_t *fault = result_object("name=%s status=%s gates=%p", calibrate->code->faults[f].name,
+                                  one->breaks[f] ? "failed"
+                                  : one->seen[f] ? "seen"
+                                                 : "unseen",
+                                  (void *)by);
+    if (one->breaks[f]) result_add(fault, "message=%s", result->message);
     return fault;
 }
 
@@ -164,14 +161,13 @@ void calibrate_add_json(const struct calibrate *calibrate, json_t *document)
             json_array_append_new(faults, fault_json(calibrate, one, f));
         for (size_t l = 0; l < one->of->file.ladder_count; l++)
             json_array_append_new(ladder, json_integer((json_int_t)one->of->file.ladder[l]));
-        json_array_append_new(cases, json_pack("{s:s, s:o, s:o, s:o, s:s}", "case",
-                                               one->of->file.asked, "n", ladder, "gates", gates,
-                                               "faults", faults, "trouble", one->trouble));
+        json_array_append_new(cases, result_object("case=%s n=%p gates=%p faults=%p trouble=%s",
+                                                   one->of->file.asked, (void *)ladder,
+                                                   (void *)gates, (void *)faults, one->trouble));
     }
     if (calibrate->count) {
         const struct run_external *external = &calibrate->cases[0].externals[0].base;
         external->describe(external, document);
     }
-    json_object_set_new(document, "runs", json_integer((json_int_t)calibrate->runs));
-    json_object_set_new(document, "cases", cases);
+    result_add(document, "runs=%zu cases=%p", calibrate->runs, (void *)cases);
 }

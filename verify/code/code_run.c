@@ -437,8 +437,8 @@ static json_t *code_json(const struct code_external *external, const char *comma
 {
     char sum[SHA256_TEXT];
     code_program_sum(external, sum);
-    return json_pack("{s:s, s:s, s:s, s:s}", "title", external->base.title, "command", command,
-                     "sha256", sum, "ic", code_value(&external->of->way, CODE_ic));
+    return result_object("title=%s command=%s sha256=%s ic=%s", external->base.title, command, sum,
+                         code_value(&external->of->way, CODE_ic));
 }
 
 static void add_code(const struct course *course, const char *log, json_t *document)
@@ -446,12 +446,9 @@ static void add_code(const struct course *course, const char *log, json_t *docum
     char *command = code_words_line(course->words);
     json_t *code = code_json(course->external, command ? command : "");
     const struct code_outcome *outcome = &course->outcome;
-    json_object_set_new(code, "log", json_string(log));
-    json_object_set_new(code, "exit_status", json_integer(outcome->exit));
-    json_object_set_new(code, "wall_s", result_number(outcome->wall_s));
-    json_object_set_new(code, "cpu_s", result_number(outcome->cpu_s));
-    if (course->external->work && course->folder[0])
-        json_object_set_new(code, "folder", json_string(course->folder));
+    result_add(code, "log=%s exit_status=%d wall_s=%g cpu_s=%g", log, outcome->exit,
+               outcome->wall_s, outcome->cpu_s);
+    if (course->external->work && course->folder[0]) result_add(code, "folder=%s", course->folder);
     json_object_set_new(document, "code", code);
     free(command);
 }
@@ -523,9 +520,8 @@ static enum status tell_failed(const struct course *course, json_t *document, st
     if (course->run->asked.layers) start.n /= (size_t)course->run->asked.layers;
     run_add_plan(&course->run->asked, &start, document);
     forget(document);
-    json_object_set_new(document, "status", json_string("failed"));
-    json_object_set_new(document, "reason", json_string(code_reason_names[course->reason]));
-    json_object_set_new(document, "message", json_string(error->message));
+    result_add(document, "status=%s reason=%s message=%s", "failed",
+               code_reason_names[course->reason], error->message);
     add_code(course, log ? log : "", document);
     free(log);
     return STATUS_BROKE_DOWN;

@@ -285,9 +285,9 @@ static json_t *describe(const struct judged *judged, const struct run *used)
     char kernel[SETTING_TEXT_MAX], eta[SETTING_TEXT_MAX];
     settings_text(&used->settings, SETTING_kernel, kernel);
     settings_text(&used->settings, SETTING_eta, eta);
-    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:b}", "file", judged->path, "code",
-                     judged->file.code, "verdict", judged->verdict, "kernel", kernel, "eta", eta,
-                     "proved", judged->conventions.known);
+    return result_object("file=%s code=%s verdict=%s kernel=%s eta=%s proved=%d?", judged->path,
+                         judged->file.code, judged->verdict, kernel, eta,
+                         judged->conventions.known);
 }
 
 static enum status examine_theirs(const struct options *options, int n, char **arguments,

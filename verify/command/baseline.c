@@ -70,7 +70,7 @@ static json_t *new_baseline(const json_t *old, const json_t *results, const char
 {
     json_t *baseline = result_new("baseline"), *accepted;
     accepted = old ? json_deep_copy(json_object_get(old, "accepted")) : json_array();
-    json_t *entry = json_pack("{s:s, s:I}", "reason", reason, "changed", (json_int_t)changed);
+    json_t *entry = result_object("reason=%s changed=%zu", reason, changed);
     json_object_set(entry, "date", json_object_get(baseline, "date"));
     json_object_set(entry, "git", json_object_get(results, "git"));
     json_array_append_new(accepted, entry);

@@ -22,10 +22,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
         printf("%zu results, %.3g MB; %zu removed\n", census.entries, census.bytes / 1e6,
                census.removed);
     json_t *document = result_new("cache");
-    json_object_set_new(document, "folder", json_string(arguments[0]));
-    json_object_set_new(document, "entries", json_integer((json_int_t)census.entries));
-    json_object_set_new(document, "removed", json_integer((json_int_t)census.removed));
-    json_object_set_new(document, "bytes", json_real(census.bytes));
+    result_add(document, "folder=%s entries=%zu removed=%zu bytes=%p", arguments[0], census.entries,
+               census.removed, (void *)json_real(census.bytes));
     return options_write(options, document, error);
 }
 

@@ -156,8 +156,7 @@ static enum status calibrate_code(const struct options *options, const struct co
     if (sound && !trouble.status) {
         json_t *document = result_new("calibrate");
         calibrate_add_json(&calibrate, document);
-        json_object_set_new(document, "out", json_string(out));
-        json_object_set_new(document, "status", json_string(status == STATUS_OK ? "pass" : "fail"));
+        result_add(document, "out=%s status=%s", out, status == STATUS_OK ? "pass" : "fail");
         for (size_t c = 0; options->speak && c < calibrate.count; c++)
             print_case(&calibrate, &calibrate.cases[c], options);
         if (options->speak) printf("written: %s\n", out);

@@ -175,10 +175,9 @@ static enum status draw(const struct side *side, size_t r, size_t draws, struct 
 static json_t *result_json(const struct side *side, const struct run_result *r)
 {
     const bool line = r->problem.domain.dim == 1;
-    return json_pack("{s:s, s:I, s:o, s:o, s:o, s:o}", "label", side->name, "n", (json_int_t)r->n,
-                     "time", result_number(r->time), "errors", run_errors_json(r), "functionals",
-                     run_functionals_json(r), "profile",
-                     line ? profile_json(r) : cloud_profile_json(r));
+    return result_object("label=%s n=%zu time=%g errors=%p functionals=%p profile=%p", side->name,
+                         r->n, r->time, (void *)run_errors_json(r), (void *)run_functionals_json(r),
+                         (void *)(line ? profile_json(r) : cloud_profile_json(r)));
 }
 
 /* Errors of fields; where none is exact, of what is. */
@@ -364,9 +363,9 @@ static json_t *side_json(const struct side *side, bool pictures)
 {
     json_t *run = json_copy(side->result);
     if (run && !pictures) json_object_del(run, "profile");
-    return json_pack("{s:s, s:s, s:s, s:o, s:o}", "name", side->name, "of", side->text, "kind",
-                     side->is_snapshot ? "snapshot" : "runs", "settings",
-                     settings_json(&side->first.settings), "first", run);
+    return result_object("name=%s of=%s kind=%s settings=%p first=%p", side->name, side->text,
+                         side->is_snapshot ? "snapshot" : "runs",
+                         (void *)settings_json(&side->first.settings), (void *)run);
 }
 
 static json_t *compare_json(const struct comparison *c, bool pictures)
@@ -376,23 +375,17 @@ static json_t *compare_json(const struct comparison *c, bool pictures)
     for (size_t k = 0; k < c->sides[0].count; k++) {
         const struct paired *of = &c->of[k];
         json_array_append_new(
-            figures,
-            json_pack("{s:s, s:o, s:o, s:o, s:o, s:I, s:s}", "name", c->sides[0].figures[k], "a",
-                      result_number(of->a), "b", result_number(of->b), "change",
-                      result_number(of->change), "half", result_number_or_null(of->half), "draws",
-                      (json_int_t)of->n, "verdict", paired_verdicts[of->verdict]));
+            figures, result_object("name=%s a=%g b=%g change=%g half=%g? draws=%zu verdict=%s",
+                                   c->sides[0].figures[k], of->a, of->b, of->change, of->half,
+                                   of->n, paired_verdicts[of->verdict]));
     }
-    json_object_set_new(document, "case", json_string(c->sides[0].first.asked.file.name));
-    json_object_set_new(document, "dim", json_integer(c->sides[0].first.asked.file.dimension));
-    json_object_set_new(document, "draws", json_integer((json_int_t)c->draws));
-    json_object_set_new(document, "sides", sides);
-    json_object_set_new(document, "comparisons", figures);
-    json_object_set_new(document, "cpu",
-                        isnan(c->cpu) ? json_null()
-                                      : json_pack("{s:o, s:o, s:o}", "ratio", result_number(c->cpu),
-                                                  "low", result_number(c->cpu_low), "high",
-                                                  result_number(c->cpu_high)));
-    json_object_set_new(document, "verdict", json_string(c->verdict));
+    result_add(document, "case=%s dim=%d draws=%zu sides=%p comparisons=%p cpu=%p",
+               c->sides[0].first.asked.file.name, c->sides[0].first.asked.file.dimension, c->draws,
+               (void *)sides, (void *)figures,
+               (void *)(isnan(c->cpu) ? json_null()
+                                      : result_object("ratio=%g low=%g high=%g", c->cpu, c->cpu_low,
+                                                      c->cpu_high)));
+    result_add(document, "verdict=%s", c->verdict);
     return document;
 }
 

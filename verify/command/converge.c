@@ -258,8 +258,7 @@ static enum status serialise_out(struct study *study, const struct options *opti
     pool_free(&pool);
     if (status || !*whole) return status;
     if (study->status == STATUS_BROKE_DOWN)
-        json_object_set_new(document, "status",
-                            json_string(study->settings.external ? "failed" : "broke_down"));
+        result_add(document, "status=%s", study->settings.external ? "failed" : "broke_down");
     study_add_json(study, document);
     const char *message = json_string_value(json_object_get(document, "message"));
     return study->status == STATUS_BROKE_DOWN
@@ -296,8 +295,7 @@ static enum status converge(const struct options *options, int n, char **argumen
         return error->status;
     study.settings.threads = options->threads;
     json_t *document = result_new("converge");
-    json_object_set_new(document, "case", json_string(study.settings.file.name));
-    json_object_set_new(document, "status", json_string("ok"));
+    result_add(document, "case=%s status=%s", study.settings.file.name, "ok");
     struct run as_given;
     struct error trouble = {0};
     if (!run_resolve(&as_given, &study.settings, &trouble))

@@ -22,11 +22,9 @@ static json_t *diff_json(const struct diff *diff, const json_t *old, const json_
                          double threshold)
 {
     json_t *document = result_new("diff");
-    json_object_set_new(document, "of", json_string(value_text_or(new, "command", "?")));
-    json_object_set_new(document, "old_git", json_string(value_text_or(old, "git", "?")));
-    json_object_set_new(document, "new_git", json_string(value_text_or(new, "git", "?")));
-    json_object_set_new(document, "threshold", result_number(threshold));
-    json_object_set_new(document, "problem", json_string(diff->problem));
+    result_add(document, "of=%s old_git=%s new_git=%s threshold=%g problem=%s",
+               value_text_or(new, "command", "?"), value_text_or(old, "git", "?"),
+               value_text_or(new, "git", "?"), threshold, diff->problem);
     diff_add_json(diff, document);
     return document;
 }

@@ -359,12 +359,11 @@ static json_t *points_json(const struct request *r, const struct point_cloud *pc
         for (size_t k = 0; k < pc->fields; k++)
             json_object_set_new(gradients, pc->name[k],
                                 vector(r->dim, answer->gradient + k * (size_t)r->dim, i));
-        json_array_append_new(points, json_pack("{s:o, s:f, s:o, s:i, s:o, s:s}", "x",
-                                                vector(r->dim, (double *const *)pc->csv.values, i),
-                                                "h", pc->h[i], "gradients", gradients, "neighbours",
-                                                (int)point->neighbours, "condition",
-                                                result_number(point->condition), "state",
-                                                operator_state_name(point->state)));
+        json_array_append_new(
+            points, result_object("x=%p h=%g gradients=%p neighbours=%d condition=%g state=%s",
+                                  (void *)vector(r->dim, (double *const *)pc->csv.values, i),
+                                  pc->h[i], (void *)gradients, (int)point->neighbours,
+                                  point->condition, operator_state_name(point->state)));
     }
     return points;
 }
@@ -384,17 +383,17 @@ static enum status write_answer(const struct options *options, const struct requ
 {
     json_t *document = result_new("gradient");
     json_t *content =
-        json_pack("{s:s, s:s, s:i, s:o}", "operator", r->settings.form->member.name, "kernel",
-                  r->kernel.member.name, "dim", r->dim, "points", points_json(r, pc, answer));
+        result_object("operator=%s kernel=%s dim=%d points=%p", r->settings.form->member.name,
+                      r->kernel.member.name, r->dim, (void *)points_json(r, pc, answer));
     json_t *judgements = json_array();
     for (size_t c = 0; c < all->count; c++) {
         const struct judgement *j = &all->of[c];
         json_array_append_new(
             judgements,
-            json_pack("{s:s, s:s, s:i, s:i, s:i, s:o, s:o}", "column", pc->name[j->field], "status",
-                      j->failed ? "fail" : "pass", "judged", (int)j->judged, "failed",
-                      (int)j->failed, "worst_row", (int)j->worst + 1, "departure",
-                      result_number(j->departure), "bound", result_number(j->bound)));
+            result_object(
+                "column=%s status=%s judged=%d failed=%d worst_row=%d departure=%g bound=%g",
+                pc->name[j->field], j->failed ? "fail" : "pass", (int)j->judged, (int)j->failed,
+                (int)j->worst + 1, j->departure, j->bound));
     }
     if (all->count) json_object_set(content, "judgements", judgements);
     json_decref(judgements);

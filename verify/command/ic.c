@@ -43,8 +43,7 @@ static enum status write_document(const struct options *options, const char *for
 {
     json_t *document = result_new("ic");
     run_add_plan(settings, result, document);
-    json_object_set_new(document, "format", json_string(format));
-    json_object_set_new(document, "file", json_string(out));
+    result_add(document, "format=%s file=%s", format, out);
     return options_write(options, document, error);
 }
 

@@ -129,12 +129,10 @@ static json_t *values_json(const struct kernel *kernel, const struct request *re
     json_t *list = json_array();
     for (int i = 0; i < request->n; i++) {
         const double h = request->h, r = request->q[i] * h;
-        json_array_append_new(
-            list, json_pack("{s:o, s:o, s:o, s:o, s:o}", "q", result_number(request->q[i]), "r",
-                            result_number(r), "w",
-                            result_number(kernel_value(kernel, r, h, request->dim)), "dw_dr",
-                            result_number(kernel_dr(kernel, r, h, request->dim)), "dw_dh",
-                            result_number(kernel_dh(kernel, r, h, request->dim))));
+        json_array_append_new(list, result_object("q=%g r=%g w=%g dw_dr=%g dw_dh=%g", request->q[i],
+                                                  r, kernel_value(kernel, r, h, request->dim),
+                                                  kernel_dr(kernel, r, h, request->dim),
+                                                  kernel_dh(kernel, r, h, request->dim)));
     }
     return list;
 }
@@ -142,10 +140,7 @@ static json_t *values_json(const struct kernel *kernel, const struct request *re
 static json_t *document_of(const char *name, const struct request *request, const char *status)
 {
     json_t *document = result_new("kernel");
-    json_object_set_new(document, "kernel", json_string(name));
-    json_object_set_new(document, "dim", json_integer(request->dim));
-    json_object_set_new(document, "h", result_number(request->h));
-    json_object_set_new(document, "status", json_string(status));
+    result_add(document, "kernel=%s dim=%d h=%g status=%s", name, request->dim, request->h, status);
     return document;
 }
 
@@ -161,8 +156,7 @@ static json_t *certificate_document(const struct user_kernel *user,
                           user->found_class};
     for (int i = 0; i < 4; i++)
         if (found[i]) json_array_append_new(derived, json_string(names[i]));
-    if (user->kernel.order)
-        json_object_set_new(document, "sinc_n", json_integer(user->kernel.order));
+    if (user->kernel.order) result_add(document, "sinc_n=%d", user->kernel.order);
     json_object_set_new(document, "derived", derived);
     json_object_set_new(document, "values", values_json(&user->kernel, request));
     certificate_json(certificate, request->h, document);
@@ -199,9 +193,10 @@ static enum status certify(const void *context, json_t **reply, struct error *er
         status = certificate_measure(certificate, &user.kernel, request->dim, &terms, error);
     }
     if (!status) {
-        *reply = json_pack("{s:o, s:o, s:o}", "text", certificate_text(&user, certificate, request),
-                           "document", certificate_document(&user, certificate, request), "curves",
-                           certificate_curves(certificate));
+        *reply = result_object("text=%p document=%p curves=%p",
+                               (void *)certificate_text(&user, certificate, request),
+                               (void *)certificate_document(&user, certificate, request),
+                               (void *)certificate_curves(certificate));
         if (!*reply) status = error_set(error, STATUS_ENVIRONMENT, "no memory for a certificate");
         if (!status && certificate->failed) status = STATUS_CHECK_FAILED;
         certificate_free(certificate);
@@ -223,14 +218,14 @@ static enum status certify_none(const struct request *request, const struct guar
     for (size_t i = 0; i < sizeof unknown / sizeof *unknown; i++)
         json_object_set_new(document, unknown[i], json_null());
     snprintf(text, sizeof text, "%s, dim %d, %s", name, request->dim, verdict->reason);
-    json_array_append_new(checks, json_pack("{s:s, s:s, s:s, s:s, s:i, s:i, s:i, s:s}", "group",
-                                            "kernels", "name", "runs", "subject", text, "property",
-                                            "every call returns", "value", 1, "bound", 0, "floor",
-                                            0, "status", "fail"));
+    json_array_append_new(
+        checks, result_object(
+                    "group=%s name=%s subject=%s property=%s value=%d bound=%d floor=%d status=%s",
+                    "kernels", "runs", text, "every call returns", 1, 0, 0, "fail"));
     json_object_set_new(document, "checks", checks);
     snprintf(text, sizeof text, "%s, %d dimension%s\n\nREJECTED: it %s\n", name, request->dim,
              request->dim > 1 ? "s" : "", verdict->reason);
-    *reply = json_pack("{s:s, s:o}", "text", text, "document", document);
+    *reply = result_object("text=%s document=%p", text, (void *)document);
     return *reply ? STATUS_CHECK_FAILED
                   : error_set(error, STATUS_ENVIRONMENT, "no memory for a certificate");
 }
@@ -239,9 +234,9 @@ static void add_printed(const struct guard_verdict *verdict, json_t *reply)
 {
     char note[400];
     if (!verdict->printed_bytes || !reply) return;
-    json_object_set_new(json_object_get(reply, "document"), "printed",
-                        json_pack("{s:I, s:s}", "bytes", (json_int_t)verdict->printed_bytes, "text",
-                                  verdict->printed));
+    json_object_set_new(
+        json_object_get(reply, "document"), "printed",
+        result_object("bytes=%zu text=%s", verdict->printed_bytes, verdict->printed));
     const char *text = json_string_value(json_object_get(reply, "text"));
     snprintf(note, sizeof note, "note: it printed %zu bytes: %s\n", verdict->printed_bytes,
              verdict->printed);

@@ -198,15 +198,14 @@ static json_t *family_json(const struct family *family)
     json_t *list = json_array();
     for (size_t i = 0; i < family->n; i++) {
         const struct member *member = family->members[i];
-        json_t *item = json_pack("{s:s, s:s, s:s}", "name", member->name, "label", member->label,
-                                 "paper", member->paper);
+        json_t *item =
+            result_object("name=%s label=%s paper=%s", member->name, member->label, member->paper);
         const int key = strcmp(family->name, "keys") == 0 ? setting_find(member->name) : -1;
         if (key >= 0) {
             char allowed[ALLOWED_MAX];
             setting_allowed(&setting_keys[key], allowed, sizeof allowed);
-            json_object_set_new(item, "default", json_string(setting_keys[key].fallback));
-            json_object_set_new(item, "unit", json_string(setting_keys[key].unit));
-            json_object_set_new(item, "allowed", json_string(allowed));
+            result_add(item, "default=%s unit=%s allowed=%s", setting_keys[key].fallback,
+                       setting_keys[key].unit, allowed);
         }
         json_array_append_new(list, item);
     }

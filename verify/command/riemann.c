@@ -42,8 +42,9 @@ static enum status take_sampling(const struct options *options, struct sampling 
                          "riemann: --time %g: allowed: 0 (the initial states) or later", s->time);
     const char *text = options_value(options, "sample");
     if (!text && (options_value(options, "time") || options_value(options, "x0")))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "riemann: --time and --x0 say where and when to sample: they need --sample");
+        return error_set(
+            error, STATUS_BAD_INPUT,
+            "riemann: --time and --x0 say where and when to sample: they need --sample");
     if (!text) return STATUS_OK;
     double v[3];
     if (!text_reals(text, ":", 3, v))
@@ -77,11 +78,8 @@ static json_t *samples_json(const struct riemann_solution *s, const struct sampl
     for (int i = 0; i < sampling->n; i++) {
         const double x = sample_x(sampling, i);
         const struct riemann_state state = riemann_sample(s, x, sampling->x0, sampling->time);
-        json_array_append_new(samples,
-                              json_pack("{s:o, s:o, s:o, s:o}", "x", result_number_or_null(x),
-                                        "density", result_number_or_null(state.rho), "velocity",
-                                        result_number_or_null(state.v), "pressure",
-                                        result_number_or_null(state.P)));
+        json_array_append_new(samples, result_object("x=%g? density=%g? velocity=%g? pressure=%g?",
+                                                     x, state.rho, state.v, state.P));
     }
     return samples;
 }

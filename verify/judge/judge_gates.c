@@ -105,15 +105,12 @@ static json_t *gate_json(const char *name, const json_t *figure, bool least, dou
         snprintf(why, sizeof why, "the order is %.3f, its 95 %% interval %.3f to %.3f", value, low,
                  high);
     }
-    json_t *gate =
-        json_pack("{s:s, s:s, s:o, s:o, s:s, s:s}", "name", name, "relation",
-                  least ? ">=" : "<=", "value", result_number(value), "bound", result_number(bound),
-                  "status", finding_words[status], "source", source);
+    json_t *gate = result_object("name=%s relation=%s value=%g bound=%g status=%s source=%s", name,
+                                 least ? ">=" : "<=", value, bound, finding_words[status], source);
     if (order) {
-        json_object_set_new(gate, "low", result_number(low));
-        json_object_set_new(gate, "high", result_number(high));
+        result_add(gate, "low=%g high=%g", low, high);
     }
-    if (*why) json_object_set_new(gate, "why", json_string(why));
+    if (*why) result_add(gate, "why=%s", why);
     return gate;
 }
 
@@ -231,8 +228,7 @@ static void add_case(const struct judged *main, const json_t *figures, json_t *g
         json_t *found = gates_error(file, &gate, run);
         if (!found) continue;
         say_source(main, &gate, text);
-        json_object_set_new(found, "relation", json_string("<="));
-        json_object_set_new(found, "source", json_string(text));
+        result_add(found, "relation=%s source=%s", "<=", text);
         const json_t *known = json_object_get(found, "known");
         if (known) json_object_set(found, "why", (json_t *)known);
         json_array_append_new(gates, found);
@@ -246,8 +242,7 @@ static void add_case(const struct judged *main, const json_t *figures, json_t *g
         snprintf(text, sizeof text, "case %s: its ladder's order", file->name);
         json_t *found = gate_json(name, order, true, gate->gate.low, text);
         if (*gate->known.why && strcmp(value_text(found, "status"), finding_words[FINDING_PASS])) {
-            json_object_set_new(found, "status", json_string(finding_words[FINDING_KNOWN]));
-            json_object_set_new(found, "why", json_string(gate->known.why));
+            result_add(found, "status=%s why=%s", finding_words[FINDING_KNOWN], gate->known.why);
         }
         json_array_append_new(gates, found);
     }

@@ -14,12 +14,11 @@ static json_t *kernel_json(const struct judged *judged)
     const struct conventions *c = &judged->conventions;
     json_t *candidates = json_array();
     for (size_t k = 0; k < c->count; k++)
-        json_array_append_new(candidates,
-                              json_pack("{s:s, s:s, s:o, s:o}", "name",
-                                        c->candidate[k].kernel.member.name, "density",
-                                        c->candidate[k].sum == DENSITY_MASSES ? "masses" : "number",
-                                        "ratio", result_number(c->candidate[k].ratio), "residual",
-                                        result_number(c->candidate[k].residual)));
+        json_array_append_new(
+            candidates, result_object("name=%s density=%s ratio=%g residual=%g",
+                                      c->candidate[k].kernel.member.name,
+                                      c->candidate[k].sum == DENSITY_MASSES ? "masses" : "number",
+                                      c->candidate[k].ratio, c->candidate[k].residual));
     return json_pack("{s:s, s:o, s:o, s:s, s:s?, s:o, s:o}", "name",
                      c->known ? c->candidate[0].kernel.member.name : "not identifiable", "ratio",
                      c->known ? result_number(c->candidate[0].ratio) : json_null(), "residual",
@@ -35,8 +34,8 @@ static json_t *notes_json(const struct snapshot_notes *notes)
     json_t *list = json_array();
     for (size_t k = 0; k < notes->count; k++)
         json_array_append_new(list,
-                              json_pack("{s:s, s:s, s:s}", "what", notes->note[k].what, "value",
-                                        notes->note[k].value, "evidence", notes->note[k].evidence));
+                              result_object("what=%s value=%s evidence=%s", notes->note[k].what,
+                                            notes->note[k].value, notes->note[k].evidence));
     return list;
 }
 
@@ -46,8 +45,7 @@ static json_t *start_json(const struct judge_start *start)
     static const char *const names[START_FIELDS] = {"velocity", "internal_energy", "mass",
                                                     "pressure"};
     if (!start->looked) return json_null();
-    json_t *of =
-        json_pack("{s:I, s:s}", "wrong", (json_int_t)start->wrong, "message", start->message);
+    json_t *of = result_object("wrong=%zu message=%s", start->wrong, start->message);
     for (int f = 0; f < START_FIELDS; f++)
         json_object_set_new(of, names[f], result_number(start->worst[f]));
     return of;
@@ -79,8 +77,8 @@ json_t *judge_one_json(const struct judged *judged, bool profiles)
 /* Adds what was found: {"name", "status", "message"}. */
 static void add_finding(json_t *findings, const char *name, const char *status, const char *message)
 {
-    json_array_append_new(
-        findings, json_pack("{s:s, s:s, s:s}", "name", name, "status", status, "message", message));
+    json_array_append_new(findings,
+                          result_object("name=%s status=%s message=%s", name, status, message));
 }
 
 /* Of a gate: what was asked for and cannot be told fails, too. */
@@ -150,9 +148,8 @@ static void add_conclusion(json_t *document, const json_t *findings, size_t snap
         used = (size_t)snprintf(text, sizeof text, "%zu of %zu gates pass, %zu cannot tell; ",
                                 gates - silent, gates, silent);
     snprintf(text + used, sizeof text - used, "%s", main->verdict);
-    json_object_set_new(document, "status",
-                        json_string(finding_words[good ? FINDING_PASS : FINDING_FAIL]));
-    json_object_set_new(document, "headline", json_string(text));
+    result_add(document, "status=%s headline=%s", finding_words[good ? FINDING_PASS : FINDING_FAIL],
+               text);
 }
 
 json_t *judge_json(const struct judged *judged, size_t n, json_t *gates, bool profiles)
@@ -160,8 +157,8 @@ json_t *judge_json(const struct judged *judged, size_t n, json_t *gates, bool pr
     const struct judged *main = judge_main(judged, n);
     json_t *document = judge_one_json(main, profiles), *findings = findings_json(judged, n, gates);
     if (!document || !findings) return NULL;
-    json_object_set_new(document, "case", json_string(main->run.asked.file.name));
-    json_object_set_new(document, "settings", settings_json(&main->run.settings));
+    result_add(document, "case=%s settings=%p", main->run.asked.file.name,
+               (void *)settings_json(&main->run.settings));
     struct trace trace;
     json_object_set_new(document, "conservation", judge_conservation(judged, n, &trace));
     if (trace.count)

@@ -120,11 +120,11 @@ static json_t *order_json(const char *field, size_t n, const double *spacing, co
     for (size_t i = 0; i + 1 < n; i++)
         json_array_append_new(pairwise, result_number(log(value[i] / value[i + 1]) /
                                                       log(spacing[i] / spacing[i + 1])));
-    return json_pack("{s:s, s:s, s:o, s:o, s:o, s:o, s:s}", "field", field, "norm", "l1", "order",
-                     fitted ? result_number(fit.order) : json_null(), "low",
-                     fitted ? result_number(fit.low) : json_null(), "high",
-                     fitted ? result_number(fit.high) : json_null(), "pairwise", pairwise, "class",
-                     fitted ? order_class_name(fit.class) : "too few levels");
+    return result_object("field=%s norm=%s order=%p low=%p high=%p pairwise=%p class=%s", field,
+                         "l1", (void *)(fitted ? result_number(fit.order) : json_null()),
+                         (void *)(fitted ? result_number(fit.low) : json_null()),
+                         (void *)(fitted ? result_number(fit.high) : json_null()), (void *)pairwise,
+                         fitted ? order_class_name(fit.class) : "too few levels");
 }
 
 json_t *judge_orders(const struct judged *judged, size_t n)

@@ -166,11 +166,11 @@ json_t *certificate_checks(const struct certificate *c)
         snprintf(subject, sizeof subject, "%s, dim %d, %s", c->kernel->member.name, c->dim,
                  figure->subject);
         json_array_append_new(
-            list, json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:s}", "group", "kernels", "name",
-                            figure->what, "subject", subject, "property", formula_of(figure->what),
-                            "value", result_number(figure->value), "bound",
-                            result_number(figure->bound), "floor", result_number(figure->floor),
-                            "status", finding_words[figure->status]));
+            list,
+            result_object(
+                "group=%s name=%s subject=%s property=%s value=%g bound=%g floor=%g status=%s",
+                "kernels", figure->what, subject, formula_of(figure->what), figure->value,
+                figure->bound, figure->floor, finding_words[figure->status]));
     }
     return list;
 }
@@ -180,9 +180,8 @@ static json_t *lattice_json(const struct certificate *c)
     json_t *list = json_array();
     for (int i = 0; i < CERTIFICATE_WIDTHS; i++)
         json_array_append_new(list,
-                              json_pack("{s:o, s:o, s:o}", "eta", result_number(c->lattice[i].eta),
-                                        "density", result_number(c->lattice[i].density), "gradient",
-                                        result_number(c->lattice[i].gradient)));
+                              result_object("eta=%g density=%g gradient=%g", c->lattice[i].eta,
+                                            c->lattice[i].density, c->lattice[i].gradient));
     return list;
 }
 
@@ -200,33 +199,25 @@ void certificate_json(const struct certificate *c, double h, json_t *document)
     const struct kernel *kernel = c->kernel;
     const struct measure_moments *m = &c->moments;
     const double first = c->fourier.first_negative;
-    json_object_set_new(document, "constant", result_number(kernel->constant[c->dim]));
-    json_object_set_new(document, "normalisation", result_number(m->volume));
-    json_object_set_new(
-        document, "moments",
-        json_pack("{s:o, s:o, s:o, s:o, s:o}", "second", result_number(m->second * h * h), "fourth",
-                  result_number(m->fourth * pow(h, 4)), "sigma", result_number(sqrt(m->second) * h),
-                  "second_over_h2", result_number(m->second), "fourth_over_h4",
-                  result_number(m->fourth)));
-    json_object_set_new(document, "class", json_integer(c->class.class));
-    json_object_set_new(document, "class_declared", json_integer(kernel->smoothness[c->dim]));
+    result_add(
+        document, "constant=%g normalisation=%g moments=%p class=%d class_declared=%d",
+        kernel->constant[c->dim], m->volume,
+        (void *)result_object("second=%g fourth=%g sigma=%g second_over_h2=%g fourth_over_h4=%g",
+                              m->second * h * h, m->fourth * pow(h, 4), sqrt(m->second) * h,
+                              m->second, m->fourth),
+        c->class.class, kernel->smoothness[c->dim]);
     const int knots = kernel->knot_count > 0 ? kernel->knot_count : 0; /* -1: unknown */
-    json_object_set_new(document, "knots", result_numbers(kernel->knots, (size_t)knots));
-    json_object_set_new(document, "fourier",
-                        json_pack("{s:o, s:o, s:o, s:o}", "min", result_number(c->fourier.least),
-                                  "min_kh", result_number(c->fourier.least_at), "first_negative_k",
-                                  result_number_or_null(first / h), "first_negative_kh",
-                                  result_number_or_null(first)));
-    json_object_set_new(document, "pairing_neighbours", result_number_or_null(c->pairing));
-    json_object_set_new(document, "self_term", result_number(kernel_value(kernel, 0, h, c->dim)));
-    json_object_set_new(document, "least_eta", result_number(kernel_least_eta(kernel, c->dim)));
-    json_object_set_new(document, "lattice", lattice_json(c));
-    json_object_set_new(document, "precision",
-                        json_pack("{s:s, s:s}", "values", c->looks_single ? "single" : "double",
-                                  "judged", c->terms.single ? "single" : "double"));
-    json_object_set_new(document, "negative", json_boolean(c->terms.negative));
-    json_object_set_new(document, "resolution", resolution_json(c));
-    json_object_set_new(document, "checks", certificate_checks(c));
+    result_add(document,
+               "knots=%p fourier=%p pairing_neighbours=%g? self_term=%g least_eta=%g lattice=%p",
+               (void *)result_numbers(kernel->knots, (size_t)knots),
+               (void *)result_object("min=%g min_kh=%g first_negative_k=%g? first_negative_kh=%g?",
+                                     c->fourier.least, c->fourier.least_at, first / h, first),
+               c->pairing, kernel_value(kernel, 0, h, c->dim), kernel_least_eta(kernel, c->dim),
+               (void *)lattice_json(c));
+    result_add(document, "precision=%p negative=%d? resolution=%p checks=%p",
+               (void *)result_object("values=%s judged=%s", c->looks_single ? "single" : "double",
+                                     c->terms.single ? "single" : "double"),
+               c->terms.negative, (void *)resolution_json(c), (void *)certificate_checks(c));
 }
 
 /* ---- plot ---- */
@@ -276,12 +267,12 @@ json_t *certificate_curves(const struct certificate *c)
     char title[160];
     snprintf(title, sizeof title, "%s in %d dimension%s, h = 1", c->kernel->member.name, c->dim,
              c->dim > 1 ? "s" : "");
-    json_t *packed = json_pack(
-        "{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "title", title, "q",
-        result_numbers(curves->q, n), "w", result_numbers(curves->w, n), "dw",
-        result_numbers(curves->dw, n), "ddw", result_numbers(curves->ddw, n), "kappa",
-        result_numbers(curves->kappa, WAVES), "transform", result_numbers(curves->transform, WAVES),
-        "first_negative", result_number(c->fourier.first_negative));
+    json_t *packed = result_object(
+        "title=%s q=%p w=%p dw=%p ddw=%p kappa=%p transform=%p first_negative=%g", title,
+        (void *)result_numbers(curves->q, n), (void *)result_numbers(curves->w, n),
+        (void *)result_numbers(curves->dw, n), (void *)result_numbers(curves->ddw, n),
+        (void *)result_numbers(curves->kappa, WAVES),
+        (void *)result_numbers(curves->transform, WAVES), c->fourier.first_negative);
     free(curves);
     return packed;
 }

@@ -38,7 +38,7 @@ static enum status work(const void *path, json_t **reply, struct error *error)
     enum status status = user_kernel_load(&user, path, 0, &terms, error);
     for (int dim = 1; dim <= KERNEL_DIM_MAX && !status; dim++)
         status = add_certificate(&user, dim, list, error);
-    *reply = json_pack("{s:s, s:o}", "name", status ? "" : user.name, "checks", list);
+    *reply = result_object("name=%s checks=%p", status ? "" : user.name, (void *)list);
     if (!status) user_kernel_unload(&user);
     return status;
 }

@@ -144,12 +144,8 @@ static json_t *row_json(const struct claim *claim, const char *row, const struct
     snprintf(command, sizeof command, "sphproof run %s %s", claim->case_name, runs[1].keys);
     counts[answer]++;
     json_t *of = json_object();
-    json_object_set_new(of, "label", json_string(row));
-    json_object_set_new(of, "figure", json_string(claim->figure));
-    json_object_set_new(of, "without", result_number(without));
-    json_object_set_new(of, "with", result_number(with));
-    json_object_set_new(of, "verdict", json_string(words[answer]));
-    json_object_set_new(of, "reproduce", json_string(command));
+    result_add(of, "label=%s figure=%s without=%g with=%g verdict=%s reproduce=%s", row,
+               claim->figure, without, with, words[answer], command);
     return of;
 }
 
@@ -173,12 +169,8 @@ json_t *claims_judge(const struct claims *claims, const struct pool *pool)
         else
             snprintf(verdict, sizeof verdict, "holds in %zu of %zu, the opposite in %zu",
                      counts[HOLDS], all, counts[FAILS]);
-        json_object_set_new(of, "name", json_string(claim->name));
-        json_object_set_new(of, "claim", json_string(claim->text));
-        json_object_set_new(of, "without", json_string(claim->without));
-        json_object_set_new(of, "with", json_string(claim->with));
-        json_object_set_new(of, "verdict", json_string(verdict));
-        json_object_set_new(of, "rows", rows);
+        result_add(of, "name=%s claim=%s without=%s with=%s verdict=%s rows=%p", claim->name,
+                   claim->text, claim->without, claim->with, verdict, (void *)rows);
         json_array_append_new(list, of);
     }
     return list;

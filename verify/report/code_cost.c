@@ -23,12 +23,11 @@ static void add_points(const json_t *study, const char *what, json_t *points)
     const json_t *level;
     size_t l;
     json_array_foreach(json_object_get(study, "levels"), l, level)
-        json_array_append_new(points, json_pack("{s:s, s:o, s:o, s:o, s:o}", "scheme",
-                                                value_text(study, "label"), "n",
-                                                json_incref(json_object_get(level, "n")), "error",
-                                                result_number(error_of(study, what, l)), "cpu_s",
-                                                result_number(value_member(level, "cpu_s")),
-                                                "on_front", json_false()));
+        json_array_append_new(
+            points, result_object(
+                        "scheme=%s n=%p error=%g cpu_s=%g on_front=%p", value_text(study, "label"),
+                        (void *)json_incref(json_object_get(level, "n")), error_of(study, what, l),
+                        value_member(level, "cpu_s"), (void *)json_false()));
 }
 
 /* The document of the study's case. */
@@ -56,7 +55,7 @@ void code_cost_add(json_t *results)
         const char *what = measured ? measured : "density";
         json_t *document = bench_of(bench, study, what);
         json_array_append_new(json_object_get(document, "schemes"),
-                              json_pack("{s:s}", "scheme", value_text(study, "label")));
+                              result_object("scheme=%s", value_text(study, "label")));
         add_points(study, what, json_object_get(document, "points"));
     }
     json_object_set_new(results, "bench", bench);

@@ -52,12 +52,11 @@ json_t *diff_figures_json(const struct diff *diff, size_t most)
     json_t *figures = json_array();
     for (size_t i = 0; i < diff->count && i < most; i++) {
         const struct difference *d = &diff->list[i];
-        json_array_append_new(figures,
-                              json_pack("{s:s, s:o, s:o, s:o, s:o, s:s, s:b}", "path", path_of(d),
-                                        "old", value_json(d->old), "new", value_json(d->new),
-                                        "exact", result_number_or_null(exact_of(d)), "ratio",
-                                        result_number_or_null(ratio_of(d)), "verdict",
-                                        metric_verdicts[d->verdict], "regression", d->regression));
+        json_array_append_new(
+            figures,
+            result_object("path=%s old=%p new=%p exact=%g? ratio=%g? verdict=%s regression=%d?",
+                          path_of(d), (void *)value_json(d->old), (void *)value_json(d->new),
+                          exact_of(d), ratio_of(d), metric_verdicts[d->verdict], d->regression));
     }
     return figures;
 }
@@ -68,16 +67,11 @@ void diff_add_json(const struct diff *diff, json_t *document)
     for (int v = 0; v < READING_VERDICTS; v++)
         json_object_set_new(summary, metric_verdicts[v],
                             json_integer((json_int_t)diff->verdicts[v]));
-    json_object_set_new(summary, "regressions", json_integer((json_int_t)diff->regressions));
-    json_object_set_new(summary, "compared", json_integer((json_int_t)diff->compared));
-    json_object_set_new(summary, "left_out", json_integer((json_int_t)diff->left_out));
-    if (diff->left_out_times)
-        json_object_set_new(summary, "left_out_times",
-                            json_integer((json_int_t)diff->left_out_times));
-    json_object_set_new(document, "status", json_string(diff->well ? "pass" : "fail"));
-    json_object_set_new(document, "problem", json_string(diff->problem));
-    json_object_set_new(document, "figures", diff_figures_json(diff, diff->count));
-    json_object_set_new(document, "summary", summary);
+    result_add(summary, "regressions=%zu compared=%zu left_out=%zu", diff->regressions,
+               diff->compared, diff->left_out);
+    if (diff->left_out_times) result_add(summary, "left_out_times=%zu", diff->left_out_times);
+    result_add(document, "status=%s problem=%s figures=%p summary=%p", diff->well ? "pass" : "fail",
+               diff->problem, (void *)diff_figures_json(diff, diff->count), (void *)summary);
 }
 
 /* ---- table ---- */

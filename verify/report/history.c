@@ -58,14 +58,12 @@ static json_t *line_of(const json_t *results, struct error *error)
     struct metrics metrics;
     const json_t *verdict = json_object_get(results, "verdict");
     if (metric_collect(results, &metrics, error)) return NULL;
-    json_t *line =
-        json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:I, s:o}", "schema", "sphproof-history/1",
-                  "date", value_text(results, "date"), "git", value_text(results, "git"), "mode",
-                  value_text(results, "mode"), "processor",
-                  value_text(json_object_get(results, "machine"), "processor"), "verdict",
-                  value_text(verdict, "status"), "failures",
-                  (json_int_t)json_array_size(json_object_get(verdict, "failures")), "figures",
-                  figures_of(&metrics, results));
+    json_t *line = result_object(
+        "schema=%s date=%s git=%s mode=%s processor=%s verdict=%s failures=%zu figures=%p",
+        "sphproof-history/1", value_text(results, "date"), value_text(results, "git"),
+        value_text(results, "mode"), value_text(json_object_get(results, "machine"), "processor"),
+        value_text(verdict, "status"), json_array_size(json_object_get(verdict, "failures")),
+        (void *)figures_of(&metrics, results));
     metric_free(&metrics);
     if (!line) error_set(error, STATUS_ENVIRONMENT, "no memory for the history");
     return line;
@@ -179,14 +177,15 @@ static json_t *since_last(const json_t *nights, const struct metrics *now)
         if (verdict == VERDICT_SAME) continue;
         const double ratio = new->word || !value ? (double)NAN : new->value / old.value;
         json_array_append_new(
-            moved, json_pack("{s:s, s:o, s:o, s:o, s:s, s:b, s:b}", "path", new->path, "old",
-                             value ? value_of(&old) : json_null(), "new", value_of(new), "ratio",
-                             isfinite(ratio) ? result_number(ratio) : json_null(), "verdict",
-                             metric_verdicts[verdict], "fault", fault && amount > DIFF_THRESHOLD,
-                             "work", new->kind == READING_COUNT));
+            moved,
+            result_object("path=%s old=%p new=%p ratio=%p verdict=%s fault=%d? work=%d?", new->path,
+                          (void *)(value ? value_of(&old) : json_null()), (void *)value_of(new),
+                          (void *)(isfinite(ratio) ? result_number(ratio) : json_null()),
+                          metric_verdicts[verdict], fault && amount > DIFF_THRESHOLD,
+                          new->kind == READING_COUNT));
     }
-    json_t *since = json_pack("{s:s, s:s, s:o}", "date", value_text(last, "date"), "git",
-                              value_text(last, "git"), "figures", sorted(moved, worst_first));
+    json_t *since = result_object("date=%s git=%s figures=%p", value_text(last, "date"),
+                                  value_text(last, "git"), (void *)sorted(moved, worst_first));
     for (int v = 0; v < READING_VERDICTS; v++)
         json_object_set_new(since, metric_verdicts[v], json_integer((json_int_t)verdicts[v]));
     return since;
@@ -231,8 +230,8 @@ static json_t *trend_of(const json_t *nights, const json_t *study)
         snprintf(path, sizeof path, "studies[%s, %s].orders[%s, l1].order", name, label, what);
         json_t *order = series_of(nights, path);
         if (has_points(error) && has_points(order))
-            return json_pack("{s:s, s:s, s:s, s:o, s:o, s:o}", "case", name, "label", label,
-                             "field", what, "n", result_number(n), "error", error, "order", order);
+            return result_object("case=%s label=%s field=%s n=%g error=%p order=%p", name, label,
+                                 what, n, (void *)error, (void *)order);
         json_decref(error);
         json_decref(order);
     }
@@ -259,12 +258,11 @@ static json_t *change_json(const struct metric *metric, const json_t *nights, co
                  after = order ? change->after : exp(change->after);
     const json_t *at = json_array_get(nights, night[change->at]),
                  *last = json_array_get(nights, night[change->at - 1]);
-    return json_pack("{s:s, s:I, s:s, s:s, s:s, s:o, s:o, s:o, s:s}", "path", metric->path, "night",
-                     (json_int_t)night[change->at], "date", value_text(at, "date"), "git",
-                     value_text(at, "git"), "git_before", value_text(last, "git"), "before",
-                     result_number(before), "after", result_number(after), "ratio",
-                     result_number(after / before), "verdict",
-                     (after > before) == order ? "better" : "worse");
+    return result_object(
+        "path=%s night=%zu date=%s git=%s git_before=%s before=%g after=%g ratio=%g verdict=%s",
+        metric->path, night[change->at], value_text(at, "date"), value_text(at, "git"),
+        value_text(last, "git"), before, after, after / before,
+        (after > before) == order ? "better" : "worse");
 }
 
 /* Change points of one figure; nights without it are left out. */
@@ -302,8 +300,8 @@ static json_t *heads(const json_t *nights)
     json_t *list = json_array();
     for (size_t i = 0; i < json_array_size(nights); i++) {
         const json_t *night = json_array_get(nights, i);
-        json_array_append_new(list, json_pack("{s:s, s:s}", "date", value_text(night, "date"),
-                                              "git", value_text(night, "git")));
+        json_array_append_new(list, result_object("date=%s git=%s", value_text(night, "date"),
+                                                  value_text(night, "git")));
     }
     return list;
 }
@@ -327,9 +325,9 @@ enum status history_tell(const json_t *results, const char *path, json_t **histo
                 add_changes(metric, nights, changes);
         }
         *history =
-            json_pack("{s:o, s:I, s:o, s:o, s:o}", "nights", heads(nights), "unreadable",
-                      (json_int_t)unreadable, "since", since_last(nights, &metrics), "trends",
-                      trends(nights, results), "changes", sorted(changes, newest_first));
+            result_object("nights=%p unreadable=%zu since=%p trends=%p changes=%p",
+                          (void *)heads(nights), unreadable, (void *)since_last(nights, &metrics),
+                          (void *)trends(nights, results), (void *)sorted(changes, newest_first));
         changes = NULL;
         metric_free(&metrics);
         if (!*history) status = error_set(error, STATUS_ENVIRONMENT, "no memory for the history");

@@ -173,12 +173,11 @@ static json_t *ladder_json(const struct ladder *ladder, const char *verdict)
     const size_t shown = ladder->first < ladder->count ? ladder->first : ladder->count - 1;
     snprintf(command, sizeof command, "sphproof run %s %s", runs->crowd->case_name,
              runs[shown].keys);
-    return json_pack("{s:s, s:i, s:o, s:o, s:o, s:o, s:o, s:s, s:s}", "kernel", runs->kernel, "dim",
-                     runs->crowd->dim, "first_negative_kh", result_number_or_null(ladder->negative),
-                     "predicted", result_number_or_null(ladder->predicted), "neighbours",
-                     neighbours, "paired", result_numbers(ladder->paired, ladder->count), "nearest",
-                     result_numbers(ladder->nearest, ladder->count), "verdict", verdict,
-                     "reproduce", command);
+    return result_object("kernel=%s dim=%d first_negative_kh=%g? predicted=%g? neighbours=%p "
+                         "paired=%p nearest=%p verdict=%s reproduce=%s",
+                         runs->kernel, runs->crowd->dim, ladder->negative, ladder->predicted,
+                         (void *)neighbours, (void *)result_numbers(ladder->paired, ladder->count),
+                         (void *)result_numbers(ladder->nearest, ladder->count), verdict, command);
 }
 
 /* What all ladders of a gradient say of the claim. */
@@ -230,8 +229,8 @@ static json_t *judge_gradient(const struct pairing *pairing, const char *gradien
     else
         snprintf(verdict, sizeof verdict, "%s",
                  balance.others && balance.kept ? "holds" : "not shown: no other kernel has pairs");
-    return json_pack("{s:s, s:s, s:s, s:f, s:o}", "name", name, "claim", text, "verdict", verdict,
-                     "bound", bound, "ladders", ladders);
+    return result_object("name=%s claim=%s verdict=%s bound=%g ladders=%p", name, text, verdict,
+                         bound, (void *)ladders);
 }
 
 json_t *pairing_judge(const struct pairing *pairing, const struct pool *pool, const json_t *kernels)

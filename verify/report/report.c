@@ -331,8 +331,7 @@ static void describe(const char *command, const struct reported *of, int s, cons
     const struct scheme_label *scheme = scheme_of(of, s);
     snprintf(reproduce, sizeof reproduce, "sphproof %s %s%s%s%s%s", command, of->name, more,
              *scheme->keys ? " " : "", scheme->keys, scheme->option ? scheme->option : "");
-    json_object_set_new(document, "label", json_string(scheme_of(of, s)->label));
-    json_object_set_new(document, "reproduce", json_string(reproduce));
+    result_add(document, "label=%s reproduce=%s", scheme_of(of, s)->label, reproduce);
 }
 
 static void describe_run(const struct reported *of, int s, json_t *document)
@@ -340,7 +339,7 @@ static void describe_run(const struct reported *of, int s, json_t *document)
     char size[40] = "";
     if (*of->size) snprintf(size, sizeof size, " %s", of->size);
     describe("run", of, s, size, document);
-    json_object_set_new(document, "dimension", json_integer(of->dimension));
+    result_add(document, "dimension=%d", of->dimension);
 }
 
 static json_t *study_document(const struct reported *of, int s)
@@ -348,13 +347,11 @@ static json_t *study_document(const struct reported *of, int s)
     const struct study *study = &of->studies[s];
     const struct run_external *external = study->settings.external;
     json_t *document = result_new("converge");
-    json_object_set_new(document, "case", json_string(study->settings.file.name));
-    json_object_set_new(document, "title", json_string(study->settings.file.title));
-    json_object_set_new(document, "status",
-                        json_string(study->status == STATUS_BROKE_DOWN
-                                        ? (external ? "failed" : "broke_down")
-                                    : study->status ? "fail"
-                                                    : "pass"));
+    result_add(document, "case=%s title=%s status=%s", study->settings.file.name,
+               study->settings.file.title,
+               study->status == STATUS_BROKE_DOWN ? (external ? "failed" : "broke_down")
+               : study->status                    ? "fail"
+                                                  : "pass");
     study_add_json(study, document);
     if (external) external->describe(external, document);
     describe("converge", of, s, of->more[s], document);
@@ -369,7 +366,7 @@ static void suspect_same(const struct reported *of, json_t *documents[ENTRIES])
                                   *b = &of->studies[s].results[0];
         char why[SUSPICION_TEXT];
         if (study_suspect_same("the scheme", a, b, why))
-            json_object_set_new(documents[s], "suspicion", json_string(why));
+            result_add(documents[s], "suspicion=%s", why);
     }
 }
 
@@ -378,7 +375,7 @@ static void add_trouble(json_t *results, const char *name, const char *message)
 {
     json_t *list = json_object_get(results, "trouble");
     if (!list) json_object_set_new(results, "trouble", list = json_array());
-    json_array_append_new(list, json_pack("{s:s, s:s}", "name", name, "message", message));
+    json_array_append_new(list, result_object("name=%s message=%s", name, message));
 }
 
 /* In 2D and 3D: what every run conserves, and errors where no ladder is judged. */
@@ -438,9 +435,8 @@ static void add_documents(struct report *report, json_t *results)
         case REPORT_CHECKS:
             if (!verify) {
                 json_object_set_new(results, "verify", verify = result_new("verify"));
-                json_object_set_new(
-                    verify, "reproduce",
-                    json_string(report->nightly ? "sphproof verify --slow" : "sphproof verify"));
+                result_add(verify, "reproduce=%s",
+                           report->nightly ? "sphproof verify --slow" : "sphproof verify");
             }
             report_piece_join(verify, job->document);
             break;
@@ -486,13 +482,11 @@ static void add_own(struct report *report, const char *folder, json_t *results)
 static json_t *collect(struct report *report, const char *folder, double seconds)
 {
     json_t *results = result_new("report"), *studies = json_array();
-    json_object_set_new(results, "mode",
-                        json_string(report->codes     ? "code"
-                                    : report->nightly ? "nightly"
-                                                      : "quick"));
-    json_object_set_new(results, "seconds", result_number(seconds));
-    json_object_set_new(results, "computations", json_integer((json_int_t)report->pool.count));
-    json_object_set_new(results, "found", json_integer((json_int_t)report->pool.found));
+    result_add(results, "mode=%s seconds=%g computations=%zu found=%zu",
+               report->codes     ? "code"
+               : report->nightly ? "nightly"
+                                 : "quick",
+               seconds, report->pool.count, report->pool.found);
     for (size_t c = 0; c < report->case_count; c++) {
         const struct reported *of = &report->cases[c];
         json_t *documents[ENTRIES];

@@ -68,12 +68,10 @@ static enum status compute_kernel(const struct report_piece *piece, json_t **doc
         snprintf(reproduce, sizeof reproduce, "sphproof kernel %s --dim %d", piece->where,
                  piece->dim);
         *document = result_new("kernel");
-        json_object_set_new(*document, "kernel", json_string(piece->where));
-        json_object_set_new(*document, "dim", json_integer(piece->dim));
-        json_object_set_new(*document, "h", result_number(1));
-        json_object_set_new(*document, "values", json_array());
+        result_add(*document, "kernel=%s dim=%d h=%g values=%p", piece->where, piece->dim, 1.0,
+                   (void *)json_array());
         certificate_json(certificate, 1, *document);
-        json_object_set_new(*document, "reproduce", json_string(reproduce));
+        result_add(*document, "reproduce=%s", reproduce);
         certificate_free(certificate);
     }
     free(certificate);
@@ -121,7 +119,7 @@ static enum status compute_bench(const struct report_piece *piece, json_t **docu
                  piece->where, varied, rules.least_s, rules.samples);
         *document = result_new("bench");
         precision_add_json(&precision, *document);
-        json_object_set_new(*document, "reproduce", json_string(reproduce));
+        result_add(*document, "reproduce=%s", reproduce);
     }
     precision_free(&precision);
     free(sweep);
@@ -142,7 +140,7 @@ static enum status compute_skips(const struct report_piece *piece, json_t **docu
         *document = result_new("bench");
         json_object_set_new(*document, "points", json_array());
         bench_skips_add_json(&skips, true, *document);
-        json_object_set_new(*document, "reproduce", json_string(reproduce));
+        result_add(*document, "reproduce=%s", reproduce);
     }
     bench_skips_free(&skips);
     return status;
@@ -164,7 +162,7 @@ static enum status compute_autopsy(const struct report_piece *piece, json_t **do
              *piece->keys ? " " : "", piece->keys, piece->sizes);
     *document = result_new("autopsy");
     autopsy_add_case(&last, &autopsy, *document);
-    json_object_set_new(*document, "reproduce", json_string(reproduce));
+    result_add(*document, "reproduce=%s", reproduce);
     return STATUS_OK;
 }
 
@@ -231,7 +229,7 @@ enum status report_piece_add(struct pool *pool, struct report_piece *piece, stru
 /* Counts each mutant once; it is detected if every entry that has it detected it. */
 static void count_mutants(const json_t *list, json_t *summary)
 {
-    json_int_t mutants = 0, detected = 0;
+    int mutants = 0, detected = 0;
     for (size_t i = 0; i < json_array_size(list); i++) {
         const char *name = value_text(json_array_get(list, i), "mutant");
         bool first = true, everywhere = true;
@@ -244,8 +242,7 @@ static void count_mutants(const json_t *list, json_t *summary)
         mutants += first;
         detected += first && everywhere;
     }
-    json_object_set_new(summary, "mutants", json_integer(mutants));
-    json_object_set_new(summary, "detected", json_integer(detected));
+    result_add(summary, "mutants=%d detected=%d", mutants, detected);
 }
 
 void report_piece_join(json_t *verify, json_t *part)

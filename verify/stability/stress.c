@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "result.h"
 #include "stress_part.h"
 
 enum { STEPS_QUICK = 30000, STEPS_NIGHTLY = 3000000 };
@@ -192,17 +193,15 @@ static json_t *cell_json(const struct stress_cell *cell, const struct pool_job *
     char command[STRESS_COMMAND];
     json_t *settings = json_object(), *entry = json_object();
     stress_command(cell, command);
-    json_object_set_new(settings, "case", json_string(case_of(cell)));
+    result_add(settings, "case=%s", case_of(cell));
     for (size_t i = 0; i < cell->argument_count; i++) {
         const char *argument = cell->arguments[i];
         char key[STRESS_TEXT];
         snprintf(key, sizeof key, "%.*s", (int)strcspn(argument, "="), argument);
         json_object_set_new(settings, key, json_string(argument + strlen(key) + 1));
     }
-    json_object_set_new(entry, "group", json_string(cell->group->member.name));
-    json_object_set_new(entry, "row", json_string(cell->row.label));
-    json_object_set_new(entry, "column", json_string(cell->column->label));
-    json_object_set_new(entry, "settings", settings);
+    result_add(entry, "group=%s row=%s column=%s settings=%p", cell->group->member.name,
+               cell->row.label, cell->column->label, (void *)settings);
     if (job->document)
         json_object_update(entry, job->document);
     else {
@@ -220,7 +219,7 @@ static json_t *cell_json(const struct stress_cell *cell, const struct pool_job *
     if (cell->group->kind == STRESS_PAIRING)
         snprintf(command, sizeof command, "sphproof kernel %s --dim %s", cell->row.label,
                  cell->column->label);
-    json_object_set_new(entry, "command", json_string(command));
+    result_add(entry, "command=%s", command);
     return entry;
 }
 
@@ -272,12 +271,12 @@ static json_t *group_json(const struct stress_group *group, bool nightly)
     json_t *reproduce =
         json_sprintf("sphproof stress %s%s", group->member.name, nightly ? " --nightly" : "");
     json_t *stable = group->kind == STRESS_LATTICE ? json_real(stress_cloud_slowest) : json_null();
-    return json_pack("{s:s, s:o, s:s, s:s, s:s, s:s, s:o, s:o, s:f, s:o}", "number",
-                     number_of(group->kind), "stable_below", stable, "name", group->member.name,
-                     "title", group->member.label, "row_title",
-                     group->row_title ? group->row_title : "scheme", "column_title",
-                     group->column_title, "rows", row_labels(group, nightly), "columns",
-                     column_labels(group, nightly), "bound", group->bound, "reproduce", reproduce);
+    return result_object("number=%s stable_below=%p name=%s title=%s row_title=%s column_title=%s "
+                         "rows=%p columns=%p bound=%g reproduce=%p",
+                         number_of(group->kind), (void *)stable, group->member.name,
+                         group->member.label, group->row_title ? group->row_title : "scheme",
+                         group->column_title, (void *)row_labels(group, nightly),
+                         (void *)column_labels(group, nightly), group->bound, (void *)reproduce);
 }
 
 static const char *outcome_of(const json_t *entry)
@@ -339,10 +338,9 @@ static void compare(const struct stress *stress, const json_t *cells, json_t *do
         }
     }
     json_object_set_new(document, "comparison",
-                        json_pack("{s:I, s:I, s:I, s:I, s:o}", "both_survive", (json_int_t)both,
-                                  "only_default_survives", (json_int_t)only_default,
-                                  "only_seed_survives", (json_int_t)only_seed, "both_break",
-                                  (json_int_t)none, "lost", lost));
+                        result_object("both_survive=%zu only_default_survives=%zu "
+                                      "only_seed_survives=%zu both_break=%zu lost=%p",
+                                      both, only_default, only_seed, none, (void *)lost));
 }
 
 size_t stress_judge(const struct stress *stress, const struct pool *pool, json_t *document)
@@ -369,7 +367,7 @@ size_t stress_judge(const struct stress *stress, const struct pool *pool, json_t
     if (theory) json_object_set_new(document, "atlas", stress_linear_atlas());
     compare(stress, cells, document);
     const size_t wrong = json_array_size(json_object_get(document, "failures"));
-    json_object_set_new(counts, "wrong", json_integer((json_int_t)wrong));
+    result_add(counts, "wrong=%zu", wrong);
     json_object_set_new(document, "summary", counts);
     return wrong;
 }

@@ -160,8 +160,8 @@ static json_t *growth_row(const char *kernel, enum gradient gradient)
         const double rate = growth_at(&scheme, 1.4, scheme.eta);
         json_array_append_new(growth, result_number_or_null(rate));
     }
-    return json_pack("{s:s, s:s, s:o}", "kernel", kernel, "gradient",
-                     scheme_gradient_family.members[gradient]->name, "growth", growth);
+    return result_object("kernel=%s gradient=%s growth=%p", kernel,
+                         scheme_gradient_family.members[gradient]->name, (void *)growth);
 }
 
 /* alpha > 0: viscosity on half of the pairs, and negative growth is damping. */
@@ -181,9 +181,9 @@ static json_t *wave_row(const char *kernel, enum gradient gradient, double eta, 
         json_array_append_new(frequency, result_number(omega));
         json_array_append_new(growth, result_number(rate));
     }
-    return json_pack("{s:s, s:s, s:f, s:f, s:o, s:o, s:o}", "kernel", kernel, "gradient",
-                     scheme_gradient_family.members[gradient]->name, "eta", eta, "alpha", alpha,
-                     "kappa", kappa, "frequency", frequency, "growth", growth);
+    return result_object("kernel=%s gradient=%s eta=%g alpha=%g kappa=%p frequency=%p growth=%p",
+                         kernel, scheme_gradient_family.members[gradient]->name, eta, alpha,
+                         (void *)kappa, (void *)frequency, (void *)growth);
 }
 
 /* Growth over eta and wavenumber, row by row of the wavenumber. */
@@ -206,9 +206,9 @@ static json_t *map_of(const char *kernel, enum gradient gradient)
         for (int i = 0; i < NX; i++)
             json_array_append_new(growth, result_number(fmax(0, rates[i][j])));
     }
-    return json_pack("{s:s, s:s, s:o, s:o, s:o}", "kernel", kernel, "gradient",
-                     scheme_gradient_family.members[gradient]->name, "eta", eta, "kappa", kappa,
-                     "growth", growth);
+    return result_object("kernel=%s gradient=%s eta=%p kappa=%p growth=%p", kernel,
+                         scheme_gradient_family.members[gradient]->name, (void *)eta, (void *)kappa,
+                         (void *)growth);
 }
 
 json_t *stress_linear_atlas(void)
@@ -225,6 +225,6 @@ json_t *stress_linear_atlas(void)
     json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 4.2, 0));
     json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 4.8, 0));
     json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 4.8, 1));
-    return json_pack("{s:o, s:o, s:o, s:o}", "eta", eta, "rows", rows, "waves", waves, "map",
-                     map_of("cubic_spline", GRADIENT_IA));
+    return result_object("eta=%p rows=%p waves=%p map=%p", (void *)eta, (void *)rows, (void *)waves,
+                         (void *)map_of("cubic_spline", GRADIENT_IA));
 }

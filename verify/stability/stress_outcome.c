@@ -8,9 +8,8 @@
 
 json_t *stress_outcome(double predicted, double measured, const char *outcome, const char *reason)
 {
-    return json_pack("{s:o, s:o, s:s, s:s}", "predicted", result_number_or_null(predicted),
-                     "measured", result_number_or_null(measured), "outcome", outcome, "reason",
-                     reason);
+    return result_object("predicted=%g? measured=%g? outcome=%s reason=%s", predicted, measured,
+                         outcome, reason);
 }
 
 const char *stress_outcome_breakdown(const char *message)

@@ -252,8 +252,7 @@ enum status autopsy_ladder(const struct run_settings *settings, const size_t *la
 
 static json_t *order_json(const struct order_fit *fit)
 {
-    return json_pack("{s:o, s:o, s:o}", "order", result_number_or_null(fit->order), "low",
-                     result_number_or_null(fit->low), "high", result_number_or_null(fit->high));
+    return result_object("order=%g? low=%g? high=%g?", fit->order, fit->low, fit->high);
 }
 
 static json_t *parts_json(const struct autopsy_level *level)
@@ -261,11 +260,9 @@ static json_t *parts_json(const struct autopsy_level *level)
     json_t *parts = json_object();
     for (size_t k = 0; k < AUTOPSY_PARTS; k++)
         json_object_set_new(parts, autopsy_part_family.members[k]->name,
-                            json_pack("{s:o, s:o, s:o, s:o}", "size",
-                                      result_number(level->size[k].rms), "noise",
-                                      result_number(level->size[k].noise), "along",
-                                      result_number(level->size[k].along), "share",
-                                      result_number(level->share[k])));
+                            result_object("size=%g noise=%g along=%g share=%g", level->size[k].rms,
+                                          level->size[k].noise, level->size[k].along,
+                                          level->share[k]));
     return parts;
 }
 
@@ -274,9 +271,8 @@ static json_t *power_json(const struct autopsy_power power[AUTOPSY_TERMS])
     json_t *terms = json_object();
     for (size_t k = 0; k < AUTOPSY_TERMS; k++)
         json_object_set_new(terms, autopsy_term_family.members[k]->name,
-                            json_pack("{s:o, s:o, s:o}", "work", result_number(power[k].work),
-                                      "heat", result_number(power[k].heat), "scale",
-                                      result_number(power[k].scale)));
+                            result_object("work=%g heat=%g scale=%g", power[k].work, power[k].heat,
+                                          power[k].scale));
     return terms;
 }
 
@@ -297,9 +293,9 @@ static json_t *level_json(const struct autopsy_level *level)
                    {"jittered", level->jittered},
                    {"density", level->density},
                    {"density_regular", level->density_regular}};
-    json_t *object = json_pack("{s:i, s:o, s:o, s:o}", "n", (int)level->n, "parts",
-                               parts_json(level), "power", power_json(level->power), "regularity",
-                               trace_regularity_json(&level->regularity));
+    json_t *object = result_object("n=%d parts=%p power=%p regularity=%p", (int)level->n,
+                                   (void *)parts_json(level), (void *)power_json(level->power),
+                                   (void *)trace_regularity_json(&level->regularity));
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
         json_object_set_new(object, numbers[k].name, result_number(numbers[k].value));
     return object;
@@ -316,10 +312,9 @@ static json_t *shares_json(const struct autopsy *autopsy)
             if (autopsy->theirs && (k == AUTOPSY_OF_VISCOSITY || k == AUTOPSY_OF_TIME_STEP))
                 continue;
             json_t *entry = order_json(&autopsy->share_orders[k]);
-            json_object_set_new(entry, "part", json_string(autopsy_share_family.members[k]->name));
-            json_object_set_new(entry, "n", json_integer((json_int_t)level->n));
-            json_object_set_new(entry, "share", result_number(share));
-            json_object_set_new(entry, "error", result_number(share * level->error[0]));
+            result_add(entry, "part=%s n=%zu share=%g error=%g",
+                       autopsy_share_family.members[k]->name, level->n, share,
+                       share * level->error[0]);
             json_array_append_new(shares, entry);
         }
     return shares;
@@ -328,9 +323,8 @@ static json_t *shares_json(const struct autopsy *autopsy)
 void autopsy_add_case(const struct run *finest, const struct autopsy *autopsy, json_t *document)
 {
     json_t *levels = json_array(), *orders = json_object();
-    json_object_set_new(document, "case", json_string(finest->asked.file.name));
-    json_object_set_new(document, "title", json_string(finest->asked.file.title));
-    json_object_set_new(document, "settings", settings_json(&finest->settings));
+    result_add(document, "case=%s title=%s settings=%p", finest->asked.file.name,
+               finest->asked.file.title, (void *)settings_json(&finest->settings));
     for (size_t l = 0; l < autopsy->count; l++)
         json_array_append_new(levels, level_json(&autopsy->levels[l]));
     json_object_set_new(orders, "error", order_json(&autopsy->order));
@@ -340,17 +334,11 @@ void autopsy_add_case(const struct run *finest, const struct autopsy *autopsy, j
     for (size_t k = 0; k < AUTOPSY_PARTS; k++)
         json_object_set_new(orders, autopsy_part_family.members[k]->name,
                             order_json(&autopsy->orders[k]));
-    json_object_set_new(document, "dim", json_integer(autopsy->dim));
-    json_object_set_new(document, "shares", shares_json(autopsy));
-    json_object_set_new(document, "levels", levels);
-    json_object_set_new(document, "orders", orders);
+    result_add(document, "dim=%d shares=%p levels=%p orders=%p", autopsy->dim,
+               (void *)shares_json(autopsy), (void *)levels, (void *)orders);
     if (!autopsy->theirs)
         json_object_set_new(document, "trace", trace_json(&autopsy->trace, autopsy->dim));
-    json_object_set_new(document, "lost", json_boolean(autopsy->lost));
-    json_object_set_new(document, "cause",
-                        json_string(autopsy_part_family.members[autopsy->cause]->name));
-    json_object_set_new(document, "floor", json_boolean(autopsy->floor));
-    json_object_set_new(document, "from",
-                        json_integer((json_int_t)autopsy->levels[autopsy->from].n));
-    json_object_set_new(document, "sentence", json_string(autopsy->sentence));
+    result_add(document, "lost=%d? cause=%s floor=%d? from=%zu sentence=%s", autopsy->lost,
+               autopsy_part_family.members[autopsy->cause]->name, autopsy->floor,
+               autopsy->levels[autopsy->from].n, autopsy->sentence);
 }

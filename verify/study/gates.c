@@ -79,10 +79,10 @@ static json_t *weighed_json(json_t *name, double value, double bound,
     const enum finding_status status = value <= bound                ? weighed
                                        : gates_know(known, 1, value) ? FINDING_KNOWN
                                                                      : FINDING_FAIL;
-    json_t *gate = json_pack("{s:o, s:o, s:o, s:s}", "name", name, "value", result_number(value),
-                             "bound", result_number(bound), "status", finding_words[status]);
-    if (status == FINDING_KNOWN) json_object_set_new(gate, "known", json_string(known->why));
-    if (status == FINDING_SMOKE) json_object_set_new(gate, "why", json_string(why));
+    json_t *gate = result_object("name=%p value=%g bound=%g status=%s", (void *)name, value, bound,
+                                 finding_words[status]);
+    if (status == FINDING_KNOWN) result_add(gate, "known=%s", known->why);
+    if (status == FINDING_SMOKE) result_add(gate, "why=%s", why);
     return gate;
 }
 

@@ -81,11 +81,11 @@ static json_t *reply_of(const struct pool_job *job, const struct cache *cache)
     struct error error = {0}, trouble = {0};
     const enum status status = job->compute(job->context, &document, &error);
     json_t *reply =
-        json_pack("{s:i, s:s, s:o}", "status", (int)status, "message", status ? error.message : "",
-                  "document", document ? document : json_null());
+        result_object("status=%d message=%s document=%p", (int)status, status ? error.message : "",
+                      (void *)(document ? document : json_null()));
     const bool result = status != STATUS_ENVIRONMENT && status != STATUS_BAD_INPUT;
     if (reply && result && cache && job->key && cache_store(cache, job->key, reply, &trouble))
-        json_object_set_new(reply, "note", json_string(trouble.message));
+        result_add(reply, "note=%s", trouble.message);
     return reply;
 }
 

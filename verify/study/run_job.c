@@ -12,9 +12,9 @@
 char *run_job_key(const struct run *run, const char *kind, struct error *error)
 {
     const struct case_file *file = &run->asked.file;
-    json_t *key = json_pack("{s:s, s:s, s:s, s:i, s:b, s:o}", "kind", kind, "case", file->name,
-                            "title", file->title, "dimension", file->dimension, "any_window",
-                            run->asked.any_window, "settings", settings_json(&run->settings));
+    json_t *key = result_object("kind=%s case=%s title=%s dimension=%d any_window=%d? settings=%p",
+                                kind, file->name, file->title, file->dimension,
+                                run->asked.any_window, (void *)settings_json(&run->settings));
     /* what a file of particles holds decides the result, not its name alone */
     if (key && run->settings.file[0])
         json_object_set_new(key, "content",

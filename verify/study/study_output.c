@@ -8,11 +8,6 @@
 #include "judged.h"
 #include "result.h"
 
-static void set(json_t *object, const char *name, double value)
-{
-    json_object_set_new(object, name, result_number(value));
-}
-
 static json_t *norms_json(const double values[NORMS], bool known)
 {
     json_t *norms = json_object();
@@ -42,11 +37,10 @@ static json_t *level_json(const struct study *study, const struct study_level *l
                         line && problem_knows(problem, FIELD_DENSITY)
                             ? result_number(level->binned_density_l1)
                             : json_null());
-    json_t *item = json_pack("{s:I, s:o, s:o, s:o, s:o, s:o}", "n", (json_int_t)level->n, "h",
-                             result_number(level->h), "spacing", result_number(level->spacing),
-                             "errors", errors, "cpu_s", result_number(level->cpu_s), "budget",
-                             run_budget_json(&level->budget));
-    json_object_set_new(item, "replicates", json_integer((json_int_t)study->replicates));
+    json_t *item = result_object("n=%zu h=%g spacing=%g errors=%p cpu_s=%g budget=%p", level->n,
+                                 level->h, level->spacing, (void *)errors, level->cpu_s,
+                                 (void *)run_budget_json(&level->budget));
+    result_add(item, "replicates=%zu", study->replicates);
     if (study->replicates > 1) {
         json_object_set(item, "spread", spread);
         json_object_set_new(
@@ -62,20 +56,17 @@ static json_t *order_json(const struct study_order *order, const char *what, con
     json_t *gate = json_null();
     json_t *pairwise = result_numbers(order->fit.pairwise, order->fit.n ? order->fit.n - 1 : 0);
     if (order->status != FINDING_NONE)
-        gate =
-            json_pack("{s:o, s:o, s:o}", "low", result_number(order->gate.low), "high",
-                      result_number(order->gate.high), "bound", result_number(order->gate.bound));
+        gate = result_object("low=%g high=%g bound=%g", order->gate.low, order->gate.high,
+                             order->gate.bound);
     if (order->status != FINDING_NONE && order->least > 0)
-        json_object_set_new(gate, "least", result_number(order->least));
-    json_t *item = json_pack("{s:s, s:s, s:o, s:o, s:o, s:o, s:s, s:o, s:s}", "field", what, "norm",
-                             norm, "order", result_number(order->fit.order), "low",
-                             result_number(order->fit.low), "high", result_number(order->fit.high),
-                             "pairwise", pairwise, "class", order_class_name(order->fit.class),
-                             "gate", gate, "status", finding_words[order->status]);
+        result_add(gate, "least=%g", order->least);
+    json_t *item = result_object(
+        "field=%s norm=%s order=%g low=%g high=%g pairwise=%p class=%s gate=%p status=%s", what,
+        norm, order->fit.order, order->fit.low, order->fit.high, (void *)pairwise,
+        order_class_name(order->fit.class), (void *)gate, finding_words[order->status]);
     if (order->status != FINDING_NONE && order->status != FINDING_PASS)
-        json_object_set_new(item, "why", json_string(order->why));
-    if (order->status == FINDING_KNOWN)
-        json_object_set_new(item, "known", json_string(order->known));
+        result_add(item, "why=%s", order->why);
+    if (order->status == FINDING_KNOWN) result_add(item, "known=%s", order->known);
     return item;
 }
 
@@ -85,20 +76,18 @@ static json_t *functional_json(const struct study_result *result, size_t i)
     json_t *values = json_array();
     for (size_t l = 0; l < result->level_count; l++)
         json_array_append_new(values, result_number(result->levels[l].functionals[i]));
-    return json_pack(
-        "{s:s, s:o, s:o, s:o, s:o, s:o, s:s, s:o}", "name", result->functional_names[i], "values",
-        values, "extrapolated", result_number(e->value), "gci", result_number(e->gci_fine),
-        "gci_coarse", result_number(e->gci_coarse), "order", result_number(e->order), "class",
-        order_class_name(e->class), "exact", result_number(result->functional_exact[i]));
+    return result_object(
+        "name=%s values=%p extrapolated=%g gci=%g gci_coarse=%g order=%g class=%s exact=%g",
+        result->functional_names[i], (void *)values, e->value, e->gci_fine, e->gci_coarse, e->order,
+        order_class_name(e->class), result->functional_exact[i]);
 }
 
 static json_t *floor_json(const struct study_result *result)
 {
-    return json_pack("{s:s, s:o, s:o, s:o, s:b, s:s}", "kernel", result->scheme.kernel.member.name,
-                     "eta", result_number(result->scheme.eta), "density",
-                     result_number(result->floor_density), "gradient",
-                     result_number(result->floor_gradient), "explains", result->floor_explains,
-                     "suspicion", result->suspicion);
+    return result_object("kernel=%s eta=%g density=%g gradient=%g explains=%d? suspicion=%s",
+                         result->scheme.kernel.member.name, result->scheme.eta,
+                         result->floor_density, result->floor_gradient, result->floor_explains,
+                         result->suspicion);
 }
 
 /* Where the finest level's L1(density) comes from, and how fast each part falls. */
@@ -112,13 +101,9 @@ static json_t *budget_orders_json(const struct study_result *result)
     for (size_t r = 0; finest->budget.regions->names[r]; r++) {
         const struct order_fit *fit = &result->regions[r];
         const double part = finest->budget.l1[r][FIELD_DENSITY];
-        json_t *region = json_pack("{s:s, s:o, s:o}", "region", finest->budget.regions->names[r],
-                                   "l1", result_number(part), "share", result_number(part / whole));
-        if (fit->n) {
-            set(region, "order", fit->order);
-            set(region, "low", fit->low);
-            set(region, "high", fit->high);
-        }
+        json_t *region = result_object("region=%s l1=%g share=%g", finest->budget.regions->names[r],
+                                       part, part / whole);
+        if (fit->n) result_add(region, "order=%g low=%g high=%g", fit->order, fit->low, fit->high);
         json_array_append_new(regions, region);
     }
     return json_pack("{s:o, s:{s:o, s:o, s:s}}", "regions", regions, "still_gas", "value",
@@ -183,7 +168,7 @@ static void add_result(const struct study *study, const struct study_result *res
     if (!study->settings.external)
         add(document, "floors", floor_json(result), varied);
     else if (result->suspicion[0])
-        add(document, "floors", json_pack("{s:s}", "suspicion", result->suspicion), varied);
+        add(document, "floors", result_object("suspicion=%s", result->suspicion), varied);
     if (result->levels[0].budget.regions)
         add(document, "budgets", budget_orders_json(result), varied);
 }
@@ -193,20 +178,19 @@ void study_add_json(const struct study *study, json_t *document)
     static const char *const lists[] = {"levels", "orders", "functionals", "floors", "excluded"};
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
         json_object_set_new(document, lists[i], json_array());
-    json_object_set_new(document, "dimension", json_integer(study->settings.file.dimension));
-    json_object_set_new(document, "measured", measured_json(study));
+    result_add(document, "dimension=%d measured=%p", study->settings.file.dimension,
+               (void *)measured_json(study));
     for (size_t c = 0; c < study->sweep.count; c++) {
         const struct study_result *result = &study->results[c];
         json_t *varied = sweep_json(&study->sweep, c);
         if (result->excluded) {
-            add(document, "excluded", json_pack("{s:s}", "reason", result->message), varied);
+            add(document, "excluded", result_object("reason=%s", result->message), varied);
         } else {
             add_result(study, result, varied, document);
             if (result->status == STATUS_BROKE_DOWN && !json_object_get(document, "message"))
-                json_object_set_new(document, "message", json_string(result->message));
+                result_add(document, "message=%s", result->message);
         }
         json_decref(varied);
     }
-    if (study->suspicion[0])
-        json_object_set_new(document, "suspicion", json_string(study->suspicion));
+    if (study->suspicion[0]) result_add(document, "suspicion=%s", study->suspicion);
 }

@@ -96,12 +96,11 @@ static json_t *headline(const struct cause *causes, size_t count, size_t first)
     snprintf(command, sizeof command, "sphproof verify %s --details%s", check->group,
              check->slow ? " --slow" : "");
     snprintf(data, sizeof data, "%s-%s", check->group, check->name);
-    return json_pack("{s:I, s:s, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:I, s:o, s:s, s:s}",
-                     "rank", (json_int_t)check->rank, "group", check->group, "check", check->name,
-                     "member", main->member, "headline", text, "property", check->property, "place",
-                     place_of(worst->subject), "value", result_number(worst->value), "bound",
-                     result_number(worst->bound), "ratio", result_number(main->ratio), "figures",
-                     (json_int_t)figures, "also", also, "command", command, "data", data);
+    return result_object("rank=%d group=%s check=%s member=%s headline=%s property=%s place=%s "
+                         "value=%g bound=%g ratio=%g figures=%zu also=%p command=%s data=%s",
+                         check->rank, check->group, check->name, main->member, text,
+                         check->property, place_of(worst->subject), worst->value, worst->bound,
+                         main->ratio, figures, (void *)also, command, data);
 }
 
 static json_t *missed(const struct mutant_outcome *outcome)
@@ -111,11 +110,10 @@ static json_t *missed(const struct mutant_outcome *outcome)
     snprintf(text, sizeof text, "the check %s does not notice the fault %s (%s)", check->name,
              outcome->mutant->name, outcome->mutant->fault);
     snprintf(command, sizeof command, "sphproof verify %s --mutants", check->group);
-    return json_pack("{s:I, s:s, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:s}", "rank",
-                     (json_int_t)AREA_DETECTION, "group", check->group, "check", check->name,
-                     "member", outcome->mutant->name, "headline", text, "property", check->property,
-                     "place", "", "value", result_number(outcome->value), "bound",
-                     result_number(outcome->bound), "command", command);
+    return result_object("rank=%d group=%s check=%s member=%s headline=%s property=%s place=%s "
+                         "value=%g bound=%g command=%s",
+                         AREA_DETECTION, check->group, check->name, outcome->mutant->name, text,
+                         check->property, "", outcome->value, outcome->bound, command);
 }
 
 json_t *headline_list(const struct suite *suite)

@@ -149,12 +149,11 @@ void suite_output_table(const struct suite *suite, FILE *stream, bool color, boo
 
 static json_t *figure_json(const struct figure *figure)
 {
-    return json_pack("{s:s, s:s, s:i, s:s, s:s, s:o, s:o, s:o, s:s, s:o}", "group",
-                     figure->check->group, "name", figure->check->name, "rank", figure->check->rank,
-                     "subject", figure->subject, "property", figure->check->property, "value",
-                     result_number(figure->value), "bound", result_number(figure->bound), "floor",
-                     result_number(figure->floor), "status", finding_words[figure->status],
-                     "seconds", result_number(figure->seconds));
+    return result_object("group=%s name=%s rank=%d subject=%s property=%s value=%g bound=%g "
+                         "floor=%g status=%s seconds=%g",
+                         figure->check->group, figure->check->name, figure->check->rank,
+                         figure->subject, figure->check->property, figure->value, figure->bound,
+                         figure->floor, finding_words[figure->status], figure->seconds);
 }
 
 void suite_output_json(const struct suite *suite, json_t *document)
@@ -164,19 +163,18 @@ void suite_output_json(const struct suite *suite, json_t *document)
         json_array_append_new(checks, figure_json(&suite->figures[i]));
     for (size_t i = 0; i < suite->outcome_count; i++) {
         const struct mutant_outcome *o = &suite->outcomes[i];
-        json_array_append_new(mutants, json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:b}", "group",
-                                                 o->check->group, "check", o->check->name, "mutant",
-                                                 o->mutant->name, "fault", o->mutant->fault,
-                                                 "value", result_number(o->value), "bound",
-                                                 result_number(o->bound), "detected", o->detected));
+        json_array_append_new(
+            mutants,
+            result_object("group=%s check=%s mutant=%s fault=%s value=%g bound=%g detected=%d?",
+                          o->check->group, o->check->name, o->mutant->name, o->mutant->fault,
+                          o->value, o->bound, o->detected));
     }
     json_object_set_new(document, "checks", checks);
     json_object_set_new(document, "mutants", mutants);
     json_object_set_new(document, "summary",
-                        json_pack("{s:I, s:I, s:I, s:I, s:I}", "passed", (json_int_t)suite->passed,
-                                  "failed", (json_int_t)suite->failed, "skipped",
-                                  (json_int_t)suite->skipped, "mutants", (json_int_t)suite->mutants,
-                                  "detected", (json_int_t)suite->mutants_detected));
+                        result_object("passed=%zu failed=%zu skipped=%zu mutants=%zu detected=%zu",
+                                      suite->passed, suite->failed, suite->skipped, suite->mutants,
+                                      suite->mutants_detected));
 }
 
 enum status suite_output_junit(const struct suite *suite, const char *path, struct error *error)
@@ -197,9 +195,9 @@ json_t *suite_output_series(const struct suite *suite, const struct check *check
     for (size_t i = 0; i < suite->series_count; i++) {
         const struct series *s = &suite->series[i];
         if (!check || s->check == check)
-            json_array_append_new(list, json_pack("{s:s, s:o, s:o}", "label", s->label, "x",
-                                                  result_numbers(s->x, s->n), "y",
-                                                  result_numbers(s->y, s->n)));
+            json_array_append_new(list, result_object("label=%s x=%p y=%p", s->label,
+                                                      (void *)result_numbers(s->x, s->n),
+                                                      (void *)result_numbers(s->y, s->n)));
     }
     return list;
 }

@@ -42,6 +42,20 @@ TEST(numbers)
     json_decref(d);
 }
 
+/* Members of every kind; what cannot be a value leaves no object. */
+TEST(objects)
+{
+    json_t *made = result_object("a=%s b=%d c=%zu d=%g e=%g f=%g? g=%g?", "sod", -2, (size_t)7, 0.5,
+                                 (double)NAN, (double)NAN, 2.5);
+    result_add(made, "h=%d? i=%d? j=%p", 2, 0, (void *)json_array());
+    char *text = result_text(made);
+    assert_string_equal(text, "{\"a\":\"sod\",\"b\":-2,\"c\":7,\"d\":0.5,\"e\":\"nan\",\"f\":null,"
+                              "\"g\":2.5,\"h\":true,\"i\":false,\"j\":[]}");
+    free(text);
+    json_decref(made);
+    assert_null(result_object("a=%d b=%p", 1, NULL));
+}
+
 TEST(words)
 {
     static const char *const allowed[] = {"fail", "pass", NULL};
