@@ -38,9 +38,7 @@ enum status snapshot_csv(const char *path, struct snapshot_file *file, struct cs
     csv->rows = csv->capacity = file->gas;
     for (size_t i = 0; i < file->gas; i++) csv->line[i] = i + 1;
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++) {
-        const bool along = c < SNAPSHOT_M || (c >= SNAPSHOT_AX && c < SNAPSHOT_DU);
-        const int axis = c < SNAPSHOT_M ? c % 3 : c - SNAPSHOT_AX;
-        if (!file->column[c] || (along && axis >= file->dim)) continue;
+        if (!file->column[c] || (c < SNAPSHOT_M && c % 3 >= file->dim)) continue;
         if (!(csv->names[csv->columns] = strdup(snapshot_column_names[c])))
             return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
         csv->values[csv->columns++] = file->column[c];

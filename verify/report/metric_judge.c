@@ -90,7 +90,7 @@ static enum metric_verdict judge_number(const struct metric *old, const struct m
     case READING_TIMING:
         if (fabs(b - a) < timing_least || (b < noise * a && a < noise * b)) return VERDICT_SAME;
         if (b < a) return VERDICT_BETTER;
-        *amount = b / a - 1;
+        *amount = b / a;
         return VERDICT_WORSE;
     case READING_ORDER:
         if (fabs(b - a) <= hypot(old->noise, new->noise)) return VERDICT_SAME;

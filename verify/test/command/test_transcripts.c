@@ -207,7 +207,10 @@ static void add_filtered(struct buffer *to, const char *text)
         if (strstr(line, "\"settings\": {") || strstr(line, "\"plan\": [")) closed = indentation;
         for (size_t k = 0; k < sizeof left_out / sizeof *left_out; k++) {
             char *at = strstr(line, left_out[k]);
-            if (at) strcpy(at + strlen(left_out[k]), "~");
+            if (!at) continue;
+            at += strlen(left_out[k]);
+            const bool by_hand = at[0] == '"' && at[1] && at[2] == '"'; /* a word of one letter */
+            if (!by_hand) strcpy(at, "~");
         }
         if (strncmp(line, "\n  ok   ", 8) == 0 && strlen(line) > 26)
             strcpy(line + 26, "~"); /* round-off */
