@@ -141,4 +141,31 @@ def test_progress():
     expect("quiet", not quiet.stderr, quiet.stderr)
 
 
-play(test_cache, test_kill, test_two_at_once, test_mathematics, test_progress)
+def test_colors():
+    """On a terminal that knows them, unless NO_COLOR says something; elsewhere if they are asked for."""
+    for change, words, colored in (({}, (), True), ({"NO_COLOR": ""}, (), True), ({"NO_COLOR": "0"}, (), False),
+                                   ({"TERM": "dumb"}, (), False), ({"TERM": None}, (), False),
+                                   ({"NO_COLOR": "1"}, ("--color", "always"), True), ({}, ("--color", "never"), False)):
+        usual = {name: value for name, value in os.environ.items() if name != "NO_COLOR"}
+        how = {name: value for name, value in {**usual, "TERM": "xterm", **change}.items() if value is not None}
+        lead, follow = pty.openpty()
+        call("list", "fields", *words, status=0, env=how, capture_output=False, stdout=follow)
+        text = os.read(lead, 1 << 12).decode()
+        os.close(follow)
+        os.close(lead)
+        expect("colours, %s %s" % (change, words), ("\033[" in text) == colored, repr(text[:80]))
+    for words, colored in (((), False), (("--color", "always"), True)):
+        expect("colours in a pipe %s" % (words,), ("\033[" in call("list", "fields", *words).stdout) == colored)
+
+
+def test_prune():
+    """Days are days of 24 hours."""
+    old = time.time() - 1.5 * 24 * 3600
+    for name in entries():
+        os.utime(name, (old, old))
+    for days, left in (("2", 8), ("1.6", 8), ("1.4", 0)):
+        found = json.loads(call("cache", "cache", "--prune", days, "--json", "-", status=0).stdout)
+        expect("entries not used for %s days" % days, len(entries()) == left and found["removed"] == 8 - left, found)
+
+
+play(test_cache, test_kill, test_two_at_once, test_mathematics, test_progress, test_colors, test_prune)

@@ -51,6 +51,27 @@ TEST(noise)
     judge_free(&judged);
 }
 
+/* Layers of a plane's gas: particles are as far apart as their part of the slab's volume is wide.
+ */
+TEST(spacing_of_a_slab)
+{
+    static const struct judge_request request = {
+        .case_name = "gresho", .time = {true, 0}, .kernel = -1};
+    for (double thick = 0.125; thick <= 0.5; thick *= 2) {
+        struct judged judged;
+        plant(3, 0, "");
+        snprintf(gas.head, sizeof gas.head, "# box = -0.5:0.5 -0.5:0.5 0:%g\n", thick);
+        for (int i = 0; i < N; i++) {
+            gas.x[0][i] = gas.x[0][i] / 2 - 0.5, gas.x[1][i] -= 0.5;
+            gas.x[2][i] *= thick;
+        }
+        judges(&request, &judged);
+        near_relative(judged.result.spacing, cbrt(thick / N), 1e-12);
+        near_relative(judged.slab, thick, 1e-15);
+        judge_free(&judged);
+    }
+}
+
 /* ---- sums ---- */
 
 /* No momentum where walls or plates or gravity push; what moves with the case's gas is no motion.

@@ -124,10 +124,12 @@ TEST(an_operator_is_held_to_its_promise)
         assert_int_equal(tried("ia", RIGHT, dim, conserving, &error), SPHPROOF_OK);
     }
     assert_int_equal(tried("ia", RIGHT, 1, linear, &error), SPHPROOF_CHECK_FAILED);
-    assert_non_null(strstr(error.message, "exactness"));
+    assert_non_null(strstr(error.message, "exactness: "));
+    assert_non_null(strstr(error.message, ", allowed 1e-09 (1D, "));
     smaller.exact = 0;
     assert_int_equal(tried("ia", RIGHT, 1, smaller, &error), SPHPROOF_CHECK_FAILED);
-    assert_non_null(strstr(error.message, "order"));
+    assert_non_null(strstr(error.message, "order: "));
+    assert_non_null(strstr(error.message, ", allowed 0.2 (1D, "));
     assert_int_equal(tried("ia", FORGETFUL, 1, conserving, &error), SPHPROOF_CHECK_FAILED);
     assert_non_null(strstr(error.message, "repeats"));
 }
