@@ -49,7 +49,7 @@ enum { SCHEMES = sizeof line_schemes / sizeof *line_schemes };
 enum { ENTRIES = SCHEMES + REPORT_CODES_MAX };
 enum { KEYS_MAX = 16, COMMAND_TEXT = 1024 };
 enum { COMPARED = 8000 }; /* particles by day up to which other schemes are compared */
-enum { QUICK = 1000 };    /* particles by day of a case in 2D or 3D that says nothing else */
+enum { QUICK = 1000 };    /* particles by day of a case in 2D or 3D without a ladder */
 
 /* What a report has of a case. */
 struct reported {
@@ -172,8 +172,7 @@ static void plan_case(const struct report *report, const struct case_file *file,
     of->schemes = SCHEMES;
     of->studied = file->ladder_count ? of->schemes : 0;
     if (!quick || !cloud) return;
-    const size_t own = (size_t)settings_real(&file->settings, SETTING_n);
-    const size_t n = levels ? ladder[levels - 1] : own < QUICK ? own : QUICK;
+    const size_t n = levels ? ladder[levels - 1] : QUICK;
     snprintf(of->size, sizeof of->size, "n=%zu", n);
     of->studied = levels >= ORDER_LEVELS_MIN;
     /* what takes long has no time for other schemes */
