@@ -8,6 +8,7 @@ examples/hostile.txt says what the program must say to each.
 Standard output is one document, or nothing where the kernel is refused; no process is left."""
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -109,6 +110,15 @@ def judge_right(name, dim):
     return None if code == 0 else "dim %s: exit status %d: %s%s" % (dim, code, said(json.loads(out))[0], err)
 
 
+def judge_words(name):
+    """For a person: which kernel, in how many dimensions, and what became of it."""
+    for dim, many in (("1", "1 dimension"), ("3", "3 dimensions")):
+        code, out, err = call("kernel", module(name), "--dim", dim)
+        if code != 1 or err or not re.fullmatch("hostile_%s, %s\n\nREJECTED: it crashes [^\n]*\n" % (name, many), out):
+            return "exit status %d: %r%r" % (code, out, err)
+    return None
+
+
 def processes(path):
     found = []
     for pid in filter(str.isdigit, os.listdir("/proc")):
@@ -151,6 +161,7 @@ def main():
     with ThreadPoolExecutor(2) as pool:
         outcomes = [(line[0], pool.submit(judge, line)) for line in (table if MORE else by_day(table, certified))]
         outcomes += [(name, pool.submit(judge_verify, by_name[name])) for name in VERIFIED]
+        outcomes += [("abort_in_dh", pool.submit(judge_words, "abort_in_dh"))]
         if MORE:
             outcomes += [(name, pool.submit(judge_right, name, dim)) for name in RIGHT for dim in "123"]
         for name, outcome in outcomes:
