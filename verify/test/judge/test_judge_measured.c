@@ -3,6 +3,7 @@
  * box, and how far it is from the solution is what a plain calculation says. */
 #include "test.h"
 
+#include "judge_autopsy.h"
 #include "made_snapshot.h"
 #include "near.h"
 
@@ -247,4 +248,46 @@ TEST(cold_gas)
     is_wrong_by(&judged);
     assert_int_equal(judged.wrong_field, FIELD_INTERNAL_ENERGY);
     judge_free(&judged);
+}
+
+/* An autopsy computes with widths as wide as the snapshot's, in spacings of its particles. */
+TEST(widths_of_an_autopsy)
+{
+    static const struct {
+        const char *name;
+        int dim;
+    } flows[] = {{"sound_wave", 1}, {"yee", 2}};
+    for (size_t k = 0; k < sizeof flows / sizeof *flows; k++) {
+        struct judge_request request = {.case_name = flows[k].name, .width.ratio = 1.5};
+        struct judged judged;
+        struct autopsy_level level;
+        struct run_settings settings;
+        struct run run, used;
+        struct error error = {0};
+        double eta = 0;
+        if (run_prepare(&settings, flows[k].name, 0, NULL, &error) ||
+            run_resolve(&run, &settings, &error))
+            fail_msg("%s", error.message);
+        const struct domain *box = &run.problem.domain;
+        plant(flows[k].dim, 0, "# time = 0\n");
+        gas.has_h = true;
+        for (int i = 0; i < N; i++) {
+            struct problem_state s;
+            double x[3] = {0}, volume = 1. / N;
+            for (int d = 0; d < gas.dim; d++) {
+                x[d] = box->lo[d] + uniform(0, 1) * domain_length(box, d);
+                gas.x[d][i] = x[d], volume *= domain_length(box, d);
+            }
+            problem_sample(&run.problem, x, 0, &s);
+            for (int d = 0; d < gas.dim; d++) gas.v[d][i] = s.v[d];
+            gas.rho[i] = s.rho, gas.u[i] = s.u, gas.m[i] = s.rho * volume;
+            gas.h[i] = uniform(1.9, 2.1) * pow(volume, 1. / gas.dim);
+            eta += 1.5 * gas.h[i] / pow(gas.m[i] / gas.rho[i], 1. / gas.dim) / N;
+        }
+        judges(&request, &judged);
+        assert_true(judged.conventions.known);
+        if (judge_autopsy(&judged, &level, &used, &error)) fail_msg("%s", error.message);
+        near_relative(settings_real(&used.settings, SETTING_eta), eta, 1e-8);
+        judge_free(&judged);
+    }
 }
