@@ -46,7 +46,7 @@ squeue) [ ! -e submitted ] || printf '7 1 COMPLETED None\\n7 2 COMPLETED None\\n
 sbatch)
     for wrap; do :; done
     for task in 1 2; do (SLURM_ARRAY_TASK_ID=$task; eval "$wrap") >/dev/null 2>&1; done
-    : >submitted
+    echo "$@" >submitted
     echo 7 ;;
 esac
 """
@@ -92,9 +92,13 @@ def try_study(number, code, words):
             expect("%s: a cache is made" % what, not os.path.exists(cache) or not os.listdir(cache), how)
     if os.path.exists("submitted"):
         os.remove("submitted")
-    engine = tried(*words, "--cache", "%d-engine" % number, "--engine", "slurm", "--engine-tasks", "2")
+    jobs = () if words[0] == "bench" else ("--jobs", "2")
+    engine = tried(*words, "--cache", "%d-engine" % number, "--engine", "slurm", "--engine-tasks", "2", *jobs)
     expect("%s: an engine" % what, engine == alone, engine)
     expect("%s: an engine was asked" % what, os.path.exists("submitted") == (code != 2))
+    if jobs and code != 2:
+        asked = read("submitted")
+        expect("%s: jobs of a task" % what, " --jobs 2 " in asked + " " and "--cpus-per-task=2 " in asked, asked)
 
 
 def test_all_checks():
