@@ -79,4 +79,30 @@ def main():
         expect("repaired", code == 0 and json.load(file)["failures"] == [] and not os.path.exists("failures"), out)
 
 
-play(main)
+def everyone_gets_to(folder):
+    return os.stat(folder).st_mode & 1 and (folder == "/" or everyone_gets_to(os.path.dirname(folder)))
+
+
+def test_folder():
+    """Data of failures are beside the program, or where one stands if nothing can be written there."""
+    os.chmod(".", 0o755)
+    for name, mode, nobody in (("own", 0o755, False), ("locked", 0o555, True)):
+        if nobody and not everyone_gets_to(os.getcwd()):
+            continue  # as root: nothing is locked for it, and nobody gets here
+        os.makedirs(name)
+        shutil.copy(program, name + "/sphproof")
+        shutil.copy(wrong, name + "/wrong.so")
+        os.chmod(name, mode)
+        here = name + "-here"
+        os.makedirs(here)
+        os.chmod(here, 0o777)
+        how = {"user": 65534, "group": 65534, "extra_groups": []} if nobody and os.geteuid() == 0 else {}
+        done = subprocess.run([os.path.abspath(name + "/sphproof"), "verify", "kernels/radial_derivative", "--quiet",
+                               "--kernel-plugin", os.path.abspath(name + "/wrong.so")], cwd=here, **how)
+        left = [os.path.isdir(folder + "/failures") for folder in (name, here)]
+        expect("failures of a program in a folder %s" % name, done.returncode == 1 and left == [not nobody, nobody],
+               (done, left))
+        os.chmod(name, 0o755)
+
+
+play(main, test_folder)
