@@ -5,8 +5,7 @@
  *   a(t), a'' = (spin^2 + 2 Pc)/a^3, hence a = sqrt(1 + (spin^2 + 2 Pc) t^2) for gamma = 2,
  * the gamma of gas whose molecules know two directions. Nothing shears, so that no viscosity may
  * act. Any consistent units. No function here allocates or keeps state. */
-#ifndef REFERENCE_DISC_H
-#define REFERENCE_DISC_H
+#pragma once
 
 /* At a distance r from the centre; outwards and along the circle, counter-clockwise. Beyond the
  * edge at r = a(t): rho = P = 0, and the velocity that joins the edge's. */
@@ -18,5 +17,3 @@ struct disc_state disc_sample(double spin, double Pc, double r, double t);
 
 /* a(t), the radius. */
 double disc_radius(double spin, double Pc, double t);
-
-#endif

@@ -3,8 +3,7 @@
  * and 2 in the unit square, joined by exponentials of width 1/40, stirred by v_y = 0.01 sin(4 pi
  * x). The box is periodic, gamma = 5/3, P = 5/2. Any number of runs agree on how the mode grows,
  * until t = 1.5. */
-#ifndef REFERENCE_KELVIN_HELMHOLTZ_H
-#define REFERENCE_KELVIN_HELMHOLTZ_H
+#pragma once
 
 struct kelvin_helmholtz_state {
     double rho, v[2], P;
@@ -23,5 +22,3 @@ double kelvin_helmholtz_amplitude(unsigned long n, const double *x, const double
 /* The same of their finest run, 4096 x 4096, with cubic splines in ln M between the times of its
  * table (every 0.1); NaN outside of 0 <= t <= 1.5. */
 double kelvin_helmholtz_reference(double t);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A smooth layer between two gases, its base state: rho(y), U(y) along x and P(y) with
  * P' = -rho g. */
-#ifndef REFERENCE_LAYER_H
-#define REFERENCE_LAYER_H
+#pragma once
 
 #include <complex.h>
 #include <stdbool.h>
@@ -32,5 +31,3 @@ struct layer_base {
 const char *layer_fault(const struct layer *layer);
 
 struct layer_base layer_base(const struct layer *layer, double y);
-
-#endif

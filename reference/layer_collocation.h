@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The growth of a layer's modes by collocation: a first guess for, and a check of, the shooting of
  * layer_mode.h. */
-#ifndef REFERENCE_LAYER_COLLOCATION_H
-#define REFERENCE_LAYER_COLLOCATION_H
+#pragma once
 
 #include <complex.h>
 
@@ -11,5 +10,3 @@
 /* omega of the fastest growing mode by another method: eigenvalues of the primitive equations at
  * so many Chebyshev points (>= 8). NaN: none grows, or no memory. */
 double complex layer_mode_collocation(const struct layer *layer, int points);
-
-#endif

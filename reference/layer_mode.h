@@ -9,8 +9,7 @@
  *   u = -k p/(rho s) - U' xi,   rho_1 = p/c^2 - (rho' + rho g/c^2) xi
  * (Chandrasekhar 1961, chapters X and XI, with compressibility). They are solved by shooting from
  * both ends to the middle of the layer; layer_mode_collocation is a second way to omega. */
-#ifndef REFERENCE_LAYER_MODE_H
-#define REFERENCE_LAYER_MODE_H
+#pragma once
 
 #include <complex.h>
 #include <stdbool.h>
@@ -44,5 +43,3 @@ struct layer_amplitude layer_mode_amplitude(const struct layer_mode *mode, doubl
 
 /* The real perturbation at x, y, t. */
 struct layer_values layer_mode_values(const struct layer_mode *mode, double x, double y, double t);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Exact flows of viscous liquids and of liquids under gravity, which weakly compressible SPH is
  * tested with. Lengths, times and speeds in any units that fit each other. */
-#ifndef SPHPROOF_LIQUID_H
-#define SPHPROOF_LIQUID_H
+#pragma once
 
 /* Between plates at y = 0, at rest, and y = 1, which moves with speed 1 from t = 0 on: the speed
  * along the plates at 0 <= y <= 1 and t >= 0 in units of H^2/nu (Couette flow that starts from
@@ -24,5 +23,3 @@ double liquid_wave_frequency(double k, double depth, double gravity);
 /* Parts along x and y of the velocity that belongs to a speed of the surface of cos(k x) upwards;
  * y: above the bottom. */
 void liquid_wave_mode(double k, double depth, double x, double y, double v[2]);
-
-#endif

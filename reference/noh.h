@@ -3,8 +3,7 @@
  * Comput. Phys. 72, 78): a shock of infinite Mach number runs outwards with (gamma - 1)/2 and
  * leaves gas at rest behind. Exact for any gamma > 1 in d = 1, 2, 3 dimensions. Other densities and
  * speeds by scaling. No function here allocates or keeps state. */
-#ifndef REFERENCE_NOH_H
-#define REFERENCE_NOH_H
+#pragma once
 
 /* At a distance r from the centre; v: outwards. */
 struct noh_state {
@@ -16,5 +15,3 @@ struct noh_state noh_sample(double gamma, int d, double r, double t);
 
 /* Where the shock is. */
 double noh_shock(double gamma, double t);
-
-#endif

@@ -3,8 +3,7 @@
  * shocks, rarefactions, contact, vacuum that opens between them or lies on a side, and cold gas
  * (P = 0, rho > 0). Toro, Riemann Solvers and Numerical Methods for Fluid Dynamics (2009), ch. 4.
  * Units: any consistent set. No function here allocates, prints or keeps state. */
-#ifndef REFERENCE_RIEMANN_H
-#define REFERENCE_RIEMANN_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -47,5 +46,3 @@ const char *riemann_solve(double gamma, const struct riemann_state *left,
  * nothing is there to move. */
 struct riemann_state riemann_sample(const struct riemann_solution *solution, double x, double x0,
                                     double t);
-
-#endif

@@ -4,8 +4,7 @@
  * for a strong shock. E: of both sides of a plane, per length of a line, or in all. The closed form
  * with a parameter V as Kamm & Timmes 2007 write it, LA-UR-07-2849; the energy, hence the shock's
  * place, by quadrature. Any consistent units. No function here keeps state. */
-#ifndef REFERENCE_SEDOV_H
-#define REFERENCE_SEDOV_H
+#pragma once
 
 struct sedov {
     double gamma, rho, E;
@@ -32,5 +31,3 @@ struct sedov_state sedov_sample(const struct sedov *sedov, double r, double t);
  * state at a distance from the centre. NaN: no memory, or it does not converge to 1e-10. */
 double sedov_integral(const struct sedov *sedov, double r, double t,
                       double (*of)(double r, const struct sedov_state *state));
-
-#endif

@@ -5,8 +5,7 @@
  *   rho = rho0 (1 + amplitude sin(2 pi x/length)), P = P0 (rho/rho0)^gamma,
  *   v = v0 + 2 (c - c0)/(gamma - 1),
  * and each value travels with its own constant speed v + c. */
-#ifndef REFERENCE_SIMPLE_WAVE_H
-#define REFERENCE_SIMPLE_WAVE_H
+#pragma once
 
 /* The box repeats with `length`, which is one wavelength. Any consistent units. */
 struct simple_wave {
@@ -26,5 +25,3 @@ double simple_wave_breaking_time(const struct simple_wave *wave);
 /* The state at x and time 0 <= t < breaking time; all NaN outside of that and where a number would
  * leave the range of double. The wave is valid (simple_wave_fault). */
 struct simple_wave_state simple_wave_sample(const struct simple_wave *wave, double x, double t);
-
-#endif

@@ -2,8 +2,7 @@
  * Vortices in a plane that stand still for ever: the pull of the pressure holds what the flow
  * throws outwards, dP/dR = rho v^2/R. Any consistent units. No function here allocates or keeps
  * state. */
-#ifndef REFERENCE_VORTEX_H
-#define REFERENCE_VORTEX_H
+#pragma once
 
 /* At the distance R from the centre; v: along the circle, counter-clockwise. */
 struct vortex_state {
@@ -18,5 +17,3 @@ struct vortex_state vortex_gresho(double R);
  * exp((1 - R^2)/2), T = P/rho = 1 - (gamma - 1) beta^2/(8 gamma pi^2) exp(1 - R^2), P = rho^gamma.
  * Smooth everywhere. beta so small that T > 0 at the centre. */
 struct vortex_state vortex_yee(double R, double beta, double gamma);
-
-#endif

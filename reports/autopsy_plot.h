@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The picture of an autopsy: how each share of an error falls, a bar of shares for each number of
  * particles, and the sentence. */
-#ifndef SPHPROOF_AUTOPSY_PLOT_H
-#define SPHPROOF_AUTOPSY_PLOT_H
+#pragma once
 
 #include <jansson.h>
 
@@ -14,5 +13,3 @@ enum status autopsy_plot_write(const json_t *document, const char *path, struct 
 
 /* The same as a figure of a page, called name there. */
 void autopsy_plot_page(struct page_writer *writer, const json_t *document, const char *name);
-
-#endif

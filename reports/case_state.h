@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a report says of a case as a whole, and of its first scheme, which stands for the case.
  * Internal to pages. */
-#ifndef SPHPROOF_CASE_STATE_H
-#define SPHPROOF_CASE_STATE_H
+#pragma once
 
 #include <jansson.h>
 
@@ -26,5 +25,3 @@ void case_state_cell(struct buffer *to, const char *case_name);
 /* What a run is judged by: L1 of a field, or the distance of a scalar from its exact value. *name:
  * what it is. */
 double case_state_error(const json_t *run, const char **name);
-
-#endif

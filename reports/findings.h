@@ -3,8 +3,7 @@
  * with the most specific cause first: a wrong kernel fails its own checks, then those of the
  * gradients made of it, of whole runs, of orders of convergence; read in this order the first
  * failure names it. */
-#ifndef SPHPROOF_FINDINGS_H
-#define SPHPROOF_FINDINGS_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -59,5 +58,3 @@ json_t *findings_failures(const struct findings *findings);
  * that nor passes is skipped. Malloced; NULL: no memory. */
 char *findings_junit(void (*of)(struct findings *to, const json_t *document),
                      const json_t *document);
-
-#endif

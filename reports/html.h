@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Small parts of HTML (written as XML, so that it can be checked), for the pages. Internal to
  * pages. */
-#ifndef SPHPROOF_HTML_H
-#define SPHPROOF_HTML_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -71,5 +70,3 @@ void html_order_cell(struct buffer *to, const json_t *order);
 
 /* A name of the results for people: "internal_energy" is "internal energy". */
 void html_words(struct buffer *to, const char *name);
-
-#endif

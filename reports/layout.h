@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Where things stand in a plot: sizes in pixels, ranges of the data, ticks. Internal to plots. */
-#ifndef SPHPROOF_LAYOUT_H
-#define SPHPROOF_LAYOUT_H
+#pragma once
 
 #include "plot.h"
 
@@ -34,5 +33,3 @@ double layout_y(const struct layout_panel *panel, double value);
 /* Position of the labels at the ends of a panel's curves: pixels[k] for series k, moved apart where
  * they would overlap; NaN for a series without one. */
 void layout_ends(const struct layout_panel *at, const struct plot_panel *panel, double *pixels);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Plots one after the other as a movie, made by ffmpeg. Axes and colours without a range of their
  * own reach as far as in any picture so far, so that they widen but never jump back. */
-#ifndef SPHPROOF_MOVIE_H
-#define SPHPROOF_MOVIE_H
+#pragma once
 
 #include "buffer.h"
 #include "plot.h"
@@ -34,5 +33,3 @@ enum status movie_add(struct movie *movie, const struct plot *plot, struct error
 /* STATUS_ENVIRONMENT: ffmpeg failed, or the file cannot be written. */
 enum status movie_write(const struct movie *movie, const char *path, struct error *error);
 void movie_free(struct movie *movie);
-
-#endif

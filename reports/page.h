@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The report as one self-contained HTML page, made from its results (verdict.h says what they
  * hold). Reads results only; writes no files. */
-#ifndef SPHPROOF_PAGE_H
-#define SPHPROOF_PAGE_H
+#pragma once
 
 #include <jansson.h>
 
@@ -22,5 +21,3 @@ bool page_make_judge(struct page *page, const json_t *document);
 /* The same of a document of `sphproof compare` whose first draws have profiles. */
 bool page_make_compare(struct page *page, const json_t *document);
 void page_free(struct page *page);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The parts of the page, each from its own file, in their order. Internal to pages. */
-#ifndef SPHPROOF_PAGE_PART_H
-#define SPHPROOF_PAGE_PART_H
+#pragma once
 
 #include <jansson.h>
 
@@ -87,5 +86,3 @@ void fold_section(struct buffer *to, size_t start);
 
 /* For the page's end: inflates what is opened, and what a link leads to. */
 extern const char fold_script[];
-
-#endif

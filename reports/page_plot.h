@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What the parts of the page write to: its text, and its plots, whose scripts and data stand beside
  * the page. */
-#ifndef SPHPROOF_PAGE_PLOT_H
-#define SPHPROOF_PAGE_PLOT_H
+#pragma once
 
 #include "buffer.h"
 #include "plot.h"
@@ -36,5 +35,3 @@ void page_plot(struct page_writer *writer, const struct plot *plot, const char *
 
 /* Makes "CASE-WHAT" a plot's name, with '_' for characters that are not allowed there. */
 void page_plot_name(char *name, size_t size, const char *case_name, const char *what);
-
-#endif

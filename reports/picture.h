@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Writes a plot into a file, which appears whole or not at all. */
-#ifndef SPHPROOF_PICTURE_H
-#define SPHPROOF_PICTURE_H
+#pragma once
 
 #include "plot.h"
 #include "status.h"
@@ -15,5 +14,3 @@ enum status picture_write(const struct plot *plot, const char *path, struct erro
 /* Writes NAME.dat and NAME.gp beside a picture NAME.svg or NAME.png; `gnuplot NAME.gp` in that
  * folder draws NAME.svg again. STATUS_ENVIRONMENT: they cannot be written. */
 enum status picture_source(const struct plot *plot, const char *path, struct error *error);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Plots by gnuplot through a pipe, one style for all: colour-blind-safe, light and dark. Plain
  * arrays in, a picture in memory out (the caller writes the file). Arrays stay the caller's. */
-#ifndef SPHPROOF_PLOT_H
-#define SPHPROOF_PLOT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -129,5 +128,3 @@ enum plot_status plot_draw(const struct plot *plot, enum plot_format format, cha
 /* What draws the plot again: `gnuplot NAME.gp` beside NAME.dat makes NAME.svg. Both malloced;
  * false: no memory. */
 bool plot_source(const struct plot *plot, char **script, char **data);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Runs a program as a filter: bytes in, bytes out, exit status checked; or keeps it running, for
  * one question after another. */
-#ifndef SPHPROOF_PROCESS_H
-#define SPHPROOF_PROCESS_H
+#pragma once
 
 #include "buffer.h"
 
@@ -33,5 +32,3 @@ enum process_status process_ask(struct process *process, char *const argv[], int
 
 /* Ends the program, if it runs. */
 void process_end(struct process *process);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The gnuplot script and the data of a plot, and what makes its SVG fit into a page. Internal to
  * plots. */
-#ifndef SPHPROOF_SCRIPT_H
-#define SPHPROOF_SCRIPT_H
+#pragma once
 
 #include "buffer.h"
 #include "plot.h"
@@ -22,5 +21,3 @@ void script_make(struct buffer *to, const struct plot *plot, enum script_termina
  * colour itself stays as a fallback where no style sheet is); title (escaped here) for readers who
  * cannot see it. False: raw is not an SVG document. */
 bool svg_adapt(struct buffer *to, const char *raw, const char *prefix, const char *title);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The colours of plots: Okabe and Ito's colour-blind-safe palette, shifted a little so that each
  * has enough contrast as text; one column for light paper, one for dark. Internal to plots. */
-#ifndef SPHPROOF_STYLE_H
-#define SPHPROOF_STYLE_H
+#pragma once
 
 /* STYLE(css class, colour on light, colour on dark): the first is the text colour, `currentColor`
  * in a page; then axes and grid; then the palette in order. */
@@ -36,5 +35,3 @@ const char *style_series(int color, int next);
 
 /* The style sheet that gives inlined plots their colours in light and dark. */
 const char *style_css(void);
-
-#endif

@@ -21,8 +21,7 @@
  *   history         what verify/report/history.h tells: nights, since, trends, changes; what
  *                   survived before and breaks down since is a failure
  *   verdict         what verdict_make returned */
-#ifndef SPHPROOF_VERDICT_H
-#define SPHPROOF_VERDICT_H
+#pragma once
 
 #include <jansson.h>
 
@@ -37,5 +36,3 @@ json_t *verdict_make(const json_t *results);
 /* The results with their verdict in a few lines of Markdown, for a pull request or a terminal.
  * Malloced; NULL: no memory. */
 char *summary_text(const json_t *results);
-
-#endif

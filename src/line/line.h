@@ -3,8 +3,7 @@
  * what is at the ends of the box are ghost copies there; loops run over neighbour offsets d
  * = 1..reach and vectorise over the particles of a range. For the files of this folder (and
  * measurements of its loops). */
-#ifndef SPHPROOF_LINE_H
-#define SPHPROOF_LINE_H
+#pragma once
 
 #include "loops.h"
 #include "solver.h"
@@ -103,5 +102,3 @@ void groups_update(struct simulation *simulation);
 bool groups_sleep(const struct simulation *simulation, ptrdiff_t i);
 /* Wakes all groups: the order of particles has changed, and groups are others now. */
 void groups_wake_all(struct simulation *simulation);
-
-#endif

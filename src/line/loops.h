@@ -4,8 +4,7 @@
  * support, so D only has to be sufficient and the result depends neither on D nor on the range.
  * Every sum exists specialised per kernel (run-time dispatch over instruction sets) and generic,
  * with the kernel behind a pointer: the oracle, and the path of a user's plug-in. */
-#ifndef SPHPROOF_LOOPS_H
-#define SPHPROOF_LOOPS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -92,5 +91,3 @@ force_loop *loop_force(bool specialised, enum formulation formulation, enum visc
 
 /* The signal speed of each particle of the range, where it is asked for by itself. */
 void loops_signal(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D);
-
-#endif

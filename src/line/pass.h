@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Passes: the same work on every range, shared out among threads. Ranges are independent of each
  * other and each is worked on by one thread, so results do not depend on the number of threads. */
-#ifndef SPHPROOF_PASS_H
-#define SPHPROOF_PASS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -27,5 +26,3 @@ typedef void range_pass(struct simulation *simulation, struct range *range, stru
 
 /* A pass over all ranges of a simulation. Returns what all threads have found together. */
 struct tally pass_all(struct simulation *simulation, range_pass *pass);
-
-#endif

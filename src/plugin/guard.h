@@ -2,8 +2,7 @@
  * Runs foreign code in a process of its own. If the code crashes, does not return, exits, prints or
  * uses up its memory, the caller gets a message and nothing of the process remains. This is not a
  * sandbox: malicious code has all rights of the user who runs it. */
-#ifndef SPHPROOF_GUARD_H
-#define SPHPROOF_GUARD_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -46,5 +45,3 @@ void guard_free(struct guard_verdict *verdict);
  * subjects. STATUS_ENVIRONMENT: no process, no memory. */
 enum { GUARD_WATCH_LIMIT = 5 };
 enum status guard_watch(const char *what, const char *path, struct error *error);
-
-#endif

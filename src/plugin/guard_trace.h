@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What foreign code is at, in memory that the process it runs in shares with the one that watches:
  * for guard.c and guard_watch.c. */
-#ifndef SPHPROOF_GUARD_TRACE_H
-#define SPHPROOF_GUARD_TRACE_H
+#pragma once
 
 #include <stdatomic.h>
 #include <stddef.h>
@@ -36,5 +35,3 @@ struct watch *guard_watch_make(struct error *error);
 
 /* " in FUNCTION(a, b, dim), call 7", " after ..." or "". */
 void guard_place(const struct trace *seen, char *text, size_t size);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The calls of HDF5 that are used. Its library, with some thirty that it needs itself, is loaded
  * when a file asks for it: to load it at every start took three quarters of a start's time. */
-#ifndef SPHPROOF_H5_H
-#define SPHPROOF_H5_H
+#pragma once
 
 #ifdef HAVE_HDF5
 #include <hdf5.h>
@@ -12,21 +11,23 @@
 #define H5_CALLS(X)                                                                                \
     X(Aclose)                                                                                      \
     X(Acreate2)                                                                                    \
-    X(Aexists_by_name) X(Aget_space) X(Aget_type) X(Aopen_by_name) X(Aread) X(Awrite) X(Dclose)    \
-        X(Dcreate2) X(Dget_space) X(Dget_type) X(Dopen2) X(Dread) X(Dwrite) X(Eset_auto2)          \
-            X(Fclose) X(Fcreate) X(Fflush) X(Fget_file_image) X(Fopen) X(Gclose) X(Gcreate2)       \
-                X(Iget_type) X(Lexists) X(Literate_by_name) X(Oclose) X(Oexists_by_name) X(Oopen)  \
-                    X(Pclose) X(Pcreate) X(Pset_fapl_core) X(Pset_obj_track_times) X(Sclose)       \
-                        X(Screate) X(Screate_simple) X(Sget_simple_extent_dims)                    \
-                            X(Sget_simple_extent_ndims) X(Sget_simple_extent_npoints) X(Tclose)    \
-                                X(Tcopy) X(Tget_class) X(Tget_size) X(Tis_variable_str)            \
-                                    X(Tset_size) X(free_memory) X(open)
+    X(Aexists_by_name)                                                                             \
+    X(Aget_space) X(Aget_type) X(Aopen_by_name) X(Aread) X(Awrite) X(Dclose) X(Dcreate2)           \
+        X(Dget_space) X(Dget_type) X(Dopen2) X(Dread) X(Dwrite) X(Eset_auto2) X(Fclose) X(Fcreate) \
+            X(Fflush) X(Fget_file_image) X(Fopen) X(Gclose) X(Gcreate2) X(Iget_type) X(Lexists)    \
+                X(Literate_by_name) X(Oclose) X(Oexists_by_name) X(Oopen) X(Pclose) X(Pcreate)     \
+                    X(Pset_fapl_core) X(Pset_obj_track_times) X(Sclose) X(Screate)                 \
+                        X(Screate_simple) X(Sget_simple_extent_dims) X(Sget_simple_extent_ndims)   \
+                            X(Sget_simple_extent_npoints) X(Tclose) X(Tcopy) X(Tget_class)         \
+                                X(Tget_size) X(Tis_variable_str) X(Tset_size) X(free_memory)       \
+                                    X(open)
 
 /* Identifiers of its types and classes, which are variables of the library. */
 #define H5_IDENTIFIERS(X)                                                                          \
     X(P_CLS_DATASET_CREATE_ID_g)                                                                   \
     X(P_CLS_FILE_ACCESS_ID_g)                                                                      \
-    X(T_C_S1_g) X(T_NATIVE_DOUBLE_g) X(T_NATIVE_INT_g) X(T_NATIVE_SCHAR_g) X(T_NATIVE_UINT_g)      \
+    X(T_C_S1_g)                                                                                    \
+    X(T_NATIVE_DOUBLE_g) X(T_NATIVE_INT_g) X(T_NATIVE_SCHAR_g) X(T_NATIVE_UINT_g)                  \
         X(T_NATIVE_UINT64_g)
 
 /* h5.Fopen is H5Fopen. */
@@ -51,5 +52,4 @@ enum status h5_load(const char *path, struct error *error);
 #define H5CHECK
 #undef H5OPEN
 #define H5OPEN
-#endif
 #endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What can be measured on a kernel: integrals, moments, class, Fourier transform, lattice sums.
  * In units of the support radius: q = r/h, kappa = k h. */
-#ifndef SPHPROOF_MEASURE_H
-#define SPHPROOF_MEASURE_H
+#pragma once
 
 #include "pieces.h"
 
@@ -91,5 +90,3 @@ void measure_spectrum_free(struct measure_spectrum *spectrum);
 double measure_transform(const struct measure_spectrum *spectrum, double kappa);
 
 void measure_fourier(const struct measure_spectrum *spectrum, struct measure_fourier *result);
-
-#endif

@@ -2,8 +2,7 @@
  * A kernel's shape as a piecewise smooth function: break points between which w and dw are resolved
  * by Chebyshev series to round-off. Declared knots are taken; others (a plug-in need not declare
  * any) are found by bisection, so that quadrature and differentiation never straddle one. */
-#ifndef SPHPROOF_PIECES_H
-#define SPHPROOF_PIECES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -88,5 +87,3 @@ double pieces_series_slope(const struct series_fit *fit, double x, double *floor
 /* k-th derivative of w at q = at from one side: the one of `to`, the far end of the piece. k = 0
  * takes w, the others the (k-1)-th derivative of dw. floor: estimate of the error (not a bound). */
 double pieces_derivative(const struct pieces *pieces, double at, double to, int k, double *floor);
-
-#endif

@@ -3,8 +3,7 @@
  * digit: the ends of the pieces, short decimals, fractions, and the numbers that stand in a
  * plug-in's own code (with those that follow from a comparison of 1 - q or of q^2). A fault of any
  * width that begins or ends there is met, however narrow. */
-#ifndef SPHPROOF_PLACES_H
-#define SPHPROOF_PLACES_H
+#pragma once
 
 #include "pieces.h"
 
@@ -24,5 +23,3 @@ double places_random(uint64_t seed, uint64_t i);
  * number is returned, at most PLACES_CONSTANTS_MAX. 0: none, or the file cannot be read. */
 enum { PLACES_CONSTANTS_MAX = 4096 };
 int places_constants(const char *path, double **constants);
-
-#endif

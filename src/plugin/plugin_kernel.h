@@ -4,8 +4,7 @@
  * of its file, so that documents and caches tell one from another; PATH@HASH may be typed as well
  * and then wants that content. Its certificate is made first, in a process of its own (guard.h);
  * then it is called in this one, which is watched from the first plug-in on (guard_watch). */
-#ifndef SPHPROOF_PLUGIN_KERNEL_H
-#define SPHPROOF_PLUGIN_KERNEL_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -39,5 +38,3 @@ enum status plugin_prepare(int index, int dim, struct error *error);
 /* plugin_prepare, then kernel_select, of the kernel at that place. */
 enum status plugin_select(struct kernel *kernel, int index, int sinc_order, int dim,
                           struct error *error);
-
-#endif

@@ -2,8 +2,7 @@
  * Loads a user's kernel (plugin.h) as a struct kernel: checks that it can be used at all, derives
  * what is missing. Whether it is right is for the properties to tell. All of this runs foreign
  * code: it belongs into a process of its own (guard.h). One plug-in at a time. */
-#ifndef SPHPROOF_USER_KERNEL_H
-#define SPHPROOF_USER_KERNEL_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -35,5 +34,3 @@ void user_kernel_unload(struct user_kernel *user);
 
 /* The terms on which the kernel is judged in dim dimensions. */
 struct terms user_kernel_terms(const struct user_kernel *user, int dim);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A user's exact solution (sphproof/reference.h) from a shared object. The first calls belong into
  * a process of their own (guard.h). */
-#ifndef SPHPROOF_USER_REFERENCE_H
-#define SPHPROOF_USER_REFERENCE_H
+#pragma once
 
 #include "sphproof/reference.h"
 #include "status.h"
@@ -21,5 +20,3 @@ enum status user_reference_load(struct user_reference *user, const char *path, s
 void user_reference_state(const struct user_reference *user, const double x[3], double t,
                           const struct sphproof_reference_case *of,
                           struct sphproof_reference_state *state);
-
-#endif

@@ -3,8 +3,7 @@
  * with every kernel and every ratio of support radius to h. The right pair agrees to the file's
  * precision; on disordered particles wrong ones miss by 1e-4 and more. A pair that is not ten times
  * better than every other kernel's is no proof: on a lattice any kernel fits. */
-#ifndef SPHPROOF_CONVENTIONS_H
-#define SPHPROOF_CONVENTIONS_H
+#pragma once
 
 #include "kernel.h"
 #include "snapshot_file.h"
@@ -51,5 +50,3 @@ enum status conventions_find(const struct snapshot_file *file, const double box[
 
 /* Standard deviation of a kernel over its support radius, along one direction. */
 double conventions_deviation(const struct kernel *kernel, int dim);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Files that Fortran wrote without format: records, each between two counts of its bytes, and
  * numbers in either byte order. */
-#ifndef SPHPROOF_FORTRAN_H
-#define SPHPROOF_FORTRAN_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -24,5 +23,3 @@ double fortran_real(const unsigned char *bytes, size_t size, bool swapped);
  * file ends before, or the counts differ. */
 enum status fortran_next(const struct snapshot_source *source, bool swapped, size_t number,
                          size_t *at, struct fortran_record *record, struct error *error);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The few things that readers ask of an HDF5 file. Its library does not withstand hostile files, so
  * that snapshot_read lets it work in a process of its own (guard.h). */
-#ifndef SPHPROOF_HDF5_FILE_H
-#define SPHPROOF_HDF5_FILE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -49,5 +48,3 @@ size_t hdf5_rows(const struct snapshot_source *source, const char *path);
  * STATUS_BAD_INPUT: not of that shape, or it cannot be read. Sets the precision. */
 enum status hdf5_read(const struct snapshot_source *source, const char *path,
                       struct snapshot_file *file, enum snapshot_column column, struct error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What the HDF5 layouts have in common: a group with a dataset for each quantity, a header. */
-#ifndef SPHPROOF_HDF5_GAS_H
-#define SPHPROOF_HDF5_GAS_H
+#pragma once
 
 #include "hdf5_file.h"
 
@@ -26,5 +25,3 @@ struct snapshot_value hdf5_first(const struct snapshot_source *source, const cha
  * STATUS_BAD_INPUT: comoving units, counts that do not agree. */
 enum status hdf5_header(const struct snapshot_source *source, struct snapshot_file *file,
                         struct error *error);
-
-#endif

@@ -2,8 +2,7 @@
  * What Phantom's two formats have in common (Price et al. 2018): particles of all types in the same
  * rows, of which type 1 is gas; a mass for each type; no density, which is m (hfact/h)^3; particles
  * that are dead, or that a sink has swallowed, have h <= 0. */
-#ifndef SPHPROOF_PHANTOM_GAS_H
-#define SPHPROOF_PHANTOM_GAS_H
+#pragma once
 
 #include "snapshot_file.h"
 
@@ -22,5 +21,3 @@ struct phantom_header {
  * all are gas. STATUS_BAD_INPUT: the header has no mass or hfact above 0. */
 enum status phantom_gas(const char *path, const struct phantom_header *header, const double *type,
                         struct snapshot_file *file, struct error *error);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The gas of a snapshot as columns by our names (x, vx, m, rho, u, P, h, ax, du ...), for those who
  * read tables. */
-#ifndef SPHPROOF_SNAPSHOT_CSV_H
-#define SPHPROOF_SNAPSHOT_CSV_H
+#pragma once
 
 #include "csv.h"
 #include "snapshot_file.h"
@@ -12,5 +11,3 @@
  * both, also after a failure. STATUS_BAD_INPUT: as snapshot_read. */
 enum status snapshot_csv(const char *path, struct snapshot_file *file, struct csv *csv,
                          char why[200], struct error *error);
-
-#endif

@@ -2,8 +2,7 @@
  * Snapshots of any code: the contents of a file in the file's own units. Readers are a family: each
  * is one file in reader/ and one line in readers.def. Where a file does not state something, the
  * reader records what it assumed and the evidence for it. */
-#ifndef SPHPROOF_SNAPSHOT_FILE_H
-#define SPHPROOF_SNAPSHOT_FILE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -108,5 +107,3 @@ double snapshot_period(const struct snapshot_file *file, int d);
 
 /* The column that a usual name stands for ("density", "v_x", "particle mass"), or -1. */
 int snapshot_column_of(const char *name);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The bytes of a file that may be a snapshot; compressed text is taken apart where zlib is there.
  * HDF5 files are left to their library: only their first bytes are here. */
-#ifndef SPHPROOF_SOURCE_H
-#define SPHPROOF_SOURCE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -23,5 +22,3 @@ struct snapshot_source {
  * a failure. */
 enum status source_open(struct snapshot_source *source, const char *path, struct error *error);
 void source_free(struct snapshot_source *source);
-
-#endif

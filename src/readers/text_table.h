@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Lines and numbers of snapshots that are text: cut out of the bytes, which end with a NUL. */
-#ifndef SPHPROOF_TEXT_TABLE_H
-#define SPHPROOF_TEXT_TABLE_H
+#pragma once
 
 #include "snapshot_file.h"
 #include "source.h"
@@ -32,5 +31,3 @@ bool text_table_number(const char *word, double *value);
  * what is no number, of rows of another length. */
 enum status text_table_read(const struct text_table *table, size_t from, size_t line,
                             struct snapshot_file *file, struct error *error);
-
-#endif

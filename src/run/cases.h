@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Cases: what is to be computed, from a built-in text or a file of the user's, both in the same INI
  * format (cases/sod.ini shows it). Every key is checked; a message names file and line. */
-#ifndef SPHPROOF_CASES_H
-#define SPHPROOF_CASES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -77,5 +76,3 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
 /* Takes a key of [converge] from another file: n in place of the case's, or one gate more. at says
  * where it stands, and fails where the value is wrong. False: there is no such key. */
 bool case_amend(struct case_file *file, struct ini_text *at, const char *name, const char *value);
-
-#endif

@@ -2,8 +2,7 @@
  * The state of a run in a file, from which it goes on to the last bit: all that the next step
  * depends on, as it lies in memory, with a checksum, for the same build of the program and the same
  * settings only. (Snapshots are for other programs; they do not hold what a step needs.) */
-#ifndef SPHPROOF_CHECKPOINT_H
-#define SPHPROOF_CHECKPOINT_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -39,5 +38,3 @@ void checkpoint_save(struct checkpoint *checkpoint, struct simulation *simulatio
  * that differs); the simulation may then only be destroyed. */
 enum status checkpoint_load(struct checkpoint *checkpoint, struct simulation *simulation,
                             struct growth *growth, struct error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Particles of equal masses, as dense as the gas of a problem. */
-#ifndef SPHPROOF_EQUAL_MASSES_H
-#define SPHPROOF_EQUAL_MASSES_H
+#pragma once
 
 #include "run.h"
 
@@ -12,5 +11,3 @@ enum status equal_masses_fill(const struct prepared *p, const struct settings *s
 
 /* STATUS_BAD_INPUT: masses differ. */
 enum status equal_masses_check(const struct initial *initial, struct error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a run will take, said before it begins. */
-#ifndef SPHPROOF_ESTIMATE_H
-#define SPHPROOF_ESTIMATE_H
+#pragma once
 
 #include "simulation.h"
 
@@ -21,5 +20,3 @@ struct estimate estimate_run(const struct setup *setup);
 
 /* STATUS_ENVIRONMENT: it is more than this machine has, or this process may have. */
 enum status estimate_check(const struct estimate *estimate, size_t n, struct error *error);
-
-#endif

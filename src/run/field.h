@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What errors are measured of, in which norms, and where: the fields of a gas, the domain that it
  * fills, and the window that is looked at. Code units. */
-#ifndef SPHPROOF_FIELD_H
-#define SPHPROOF_FIELD_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -52,5 +51,3 @@ static inline bool window_contains(const struct window *window, const double x[3
     }
     return window->radius == 0 || square <= window->radius * window->radius;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Functionals (problem.h) that several problems have. */
-#ifndef SPHPROOF_FUNCTIONAL_H
-#define SPHPROOF_FUNCTIONAL_H
+#pragma once
 
 #include "problem.h"
 
@@ -14,5 +13,3 @@ extern const struct functional functional_velocity_rms;
 /* Mean of a field of the particles over the window, weighted with volume. */
 double functional_window_mean(const struct prepared *p, const struct snapshot *s,
                               const double *field);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The rate at which an amplitude grows in a run: the slope of its logarithm over time, by least
  * squares over what is seen of it between two times. */
-#ifndef SPHPROOF_GROWTH_H
-#define SPHPROOF_GROWTH_H
+#pragma once
 
 #include <stddef.h>
 
@@ -16,5 +15,3 @@ void growth_see(struct growth *growth, double time, double amplitude);
 
 /* NaN with fewer than three times, or where an amplitude was not positive. */
 double growth_rate(const struct growth *growth);
-
-#endif

@@ -2,8 +2,7 @@
  * HDF5 files that are made in memory and written as any other file. They hold no times: equal
  * content gives equal bytes. Without the library all calls do nothing, and hdf5_image_end says so.
  */
-#ifndef SPHPROOF_HDF5_IMAGE_H
-#define SPHPROOF_HDF5_IMAGE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -38,5 +37,3 @@ void hdf5_image_data(struct hdf5_image *image, const char *name, enum hdf5_type 
 /* Writes the file unless something has failed, and frees what the image has.
  * STATUS_ENVIRONMENT: no memory, no library, or it cannot be written. */
 enum status hdf5_image_end(struct hdf5_image *image, const char *path, struct error *error);
-
-#endif

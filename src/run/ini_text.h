@@ -2,8 +2,7 @@
  * INI files whose keys are all checked: inih does the syntax, line by line from a reader of ours.
  * It cuts long lines, takes a folder for an empty file and does not tell its callback the line, so
  * text is checked before it. Messages name file and line. */
-#ifndef SPHPROOF_INI_TEXT_H
-#define SPHPROOF_INI_TEXT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -41,5 +40,3 @@ enum status ini_text_fail_value(struct ini_text *text, const char *key, const ch
 
 /* True the first time, which *line (0) notes; else fails with the line of the first. */
 bool ini_text_first(struct ini_text *text, int *line, const char *key);
-
-#endif

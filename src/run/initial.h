@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Particles at t = 0: what problems lay them with, and those that a run begins with. */
-#ifndef SPHPROOF_INITIAL_H
-#define SPHPROOF_INITIAL_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -62,5 +61,3 @@ void initial_free(struct initial *initial);
 
 /* Are particles moved at random? Then the seed makes a difference. */
 bool initial_is_shaken(const struct settings *settings);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a case is judged by, and the one error of a run where there is room for one. Code units. */
-#ifndef SPHPROOF_JUDGED_H
-#define SPHPROOF_JUDGED_H
+#pragma once
 
 #include "run.h"
 
@@ -30,5 +29,3 @@ struct judged {
  */
 void judged_of(const struct case_file *file, const struct run_result *result,
                struct judged *judged);
-
-#endif

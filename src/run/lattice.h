@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Where particles of a uniform gas stand: regular lattices that fit a box with the
  * number of points next to what is asked for, periodically, and quasi-random points. */
-#ifndef SPHPROOF_LATTICE_H
-#define SPHPROOF_LATTICE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -27,5 +26,3 @@ enum status lattice_plan_make(struct lattice_plan *plan, const struct domain *bo
  * too few for a glass; STATUS_ENVIRONMENT: no memory for one. */
 enum status lattice_points(const struct lattice_plan *plan, unsigned long seed, double *const x[3],
                            struct error *error);
-
-#endif

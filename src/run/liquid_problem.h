@@ -3,8 +3,7 @@
  * velocities known, of density and pressure only where gravity alone makes them. What a code takes
  * for internal energy does not matter; initial states carry that of a gas with the liquid's speed
  * of sound. */
-#ifndef SPHPROOF_LIQUID_PROBLEM_H
-#define SPHPROOF_LIQUID_PROBLEM_H
+#pragma once
 
 #include "functional.h"
 #include "problem.h"
@@ -33,5 +32,3 @@ struct problem_state liquid_state(const struct liquid *liquid, double gamma);
 /* By volume over the window, sum v . mode over sum mode . mode: how much of the mode there is. */
 typedef void liquid_mode(const struct prepared *p, const double x[3], double v[3]);
 double liquid_amplitude(const struct prepared *p, const struct snapshot *s, liquid_mode *mode);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Maps of a state: the particles of a plane, or of a slice through the middle of a box, are sorted
  * into cells about as wide as the particles' spacing. Code units. */
-#ifndef SPHPROOF_MAP_H
-#define SPHPROOF_MAP_H
+#pragma once
 
 #include <stddef.h>
 
@@ -34,5 +33,3 @@ void map_free(struct map *map);
  * reaches or where no cell within MAP_REACH has particles. */
 enum { MAP_REACH = 4 };
 void map_mean(const struct map *map, const double *values, double *z);
-
-#endif

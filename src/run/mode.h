@@ -5,8 +5,7 @@
  * The amplitude of the mode in a state is the projection of v_y on it,
  *   c = 2 sum V conj(f) v_y/sum V |f|^2,  f = v(y) exp(i k x),
  * in which nothing of the other parity of a periodic layer is left. */
-#ifndef SPHPROOF_MODE_H
-#define SPHPROOF_MODE_H
+#pragma once
 
 #include "layer_mode.h"
 #include "problem.h"
@@ -36,5 +35,3 @@ extern const struct functional mode_amplitude, mode_error, mode_noise, mode_othe
 
 /* growth_rate, from twice the start until the layer is displaced by a tenth of its width. */
 extern const struct growing mode_growing;
-
-#endif

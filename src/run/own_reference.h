@@ -4,8 +4,7 @@
  * Each is loaded once for the life of the process. A problem with such a reference samples it at
  * t > 0, and starts as before. Only the problem `particles`, which knows no state of its own, takes
  * the state at t = 0 from a shared object as well. */
-#ifndef SPHPROOF_OWN_REFERENCE_H
-#define SPHPROOF_OWN_REFERENCE_H
+#pragma once
 
 #include "problem.h"
 
@@ -26,5 +25,3 @@ const char *own_name(int number);
 
 /* How far interpolation in a table may be off, as own_table_miss says; NaN for shared objects. */
 void own_miss(const struct prepared *p, const struct snapshot *s, double miss[FIELDS]);
-
-#endif

@@ -2,8 +2,7 @@
  * A table of fields against x, x and y, or r, for `reference = table FILE`: what a fine run or
  * another code has found. Between the rows of x or r monotone cubics (Steffen 1990, which make no
  * new extrema at jumps), on a grid of x and y bilinear. Code units. */
-#ifndef SPHPROOF_OWN_TABLE_H
-#define SPHPROOF_OWN_TABLE_H
+#pragma once
 
 #include "field.h"
 #include "problem.h"
@@ -39,5 +38,3 @@ void own_table_sample(const struct own_table *table, const struct prepared *p, c
  * known. */
 void own_table_miss(const struct own_table *table, const struct prepared *p,
                     const struct snapshot *s, double miss[FIELDS]);
-
-#endif

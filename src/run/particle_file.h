@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Particles from a CSV file: columns x[,y[,z]], vx[,vy[,vz]], m, u in any order; the header gives
  * the dimension. */
-#ifndef SPHPROOF_PARTICLE_FILE_H
-#define SPHPROOF_PARTICLE_FILE_H
+#pragma once
 
 #include "csv.h"
 #include "simulation.h"
@@ -37,5 +36,3 @@ enum status particle_file_fill(const struct particle_file *file, const char *pat
  * another dimension, a particle outside of the box, no rho for layers. */
 enum status particle_file_start(const char *path, const struct prepared *p, struct initial *initial,
                                 struct error *error);
-
-#endif

@@ -2,8 +2,7 @@
  * Problems: what a run starts from and what it is judged by, in one, two and three dimensions. Each
  * is one file in problem/ and one line in problems.def; nothing outside of problem/ asks which one
  * a run has, only what its descriptor says. Code units throughout. */
-#ifndef SPHPROOF_PROBLEM_H
-#define SPHPROOF_PROBLEM_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -188,5 +187,3 @@ bool problem_is_circular(const struct prepared *p);
  * in space the first is the size of the part across the radius. At the centre itself: 0. */
 void problem_circular(const struct prepared *p, const double x[3], const double v[3],
                       double *azimuthal, double *radial);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Which problems there are (problems.def), and which keys each reads. */
-#ifndef SPHPROOF_PROBLEM_LIST_H
-#define SPHPROOF_PROBLEM_LIST_H
+#pragma once
 
 #include "problem.h"
 
@@ -22,5 +21,3 @@ const char *problem_functional(const struct problem *problem, const char *name);
 
 /* The same of any problem. */
 const char *problem_functional_name(const char *name);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * From settings to a problem with the numbers of one run. */
-#ifndef SPHPROOF_PROBLEM_PREPARE_H
-#define SPHPROOF_PROBLEM_PREPARE_H
+#pragma once
 
 #include "problem.h"
 
@@ -16,5 +15,3 @@ bool problem_lays_particles(const struct problem *problem, enum setting key);
 /* As problem_prepare for a problem that need not be in the list. */
 enum status problem_prepare_as(struct prepared *p, const struct problem *problem,
                                struct settings *settings, int dim, struct error *error);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Points that fill a unit cube evenly without a lattice: Sobol 1967, by GSL, randomised by a seed.
  */
-#ifndef SPHPROOF_QUASI_RANDOM_H
-#define SPHPROOF_QUASI_RANDOM_H
+#pragma once
 
 #include <gsl/gsl_qrng.h>
 #include <stdint.h>
@@ -25,5 +24,3 @@ void quasi_random_destroy(struct quasi_random *random);
 
 /* Writes the coordinates of the next point, from 0 up to, but not, 1. */
 void quasi_random_next(struct quasi_random *random, double *point);
-
-#endif

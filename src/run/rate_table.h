@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * One evaluation of the solver, for particles in the order of the setup. They do not move. */
-#ifndef SPHPROOF_RATE_TABLE_H
-#define SPHPROOF_RATE_TABLE_H
+#pragma once
 
 #include "description.h"
 #include "simulation.h"
@@ -21,5 +20,3 @@ struct rate_table {
 enum status rate_table_make(struct rate_table *table, const struct setup *setup,
                             struct error *error);
 void rate_table_free(struct rate_table *table);
-
-#endif

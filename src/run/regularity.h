@@ -2,8 +2,7 @@
  * How regular particles stand: distances of nearest neighbours, and what sums over a kernel make of
  * a constant (the lattice-sum errors of Quinlan et al. 2006 and Price 2012, there called E0). Code
  * units. */
-#ifndef SPHPROOF_REGULARITY_H
-#define SPHPROOF_REGULARITY_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -42,5 +41,3 @@ enum status regularity_measure(const struct regularity_cloud *cloud, struct regu
 /* Of a state of a run, with the kernel that the run has. NaN where it cannot be said. */
 struct regularity regularity_of(const struct prepared *p, const struct kernel *kernel,
                                 const struct snapshot *s, int threads);
-
-#endif

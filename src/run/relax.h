@@ -2,8 +2,7 @@
  * Glasses: points that have pushed each other apart until none is pushed any more, each keeping as
  * much room as it is asked to (weighted Voronoi tessellations, Diehl et al. 2015). They have no
  * directions, unlike a lattice, and few of the fluctuations of random points. Code units. */
-#ifndef SPHPROOF_RELAX_H
-#define SPHPROOF_RELAX_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -50,5 +49,3 @@ bool relax_store_find(uint64_t content, int dim, size_t n, double *const x[3]);
 
 /* Stores the points. A failure is ignored: the next run relaxes them again. */
 void relax_store_keep(uint64_t content, int dim, size_t n, double *const x[3]);
-
-#endif

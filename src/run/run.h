@@ -2,8 +2,7 @@
  * One run: settings as asked -> resolved, once -> particles -> simulation -> errors, conservation,
  * cost. The one way in which the commands run, converge, bench, report and stress compute
  * anything. */
-#ifndef SPHPROOF_RUN_H
-#define SPHPROOF_RUN_H
+#pragma once
 
 #include <jansson.h>
 
@@ -211,5 +210,3 @@ double run_error(const struct run_result *result, enum field field, enum norm no
  * STATUS_BAD_INPUT: an ending that means none; STATUS_ENVIRONMENT: it cannot be written. */
 enum status run_write_snapshot(const struct run_result *result, const char *path,
                                struct error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What belongs to a run, in documents and for plots. What is returned is a new reference. */
-#ifndef SPHPROOF_RUN_OUTPUT_H
-#define SPHPROOF_RUN_OUTPUT_H
+#pragma once
 
 #include <jansson.h>
 
@@ -37,9 +36,8 @@ json_t *trace_json(const struct trace *trace, int dim);
 json_t *profile_json(const struct run_result *result);
 
 /* {"dim", "map": {"x", "y": centres of cells, "slice": [from, to] of z (3D), "density", "speed",
- * "error" (|v - exact|, where it is known): by rows, NaN in a void}, "over": "x" or "R", "quantities": names, "x": of some particles of the
- * window, NAME, "exact_NAME": arrays, "exact": {"x", NAME ...}}; from "over" on only where there is
- * such a curve. New reference; NULL: no memory. */
+ * "error" (|v - exact|, where it is known): by rows, NaN in a void}, "over": "x" or "R",
+ * "quantities": names, "x": of some particles of the window, NAME, "exact_NAME": arrays, "exact":
+ * {"x", NAME ...}}; from "over" on only where there is such a curve. New reference; NULL: no
+ * memory. */
 json_t *cloud_profile_json(const struct run_result *result);
-
-#endif

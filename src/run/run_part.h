@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The parts of a run, each from its own file. Internal to runs. */
-#ifndef SPHPROOF_RUN_PART_H
-#define SPHPROOF_RUN_PART_H
+#pragma once
 
 #include "run.h"
 
@@ -33,5 +32,3 @@ void run_measure_nothing(struct run_result *result);
 
 /* Those of the problem that are there with its settings, and the rate of what grows. */
 void run_measure_functionals(struct run_result *result);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Settings of a run: one typed table of keys (settings.def), the values a case or a user gave, and
  * what `auto` stands for. */
-#ifndef SPHPROOF_SETTINGS_H
-#define SPHPROOF_SETTINGS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -118,5 +117,3 @@ int settings_choice_along(const struct settings *settings, enum setting key, int
 
 /* The value as one would type it, full precision. */
 void settings_text(const struct settings *settings, enum setting key, char text[SETTING_TEXT_MAX]);
-
-#endif

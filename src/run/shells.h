@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Density in shells round the window's centre, of flows that run towards it or from it: where a
  * shock is, how high it stands. Means over all directions, since single particles scatter. */
-#ifndef SPHPROOF_SHELLS_H
-#define SPHPROOF_SHELLS_H
+#pragma once
 
 #include "problem.h"
 
@@ -27,5 +26,3 @@ double shells_crossing(const struct shells *shells, double level);
 
 /* Mass over volume of all particles with lo <= r < hi; NaN: none. */
 double shells_mean(const struct prepared *p, const struct snapshot *s, double lo, double hi);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A problem in 2D given as periodic layers in 3D, for codes that know only 3D. */
-#ifndef SPHPROOF_SLAB_H
-#define SPHPROOF_SLAB_H
+#pragma once
 
 #include "initial.h"
 #include "run.h"
@@ -19,5 +18,3 @@ enum status slab_ask(struct run_settings *asked, const char *layers, const char 
  * for this initial state. STATUS_BAD_INPUT: fewer layers than the kernel reaches across.
  * STATUS_ENVIRONMENT: no memory. */
 enum status slab_lay(struct run *run, struct initial *initial, struct error *error);
-
-#endif

@@ -2,8 +2,7 @@
  * Formats in which the state of a run is written: a family, one file in writer/ and one line in
  * writers.def each. A file's name says by its ending which one is meant. Code units, double
  * precision; each file appears whole or not at all. */
-#ifndef SPHPROOF_SNAPSHOT_WRITER_H
-#define SPHPROOF_SNAPSHOT_WRITER_H
+#pragma once
 
 #include "family.h"
 #include "run.h"
@@ -47,5 +46,3 @@ struct snapshot_remark {
  * change the exact solution, KEY=VALUE separated by "; ". */
 size_t snapshot_remarks(const struct run_result *result,
                         struct snapshot_remark remarks[SNAPSHOT_REMARKS]);
-
-#endif

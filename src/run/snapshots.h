@@ -4,8 +4,7 @@
  * not change the run: a few steps before each, the state is saved in memory, the run goes on to
  * exactly the snapshot's time as if it ended there, and then continues from the saved state, equal
  * to the last bit. */
-#ifndef SPHPROOF_SNAPSHOTS_H
-#define SPHPROOF_SNAPSHOTS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -65,5 +64,3 @@ void snapshots_go_on(struct snapshots *snapshots);
 
 /* Remembers the first trouble. */
 void snapshots_fail(struct snapshots *snapshots, const struct error *error);
-
-#endif

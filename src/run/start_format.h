@@ -2,8 +2,7 @@
  * Formats in which the initial state of a run is written for other codes: a family, one file in
  * start/ and one line in starts.def each. The files are those of the writers of snapshots; here
  * stands what a code understands differently, and where its user sets what no file says. */
-#ifndef SPHPROOF_START_FORMAT_H
-#define SPHPROOF_START_FORMAT_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -46,5 +45,3 @@ enum status start_write(const struct start_format *format, const struct run_resu
  * cannot be written. */
 enum status gadget_binary_write(const struct run_result *result, const char *path, bool named,
                                 struct error *error);
-
-#endif

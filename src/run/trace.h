@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Conservation through time: sums over all particles after steps of a run, thinned evenly so that
  * any number of steps fits; and how regular particles stand, at a few even times. */
-#ifndef SPHPROOF_TRACE_H
-#define SPHPROOF_TRACE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -59,5 +58,3 @@ void trace_add(struct trace *trace, double time, const struct conservation *sums
 /* Is regularity to be seen at this time of a run to t_end? The start and the end always are. */
 bool trace_looks(const struct trace *trace, double time, double t_end);
 void trace_see(struct trace *trace, double time, const struct regularity *regularity);
-
-#endif

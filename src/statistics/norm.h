@@ -6,8 +6,7 @@
  *   Linf = max |q_i - e_i|,  particle mean = sum |q_i - e_i| / number in M.
  * L1 is continuous in all positions; the others jump where a particle crosses the edge of M. One
  * definition for every command and report. */
-#ifndef SPHPROOF_NORM_H
-#define SPHPROOF_NORM_H
+#pragma once
 
 #include <stddef.h>
 
@@ -42,5 +41,3 @@ void norm_bin_means(norm_field *field, const void *context, const double window[
  * NORM_BINS_MAX (NORM_BINS is the standard); NaN where the window is empty. */
 double norm_binned_l1(size_t n, const double *x, const double window[2], const double *volume,
                       const double *value, size_t bins, const double *exact_means);
-
-#endif

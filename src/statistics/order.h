@@ -4,8 +4,7 @@
  * functionals Richardson extrapolation and Roache's grid convergence index (Roache 1994; for
  * unequal ratios Celik et al. 2008). Spacing is any length that falls as the resolution grows:
  * N^(-1/d), h, dt. */
-#ifndef SPHPROOF_ORDER_H
-#define SPHPROOF_ORDER_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -81,5 +80,3 @@ struct order_extrapolation {
  * asymptotic. */
 struct order_extrapolation order_extrapolate(const double spacing[3], const double value[3],
                                              double exact);
-
-#endif

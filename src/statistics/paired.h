@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Two ways of computing one thing, each drawn several times: is one's error smaller by more than
  * draws scatter? */
-#ifndef SPHPROOF_PAIRED_H
-#define SPHPROOF_PAIRED_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -29,5 +28,3 @@ struct paired {
  * draw, repeated n times, that scatters as the other does. level: of all intervals that are looked
  * at together divided by their number, such as 0.05/4. A change below 0.1 % is none. */
 struct paired paired_compare(size_t n, const double *a, const double *b, bool single, double level);
-
-#endif

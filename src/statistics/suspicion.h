@@ -2,8 +2,7 @@
  * Results that are too good, or good for the wrong reason: faults of a study or of the harness
  * itself, reported as failures. Each function returns true where it is suspicious and then writes
  * a sentence to why (SUSPICION_TEXT bytes; may be NULL). */
-#ifndef SPHPROOF_SUSPICION_H
-#define SPHPROOF_SUSPICION_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -28,5 +27,3 @@ bool suspicion_idle_setting(const char *setting, size_t n, const double *before,
  * told apart and are not suspected: by the triangle inequality they are not that near. */
 bool suspicion_swapped(size_t fields, const char *const *names, size_t n, const double *volume,
                        const double *const *value, const double *const *exact, char *why);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The worst of many figures. Neither fmax nor `if (!(value <= worst)) worst = value` will do: the
  * first drops a NaN, the second forgets it at the next number. */
-#ifndef SPHPROOF_WORST_H
-#define SPHPROOF_WORST_H
+#pragma once
 
 #include <math.h>
 
@@ -11,5 +10,3 @@ static inline void worst_keep(double *worst, double value)
 {
     if (!(value <= *worst) && !isnan(*worst)) *worst = value;
 }
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A string that grows. Running out of memory is remembered, not reported at each step: the caller
  * checks `failed` (or buffer_take's NULL) once at the end. */
-#ifndef SPHPROOF_BUFFER_H
-#define SPHPROOF_BUFFER_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -26,5 +25,3 @@ void buffer_escape(struct buffer *to, const char *string);
 /* The string, which the caller frees; the buffer is empty again. NULL: out of memory. */
 char *buffer_take(struct buffer *to);
 void buffer_free(struct buffer *to);
-
-#endif

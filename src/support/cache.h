@@ -4,8 +4,7 @@
  * entry is one file, written whole or not at all, that carries its length and checksum; one that is
  * truncated, altered or another key's counts as missing. Any number of processes, on any number of
  * machines that share the folder, may use it at once; entries lie in 256 folders, by their name. */
-#ifndef SPHPROOF_CACHE_H
-#define SPHPROOF_CACHE_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -60,5 +59,3 @@ uint64_t cache_hash(uint64_t hash, const void *bytes, size_t n);
 
 /* The same of a whole file; 0: it cannot be read. */
 uint64_t cache_hash_file(const char *path);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Other programs, run to their end. */
-#ifndef SPHPROOF_CHILD_H
-#define SPHPROOF_CHILD_H
+#pragma once
 
 #include "status.h"
 
@@ -16,5 +15,3 @@ struct child_said {
  * program, or no process; said then needs no child_free. */
 enum status child_run(const char *const *words, struct child_said *said, struct error *error);
 void child_free(struct child_said *said);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Clocks, in seconds; differences mean something, the values do not. */
-#ifndef SPHPROOF_CLOCK_H
-#define SPHPROOF_CLOCK_H
+#pragma once
 
 /* What something took, or two metrics. */
 struct clock_taken {
@@ -15,5 +14,3 @@ void clock_add(struct clock_taken *taken, const struct clock_taken *start);
 
 double clock_wall(void);
 double clock_thread(void); /* CPU time of the calling thread */
-
-#endif

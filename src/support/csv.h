@@ -3,8 +3,7 @@
  * as many finite decimal numbers (Fortran's 1.0D0 is one), separated by commas or, where the names
  * have none, by blanks. Blank lines, lines that begin with '#', blanks around values, CRLF and a
  * byte order mark are allowed; anything else is an error with its place. */
-#ifndef SPHPROOF_CSV_H
-#define SPHPROOF_CSV_H
+#pragma once
 
 #include <stddef.h>
 
@@ -28,5 +27,3 @@ void csv_free(struct csv *csv);
 
 /* Position of the column called name, or -1. */
 int csv_column(const struct csv *csv, const char *name);
-
-#endif

@@ -2,8 +2,7 @@
  * A finding: what a check, a gate, a run or anything else that is judged has come to. There is one
  * kind of it, so that there is one verdict, one order in which failures are told, one JUnit file
  * and one exit status. */
-#ifndef SPHPROOF_FINDING_H
-#define SPHPROOF_FINDING_H
+#pragma once
 
 /* Only FAIL fails anything, and only PASS and FAIL are judged. NONE: nothing was asked. KNOWN:
  * fails, as its case says that it does. SMOKE: passes, but too coarsely to say more than that
@@ -44,5 +43,3 @@ double finding_ratio(double value, double bound);
 /* What fails of a figure: *beyond is its value, or its floor where the value alone would pass.
  * Returns how far that is beyond the bound, in units of it. */
 double finding_excess(const struct finding *finding, double *beyond);
-
-#endif

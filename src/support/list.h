@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Lists that grow, for everything whose number follows a family or what a user asks for, and sorted
  * numbers. */
-#ifndef SPHPROOF_LIST_H
-#define SPHPROOF_LIST_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -14,5 +13,3 @@ bool list_grow(void *list, size_t count, size_t size);
 
 /* Sorts n numbers, the least first. */
 void list_sort(double *values, size_t n);
-
-#endif

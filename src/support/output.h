@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Files that appear whole or not at all: written beside their place under a temporary name, renamed
  * when complete. An interrupt or an error removes the temporary. */
-#ifndef SPHPROOF_OUTPUT_H
-#define SPHPROOF_OUTPUT_H
+#pragma once
 
 #include <stdio.h>
 
@@ -46,5 +45,3 @@ void output_prepare_process(void);
 
 /* At the end: is everything on standard output? STATUS_OK also where the reader has left. */
 enum status output_finish_process(struct error *error);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A progress line on standard error for anything over a second: what, done of total, time left. On
  * a terminal one line is rewritten; in a log a plain line is added now and then. */
-#ifndef SPHPROOF_PROGRESS_H
-#define SPHPROOF_PROGRESS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -25,5 +24,3 @@ void progress_update(struct progress *progress, double done, double total);
 void progress_share(struct progress *progress, size_t done, size_t total, double share);
 /* Clears the line. */
 void progress_end(struct progress *progress);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Result documents: one JSON schema (verify/schema/sphproof-1.schema.json) for all commands. */
-#ifndef SPHPROOF_RESULT_H
-#define SPHPROOF_RESULT_H
+#pragma once
 
 #include <jansson.h>
 
@@ -39,5 +38,3 @@ enum status result_load(json_t **document, const char *path, struct error *error
 /* Writes the document to path ("-": standard output), 17 significant digits; a file appears whole
  * or not at all. STATUS_ENVIRONMENT: path cannot be written. */
 enum status result_write(const json_t *document, const char *path, struct error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * SHA-256 (FIPS 180-4): results name files by the same sums as the program sha256sum prints. */
-#ifndef SPHPROOF_SHA256_H
-#define SPHPROOF_SHA256_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -22,5 +21,3 @@ void sha256_end(struct sha256 *sum, char text[SHA256_TEXT]);
 
 /* The sum of a file's content; false if the file cannot be read. */
 bool sha256_file(const char *path, char text[SHA256_TEXT]);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Small helps for tables on standard output. */
-#ifndef SPHPROOF_TABLE_H
-#define SPHPROOF_TABLE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -13,5 +12,3 @@ struct table_style table_style(bool color);
 
 /* Prints text wrapped at 100 columns, each line after the indentation. */
 void table_wrap(const char *indentation, const char *text);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Words and numbers as people type them: strict parsing, near misses, messages that list what is
  * allowed. */
-#ifndef SPHPROOF_TEXT_H
-#define SPHPROOF_TEXT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -38,5 +37,3 @@ enum status text_unknown(struct error *error, const char *where, const char *kin
 /* The same for the members of a family. */
 enum status text_unknown_member(struct error *error, const char *where, const char *kind,
                                 const char *word, const struct family *family);
-
-#endif

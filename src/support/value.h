@@ -2,8 +2,7 @@
  * Reading JSON, for pages and for the harness. What is only shown is read leniently: a missing
  * member, or one of the wrong type, is "", NaN or nothing. What is judged is needed, and a message
  * says what stands there instead. "nan", "inf" and "-inf" are numbers. */
-#ifndef SPHPROOF_VALUE_H
-#define SPHPROOF_VALUE_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -37,5 +36,3 @@ enum { VALUE_MESSAGE = 200 };
 const json_t *value_need_list(const json_t *object, const char *name, char *message);
 int value_need_word(const json_t *object, const char *name, const char *const *words,
                     char *message);
-
-#endif

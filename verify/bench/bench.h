@@ -3,8 +3,7 @@
  * is warmed up, its work is repeated, doubling, until one sample takes a least time, and then
  * samples of all subjects are taken in turn, so that a burst of foreign load does not hit one
  * alone. What counts is the least sample; the median says how far to trust it. */
-#ifndef SPHPROOF_BENCH_H
-#define SPHPROOF_BENCH_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -47,5 +46,3 @@ extern const struct bench_rules bench_usual;
  * status ends the measurement and is returned. */
 enum status bench_measure(struct bench_subject *subjects, size_t count,
                           const struct bench_rules *rules, struct error *error);
-
-#endif

@@ -2,8 +2,7 @@
  * The solver's sums in 2D and 3D by themselves: a slightly disordered lattice of particles that
  * stand still; search, density, matrix and force, each alone or several in a row. What a step costs
  * beyond them is moving, widths, the equation of state and bookkeeping. */
-#ifndef SPHPROOF_BENCH_CELLS_H
-#define SPHPROOF_BENCH_CELLS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -33,5 +32,3 @@ void bench_cells_free(struct bench_cells *bench);
 /* A bench_work; context: struct bench_cells. */
 enum status bench_cells_work(void *context, uint64_t times, struct clock_taken *taken,
                              struct error *error);
-
-#endif

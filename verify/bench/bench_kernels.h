@@ -2,8 +2,7 @@
  * What a pair costs: every kernel in the solver's loops and steps (1D) and sums (2D and 3D) and in
  * every gradient operator in 1D, 2D and 3D; specialised, generic, and the same arithmetic where
  * nothing has to be found. */
-#ifndef SPHPROOF_BENCH_KERNELS_H
-#define SPHPROOF_BENCH_KERNELS_H
+#pragma once
 
 #include <jansson.h>
 
@@ -41,5 +40,3 @@ void bench_kernels_free(struct bench_kernels *result);
 /* Array "kernels" of a result document. */
 void bench_kernels_add_json(const struct bench_kernels *result, json_t *document);
 void bench_kernels_print(const struct bench_kernels *result, const struct table_style *style);
-
-#endif

@@ -2,8 +2,7 @@
  * The practical limit of a gradient operator: its arithmetic on neighbours that lie one after the
  * other in memory, with nothing to search, gather or choose. Written once more, so that it also
  * says what the sums must be. */
-#ifndef SPHPROOF_BENCH_LIMIT_H
-#define SPHPROOF_BENCH_LIMIT_H
+#pragma once
 
 #include "operator.h"
 
@@ -34,5 +33,3 @@ double bench_limit_candidates(int dim);
  * the matrix has no inverse. */
 bool bench_limit_gradient(const struct kernel *kernel, const struct operator_form *form, int dim,
                           const double *sums, double f_0, double h, double *gradient);
-
-#endif

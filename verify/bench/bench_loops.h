@@ -2,8 +2,7 @@
  * The solver's 1D loops by themselves: a state of particles that stands still, neighbour offsets
  * known, arrays contiguous, nothing searched. What a whole step costs beyond this is search,
  * bookkeeping and memory. */
-#ifndef SPHPROOF_BENCH_LOOPS_H
-#define SPHPROOF_BENCH_LOOPS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -52,5 +51,3 @@ void bench_loops_free(struct bench_loops *loops);
 /* A bench_work; context: struct bench_loops. */
 enum status bench_loops_work(void *context, uint64_t times, struct clock_taken *taken,
                              struct error *error);
-
-#endif

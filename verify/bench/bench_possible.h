@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * How much of a run is skipped, how much could be, and where and when it sleeps. */
-#ifndef SPHPROOF_BENCH_POSSIBLE_H
-#define SPHPROOF_BENCH_POSSIBLE_H
+#pragma once
 
 #include "initial.h"
 #include "run.h"
@@ -43,5 +42,3 @@ enum status bench_possible(const struct run *run, struct bench_shares *shares, s
  * anything less would leave out more than the tolerance. STATUS_*: as run_execute. */
 enum status bench_allowed(const struct run *run, const struct initial *initial, double tolerance,
                           double sound, double *share, struct error *error);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * How cost grows with the number of particles: of a step, of a whole run, of memory; and what
  * threads gain. Exponents are least-squares slopes in log-log with their 95 % interval. */
-#ifndef SPHPROOF_BENCH_SCALING_H
-#define SPHPROOF_BENCH_SCALING_H
+#pragma once
 
 #include <jansson.h>
 
@@ -54,5 +53,3 @@ void bench_scaling_add_json(const struct scaling *scaling, json_t *document);
 void bench_scaling_print(const struct scaling *scaling, const struct table_style *style);
 enum status bench_scaling_plot(const struct scaling *scaling, const char *path,
                                struct error *error);
-
-#endif

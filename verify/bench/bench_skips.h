@@ -2,8 +2,7 @@
  * What each piece of work that a run leaves out would cost, and whether the answer is the same
  * without it. Some can be switched on by a key: both runs are made and compared. Others are passes
  * that the plan does not contain and nothing would read: these are timed by themselves. */
-#ifndef SPHPROOF_BENCH_SKIPS_H
-#define SPHPROOF_BENCH_SKIPS_H
+#pragma once
 
 #include <jansson.h>
 
@@ -75,5 +74,3 @@ void bench_steps_print(const struct bench_skips *result, const struct table_styl
 /* Largest difference of two snapshots in any field, relative to the field's largest value,
  * positions to the period; 0 only for the same bits. INFINITY: not comparable. */
 double bench_skips_difference(const struct snapshot *a, const struct snapshot *b, double period);
-
-#endif

@@ -6,8 +6,7 @@
  * density, relative to the signal: how far the exact density is from its own mean.
  * In d dimensions errors fall as n^(-p/d) and work grows as n^((d+1)/d): L1^((d+1)/p) x CPU time;
  * the error is that of judged.h, and compared is SPH as textbooks have it. */
-#ifndef SPHPROOF_PRECISION_H
-#define SPHPROOF_PRECISION_H
+#pragma once
 
 #include <jansson.h>
 
@@ -125,5 +124,3 @@ enum status precision_plot(const struct precision *precision, const char *path,
 
 /* "case", "points", "schemes", "cheapest", "excluded" ... of a result document. */
 void precision_add_json(const struct precision *precision, json_t *document);
-
-#endif

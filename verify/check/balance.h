@@ -2,8 +2,7 @@
  * Does an exact solution of one-dimensional gas dynamics satisfy the conservation laws? In integral
  * form over rectangles of x and t (shocks and contacts included), by Gauss-Legendre quadrature
  * between given paths of kinks, and in differential form where it is smooth. */
-#ifndef SPHPROOF_BALANCE_H
-#define SPHPROOF_BALANCE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -34,5 +33,3 @@ double balance_defect(const struct flow *flow, const double x[2], const double t
 /* |dU/dt + dF/dx| at a smooth point, the worst of the three relative to its two terms. dx, dt:
  * steps of the numerical derivatives, well inside the smooth region. Round-off: some 1e-10. */
 double balance_residual(const struct flow *flow, double x, double t, double dx, double dt);
-
-#endif

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * All checks, in the order of checks.def. */
-#ifndef SPHPROOF_CHECK_REGISTRY_H
-#define SPHPROOF_CHECK_REGISTRY_H
+#pragma once
 
 #include "check.h"
 
 extern const struct check *const check_registry[];
 extern const size_t check_registry_count;
-
-#endif

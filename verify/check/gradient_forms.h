@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Operators as subjects of checks: right ones, and right names with wrong flags. */
-#ifndef SPHPROOF_CHECK_GRADIENT_FORMS_H
-#define SPHPROOF_CHECK_GRADIENT_FORMS_H
+#pragma once
 
 #include "check.h"
 #include "gradient_study.h"
@@ -38,5 +37,3 @@ __attribute__((unused)) static void gradient_subjects(struct check_run *run)
 }
 
 #define SUBJECT(form, fault) (&(const struct gradient_subject){&(form), NAIVE_##fault})
-
-#endif

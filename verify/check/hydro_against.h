@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The solver against the oracle, all pairs in long double, in 1D to 3D: every quantity of one
  * evaluation, or of the state some steps later, is measured. */
-#ifndef SPHPROOF_HYDRO_AGAINST_H
-#define SPHPROOF_HYDRO_AGAINST_H
+#pragma once
 
 #include <stddef.h>
 
@@ -35,5 +34,3 @@ void hydro_against_rates(struct check_run *run, struct setup setup, const struct
 /* The state and the number of steps after this many of the first time step. */
 void hydro_against_steps(struct check_run *run, struct setup setup, const struct hydro_fault *fault,
                          double steps, const char *where);
-
-#endif

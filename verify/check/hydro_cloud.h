@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * States and schemes in 2D and 3D that the checks of group hydro run the solver on. */
-#ifndef SPHPROOF_HYDRO_CLOUD_H
-#define SPHPROOF_HYDRO_CLOUD_H
+#pragma once
 
 #include "simulation.h"
 
@@ -40,5 +39,3 @@ void hydro_cloud_physic(struct scheme *scheme, size_t c);
 
 /* What tells a scheme from hydro_cloud_scheme(). */
 void hydro_cloud_describe(const struct scheme *scheme, int dim, char text[CLOUD_TEXT]);
-
-#endif

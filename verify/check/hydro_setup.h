@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * States and schemes that the checks of group hydro run the solver on. */
-#ifndef SPHPROOF_HYDRO_SETUP_H
-#define SPHPROOF_HYDRO_SETUP_H
+#pragma once
 
 #include "simulation.h"
 
@@ -43,5 +42,3 @@ void hydro_combine(struct scheme *scheme, size_t c);
 const struct integrator *hydro_integrator(const char *name);
 /* "cubic_spline 2 ia lagrangian ...": what tells a scheme from hydro_scheme(). */
 void hydro_describe(const struct scheme *scheme, char text[HYDRO_TEXT]);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Wrong kernels, and for each property those that it must reject: kernel_mutants_NAME. */
-#ifndef SPHPROOF_KERNEL_MUTANTS_H
-#define SPHPROOF_KERNEL_MUTANTS_H
+#pragma once
 
 #include "check.h"
 
@@ -9,5 +8,3 @@
     extern const struct check_mutant kernel_mutants_##name[];
 #include "properties.def"
 #undef PROPERTY
-
-#endif

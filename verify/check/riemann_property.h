@@ -2,8 +2,7 @@
  * What a solution of a Riemann problem must satisfy (Toro 2009, chapters 3 and 4), measured without
  * the formulas that made it; random problems to measure it on. Defects are relative to the largest
  * terms of the relation, so that a few 1e-16 are round-off. */
-#ifndef SPHPROOF_RIEMANN_PROPERTY_H
-#define SPHPROOF_RIEMANN_PROPERTY_H
+#pragma once
 
 #include <gsl/gsl_rng.h>
 
@@ -99,5 +98,3 @@ RIEMANN_MUTANTS(MUTANT)
     {                                                                                              \
         "riemann_" #name, fault, &riemann_mutant_##name                                            \
     }
-
-#endif

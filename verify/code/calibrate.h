@@ -8,8 +8,7 @@
  * smallest change A of a fault with A >= 9 F, the gate allows e0 - D to e0 + D, D = sqrt(F A): D is
  * as many times F as A is times D, and at least three times. What is conserved has its own size as
  * floor (at least 1e-14), and no lower bound. Without any fault in the code file D = 10 F. */
-#ifndef SPHPROOF_CALIBRATE_H
-#define SPHPROOF_CALIBRATE_H
+#pragma once
 
 #include "code_run.h"
 #include "study.h"
@@ -75,5 +74,3 @@ enum status calibrate_text(const struct calibrate *calibrate, char **text, struc
 void calibrate_add_json(const struct calibrate *calibrate, json_t *document);
 
 void calibrate_free(struct calibrate *calibrate);
-
-#endif

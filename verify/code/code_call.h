@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a run of a code is called with: the values of @WORDS@, the words of its command, its
  * templates filled in; and the files that decide its result. */
-#ifndef SPHPROOF_CODE_CALL_H
-#define SPHPROOF_CODE_CALL_H
+#pragma once
 
 #include "code_run.h"
 #include "sha256.h"
@@ -38,5 +37,3 @@ enum status code_add_key(const struct run_external *external, const struct run *
 
 /* The sum of the command's program; "" where it cannot be read. */
 void code_program_sum(const struct code_external *external, char sum[SHA256_TEXT]);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What values of code files may be. */
-#ifndef SPHPROOF_CODE_CHECK_H
-#define SPHPROOF_CODE_CHECK_H
+#pragma once
 
 #include "code_file.h"
 
@@ -24,5 +23,3 @@ bool code_find_program(const struct code *code, const char *word, size_t length,
 
 /* Is it a regular file? */
 bool code_is_file(const char *path);
-
-#endif

@@ -17,8 +17,7 @@
  * file beside the code file stands for that file. Paths of templates and `depends` are relative to
  * the code file. Every key and every @WORD@ is checked when the file is read, but programs are
  * looked for when a case is run. */
-#ifndef SPHPROOF_CODE_FILE_H
-#define SPHPROOF_CODE_FILE_H
+#pragma once
 
 #include "cases.h"
 #include "family.h"
@@ -149,5 +148,3 @@ char *code_fill(const char *text, const char *const *values);
 
 /* The first @WORD@ that there is not, in CODE_NAME bytes; false: all are known. */
 bool code_unknown_word(const char *text, char word[CODE_NAME]);
-
-#endif

@@ -2,8 +2,7 @@
  * A program in a group of processes of its own, under a process that only watches over it: that one
  * ends the group when time or memory are used up, when the program has ended, and when this process
  * does, however it ends. Nothing of it is left running. */
-#ifndef SPHPROOF_CODE_PROCESS_H
-#define SPHPROOF_CODE_PROCESS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -31,5 +30,3 @@ enum status code_process(const struct code_order *order, struct code_outcome *ou
 
 /* Removes a folder and all that is in it. */
 void code_remove(const char *folder);
-
-#endif

@@ -3,8 +3,7 @@
  * filled in, the command runs in a folder of its own, its last snapshot is judged, and the document
  * of `sphproof run` comes of it with "code" and "judged" beside. Ladders, orders, gates, pages and
  * history are made of such documents alone, whichever code has run. */
-#ifndef SPHPROOF_CODE_RUN_H
-#define SPHPROOF_CODE_RUN_H
+#pragma once
 
 #include <stdint.h>
 
@@ -42,5 +41,3 @@ enum status code_prepare(const struct code *code, const char *case_name, const c
  * Anything else leaves nothing. */
 enum status code_run(const struct run *run, struct judged *judged, json_t **document,
                      struct error *error);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The snapshot that a run of a code leaves: which file it is, and whether it can be a result of the
  * initial state that the code was given. */
-#ifndef SPHPROOF_CODE_SNAPSHOT_H
-#define SPHPROOF_CODE_SNAPSHOT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -75,5 +74,3 @@ enum code_reason code_compare(const struct snapshot_file *file, const struct cod
  * two does not have what could be compared. */
 bool code_is_start(const struct snapshot_file *file, const struct code_origin *origin,
                    char *message, size_t size);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Commands: one file and one line in commands.def each. */
-#ifndef SPHPROOF_COMMAND_H
-#define SPHPROOF_COMMAND_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -80,5 +79,3 @@ enum status options_kernel(const struct options *options, int *index, struct err
 
 /* The whole program: finds the command, runs it, prints the error, returns the exit status. */
 int command_main(int argc, char **argv);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Who computes what many computations consist of: a family. An engine fills the cache; the pool,
  * which runs afterwards, finds everything there, or computes it where an engine leaves it to it. */
-#ifndef SPHPROOF_ENGINE_H
-#define SPHPROOF_ENGINE_H
+#pragma once
 
 #include "command.h"
 #include "pool.h"
@@ -33,5 +32,3 @@ struct engine {
 
 /* The engine called name; NULL with error: there is none. */
 const struct engine *engine_find(const char *name, struct error *error);
-
-#endif

@@ -3,8 +3,7 @@
  * case's first field; in 2D maps of density, speed and the error of that field where it is known,
  * and beside them particles over the exact curve where the solution has one coordinate; in 3D the
  * same of a slice of two mean distances of particles through the middle of the box. */
-#ifndef SPHPROOF_RUN_PLOT_H
-#define SPHPROOF_RUN_PLOT_H
+#pragma once
 
 #include "movie.h"
 #include "run.h"
@@ -13,5 +12,3 @@
  * no memory, or path cannot be written. */
 enum status run_plot(const struct run_settings *settings, const struct run_result *result,
                      const char *path, struct movie *movie, struct error *error);
-
-#endif

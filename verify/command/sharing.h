@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The options of every command that has many independent computations: how many side by side, where
  * they are kept, which share of them is this process's, and what they are. */
-#ifndef SPHPROOF_SHARING_H
-#define SPHPROOF_SHARING_H
+#pragma once
 
 #include "command.h"
 #include "engine.h"
@@ -65,5 +64,3 @@ bool verify_shares_wanted(const struct options *options);
  * STATUS_ENVIRONMENT, STATUS_BROKE_DOWN: a check gave no result. */
 enum status verify_shares_run(struct suite *suite, const struct suite_choice *choice,
                               const struct options *options, bool *whole, struct error *error);
-
-#endif

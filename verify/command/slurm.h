@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What is asked of Slurm, by its own commands: arrays of tasks under one name. Slurm's manuals:
  * sbatch(1), squeue(1), scancel(1). */
-#ifndef SPHPROOF_SLURM_H
-#define SPHPROOF_SLURM_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -49,5 +48,3 @@ enum status slurm_share_submit(const struct slurm_share *share, long *job, struc
 /* Where the task of a share writes what it says. */
 void slurm_share_log(const char *folder, const char *name, long job, int share, char *path,
                      size_t size);
-
-#endif

@@ -2,8 +2,7 @@
  * Targets for coverage-guided fuzzing: whatever the bytes are, a target returns within a second of
  * CPU time, without a crash, a leak or a broken promise (FUZZ_PROMISE). Built with -Dfuzzer=true
  * (clang) they are run by libFuzzer, otherwise by replay.c. */
-#ifndef SPHPROOF_FUZZ_H
-#define SPHPROOF_FUZZ_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -38,5 +37,3 @@ _Noreturn void fuzz_broken(const char *file, int line, const char *promise);
 /* Becomes 1 when a promise is broken, unless NULL: memory shared with a process that looks after
  * this one (what is printed would not do, an input may hold the same words). */
 extern volatile int *fuzz_was_broken;
-
-#endif

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What is promised of a snapshot that is read: it is refused, or its columns are sound numbers,
  * from which kernel and meaning of h are then sought. */
-#ifndef SPHPROOF_FUZZ_READ_H
-#define SPHPROOF_FUZZ_READ_H
+#pragma once
 
 #include "snapshot_file.h"
 
 /* Reads path and looks whether the promise holds; the status of the reader. seek: kernel and
  * meaning of h are sought in what is read, too, which takes much longer. */
 enum status fuzz_read(const char *path, const struct snapshot_options *options, bool seek);
-
-#endif

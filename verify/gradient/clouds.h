@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Point clouds in the unit box [0,1]^d for the checks of gradient operators, with volumes that are
  * exact for the density the points are drawn from, and smoothing lengths h = eta V^(1/d). */
-#ifndef SPHPROOF_CLOUDS_H
-#define SPHPROOF_CLOUDS_H
+#pragma once
 
 #include "operator.h"
 
@@ -53,5 +52,3 @@ void clouds_transform(struct clouds_cloud *cloud, const double *rotation, const 
 /* Is point i in the interior: its support inside the region that the points fill? */
 bool clouds_interior(const struct clouds_settings *settings, const struct clouds_cloud *cloud,
                      size_t i);
-
-#endif

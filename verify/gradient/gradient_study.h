@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What the checks of gradient operators share: an operator or a wrong one as subject, fields with
  * known gradients, errors over a cloud with interior and edge apart. */
-#ifndef SPHPROOF_GRADIENT_STUDY_H
-#define SPHPROOF_GRADIENT_STUDY_H
+#pragma once
 
 #include "clouds.h"
 #include "naive.h"
@@ -47,5 +46,3 @@ enum status gradient_study_errors(const struct gradient_subject *subject,
 
 /* Points along an axis in the quick checks, and the settings of a quick cloud. */
 struct clouds_settings gradient_study_cloud(enum clouds_kind kind, int dim);
-
-#endif

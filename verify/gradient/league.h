@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The league table of gradient operators: what each is exact for, how it converges on disordered
  * points, what it conserves, and what it costs. */
-#ifndef SPHPROOF_LEAGUE_H
-#define SPHPROOF_LEAGUE_H
+#pragma once
 
 #include <jansson.h>
 
@@ -28,5 +27,3 @@ enum status league_measure(struct league_row **rows, size_t *count, struct error
 /* {"rows": [{"operator", "dim", ...}], "reproduce"}, flat rows as a report shows them; 1D angular
  * momentum is null. New reference, NULL: no memory. */
 json_t *league_json(const struct league_row *rows, size_t count);
-
-#endif

@@ -2,8 +2,7 @@
  * The gradient operators once more, straight from their formulas: every pair, long double, one
  * matrix inverted by cofactors. Shares nothing with src but the kernel's shape. An oracle for the
  * fast loops; and, with one fault switched on, the wrong operators that the checks must reject. */
-#ifndef SPHPROOF_NAIVE_H
-#define SPHPROOF_NAIVE_H
+#pragma once
 
 #include "operator.h"
 
@@ -39,5 +38,3 @@ enum naive_fault {
 void naive_gradient(const struct operator_form *form, const struct kernel *kernel,
                     enum naive_fault fault, const struct cloud *cloud, const double *f, size_t i,
                     double *gradient);
-
-#endif

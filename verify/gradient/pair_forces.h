@@ -3,8 +3,7 @@
  * in 1D, 2D and 3D, straight from their formulas, with gradients G_ij that are src's operators
  * applied to fields which are 1 at one point. For rates of change of conserved sums without time
  * stepping. */
-#ifndef SPHPROOF_PAIR_FORCES_H
-#define SPHPROOF_PAIR_FORCES_H
+#pragma once
 
 #include "gradient_study.h"
 #include "scheme.h"
@@ -55,5 +54,3 @@ bool pair_forces_gradients(struct pair_forces_state *state, const struct gradien
 /* All of it: the rates of one state. */
 bool pair_forces_rates(const struct pair_forces_subject *subject, int dim, unsigned long seed,
                        struct pair_forces_rates *rates);
-
-#endif

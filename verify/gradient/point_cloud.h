@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A point cloud from a CSV file: columns x[,y,z],volume first, then one column a field, in any
  * place among these optionally h, the support radius. */
-#ifndef SPHPROOF_POINT_CLOUD_H
-#define SPHPROOF_POINT_CLOUD_H
+#pragma once
 
 #include "csv.h"
 #include "operator.h"
@@ -22,5 +21,3 @@ struct point_cloud {
 enum status point_cloud_read(const char *path, int dim, double eta, double h,
                              struct point_cloud *cloud, struct error *error);
 void point_cloud_free(struct point_cloud *cloud);
-
-#endif

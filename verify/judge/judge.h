@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Snapshots of any code against the exact solution of a case: the same errors and norms as of a
  * run, with everything that had to be assumed and the evidence for it. */
-#ifndef SPHPROOF_JUDGE_H
-#define SPHPROOF_JUDGE_H
+#pragma once
 
 #include <jansson.h>
 
@@ -134,5 +133,3 @@ bool judge_tube_ends(const struct judge_request *request, struct judged *judged,
 enum status judge_tube_place(const struct judge_request *request, struct judged *judged,
                              const struct settings *settings, double x0, const double ends[2],
                              double window[2], double box[2], struct error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The autopsy of another code's snapshots: what exact fields become at its particles' positions. */
-#ifndef SPHPROOF_JUDGE_AUTOPSY_H
-#define SPHPROOF_JUDGE_AUTOPSY_H
+#pragma once
 
 #include "autopsy.h"
 #include "judge.h"
@@ -11,5 +10,3 @@
  * STATUS_BAD_INPUT: as autopsy_check. */
 enum status judge_autopsy(const struct judged *judged, struct autopsy_level *level,
                           struct run *used, struct error *error);
-
-#endif

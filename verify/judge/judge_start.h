@@ -3,8 +3,7 @@
  * (positions, velocities, energies, masses) is compared with the case's gas where they are; their
  * densities are sums over neighbours, which no code reads. What differs is said in words: which
  * field, of how many particles, where, and what would explain it. */
-#ifndef SPHPROOF_JUDGE_START_H
-#define SPHPROOF_JUDGE_START_H
+#pragma once
 
 #include "run.h"
 
@@ -24,5 +23,3 @@ struct judge_start {
  * not known. STATUS_ENVIRONMENT: no memory. */
 enum status judge_start_look(const struct run_result *result, double precision, double mass_ratio,
                              struct judge_start *start, struct error *error);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Rates that another code computed, against ours; and what the difference may come from: choices of
  * a scheme are changed one by one until its rates come out. */
-#ifndef SPHPROOF_RATE_CHECK_H
-#define SPHPROOF_RATE_CHECK_H
+#pragma once
 
 #include "csv.h"
 #include "rate_table.h"
@@ -29,5 +28,3 @@ struct rate_check {
 enum status rate_check_make(struct rate_check *check, const char *path, const struct csv *theirs,
                             const struct setup *setup, const struct rate_table *ours,
                             double tolerance, struct error *error);
-
-#endif

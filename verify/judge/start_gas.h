@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The particles of a snapshot of t = 0 beside the case's gas, and how far they are from it. */
-#ifndef SPHPROOF_START_GAS_H
-#define SPHPROOF_START_GAS_H
+#pragma once
 
 #include "judge_start.h"
 
@@ -47,5 +46,3 @@ bool start_cause(const struct start_gas *gas, enum start_field field, char *text
 
 /* Are all particles, or those that are wrong, those of other places? */
 bool start_cause_places(const struct start_gas *gas, char *text, size_t size);
-
-#endif

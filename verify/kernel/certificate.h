@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The certificate of a kernel in one dimension: what was measured on it, and whether every property
  * holds. */
-#ifndef SPHPROOF_CERTIFICATE_H
-#define SPHPROOF_CERTIFICATE_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -61,5 +60,3 @@ json_t *certificate_curves(const struct certificate *certificate);
 
 /* Draws them to path (.svg or .png). */
 enum status certificate_plot(const json_t *curves, const char *path, struct error *error);
-
-#endif

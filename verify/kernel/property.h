@@ -2,8 +2,7 @@
  * The properties that every kernel must have (CONVENTIONS section 2), each measured by one function
  * in property/. The certificate of a kernel and the checks of group `kernels` read the same list,
  * properties.def. */
-#ifndef SPHPROOF_PROPERTY_H
-#define SPHPROOF_PROPERTY_H
+#pragma once
 
 #include <stddef.h>
 
@@ -58,5 +57,3 @@ extern const double property_width[PROPERTY_WIDTHS];
  * (floor far below it), else 20 floors, at most `PROPERTY_BOUND_MAX`. */
 #define PROPERTY_BOUND_MAX 1e-9
 double property_bound(double base, double floor);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * All properties of a user's kernel in 1, 2 and 3 dimensions, measured in a process of its own: the
  * checks take the figures from here and never call foreign code. */
-#ifndef SPHPROOF_USER_FIGURES_H
-#define SPHPROOF_USER_FIGURES_H
+#pragma once
 
 #include "findings.h"
 #include "status.h"
@@ -17,5 +16,3 @@ struct user_figures {
 enum status user_figures_measure(struct user_figures *figures, const char *path,
                                  struct error *error);
 void user_figures_free(struct user_figures *figures);
-
-#endif

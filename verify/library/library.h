@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What the files of the public library share: between its names and those of the rooms. */
-#ifndef SPHPROOF_LIBRARY_H
-#define SPHPROOF_LIBRARY_H
+#pragma once
 
 #include "kernel.h"
 #include "simulation.h"
@@ -37,5 +36,3 @@ void library_figure(struct library_figures *figures, const struct sphproof_figur
 enum sphproof_status library_setup(const struct sphproof_setup *theirs, bool sharp,
                                    const double *rest, struct setup *setup,
                                    struct sphproof_error *error);
-
-#endif

@@ -3,8 +3,7 @@
  * switched on by the environment, SPHPROOF_MUTANT=number. Where a file is named by SPHPROOF_REACH,
  * nothing is switched; it then tells for every mutant, one byte each, whether a process came by (1)
  * and whether the mutant would have made a difference there (2). */
-#ifndef SPHPROOF_SCHEMATA_H
-#define SPHPROOF_SCHEMATA_H
+#pragma once
 
 /* No headers are included here, because a source may define feature macros before it includes them.
  */
@@ -45,5 +44,3 @@ static inline int sphproof_seen(int n, int same)
         if (sphproof_mutant < 0) sphproof_seen(n, (mutant) == is_##n);                             \
         sphproof_mutant == (n) ? (mutant) : is_##n;                                                \
     }))
-
-#endif

@@ -2,8 +2,7 @@
  * The oracle: the equations of density, smoothing length, force, energy and time stepping written
  * down once more, for 1, 2 and 3 dimensions, straight from the text, in long double, with loops
  * over all pairs and images. Slow and plain on purpose; shares types with src, but no code. */
-#ifndef SPHPROOF_ORACLE_H
-#define SPHPROOF_ORACLE_H
+#pragma once
 
 #include "oracle_kernel.h"
 #include "simulation.h"
@@ -82,5 +81,3 @@ enum status oracle_step(struct oracle *oracle, long double dt, struct error *err
 /* Steps to t_end; oracle_evaluate is called first, and last where a step does not end with it: the
  * derived fields are those of the state at t_end. */
 enum status oracle_run(struct oracle *oracle, long double t_end, struct error *error);
-
-#endif

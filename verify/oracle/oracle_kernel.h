@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Kernels of the oracle: w(q) and dw/dq in long double, in the textbook's piecewise form, and their
  * constants. Nothing of src's own kernels is used. */
-#ifndef SPHPROOF_ORACLE_KERNEL_H
-#define SPHPROOF_ORACLE_KERNEL_H
+#pragma once
 
 #include "kernel.h"
 
@@ -30,5 +29,3 @@ static inline long double oracle_power(long double x, int n)
     while (n-- > 0) y *= x;
     return y;
 }
-
-#endif

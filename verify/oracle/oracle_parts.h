@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Inside of the oracle: geometry and kernels, the state of each particle, the terms of each pair.
  */
-#ifndef SPHPROOF_ORACLE_PARTS_H
-#define SPHPROOF_ORACLE_PARTS_H
+#pragma once
 
 #include <math.h>
 
@@ -77,5 +76,3 @@ void oracle_apply_switch(struct oracle *oracle, long double dt);
 /* Adds what pair (a, b) does to a; x = r_b - r_a. */
 void oracle_add_pair(const struct oracle *oracle, struct oracle_particle *a,
                      const struct oracle_particle *b, const oracle_vector x);
-
-#endif

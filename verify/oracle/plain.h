@@ -3,8 +3,7 @@
  * gradient, vanilla_ice, constant or no viscosity, energy internal, h by Newton, modified leapfrog)
  * as one writes it first: double precision, one particle after the other, neighbours left and right
  * in sorted order, nothing vectorised or left out. Shares types with src, but no code. */
-#ifndef SPHPROOF_PLAIN_H
-#define SPHPROOF_PLAIN_H
+#pragma once
 
 #include "simulation.h"
 
@@ -28,5 +27,3 @@ void plain_free(struct plain *plain);
 
 /* The state: arrays belong to plain, positions wrapped into the box, rising; id is NULL. */
 void plain_snapshot(const struct plain *plain, struct snapshot *snapshot);
-
-#endif

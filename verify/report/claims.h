@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Claims that are made about schemes, each measured: two sets of keys on the same case, one figure
  * of either, and which is nearer to the exact value, for several kernels and viscosities. */
-#ifndef SPHPROOF_CLAIMS_H
-#define SPHPROOF_CLAIMS_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -25,5 +24,3 @@ enum status claims_plan(struct claims *claims, bool nightly, struct pool *pool,
 json_t *claims_judge(const struct claims *claims, const struct pool *pool);
 
 void claims_free(struct claims *claims);
-
-#endif

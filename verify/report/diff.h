@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a change did: the metrics of two result documents of the same command, each judged against
  * its noise. */
-#ifndef SPHPROOF_DIFF_H
-#define SPHPROOF_DIFF_H
+#pragma once
 
 #include "metric.h"
 
@@ -44,5 +43,3 @@ void diff_add_json(const struct diff *diff, json_t *document);
 /* Why it is not well, if so; then a table of everything that is not the same, on standard output;
  * exact: with that column. */
 void diff_print(const struct diff *diff, double threshold, bool exact, bool color);
-
-#endif

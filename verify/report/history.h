@@ -2,8 +2,7 @@
  * The history of a report: one line of JSON per night with all its headline figures (date, git,
  * mode, processor, verdict, {path: value}), and what it tells: what has changed since last night,
  * and since when each figure has been where it is. */
-#ifndef SPHPROOF_HISTORY_H
-#define SPHPROOF_HISTORY_H
+#pragma once
 
 #include <jansson.h>
 #include <stddef.h>
@@ -47,5 +46,3 @@ struct trend_change {
  * scatter (1.4826 median |residual|) about them. Rising order; returns their number, <= most. */
 size_t trend_changes(size_t n, const double *value, double noise, struct trend_change *changes,
                      size_t most);
-
-#endif

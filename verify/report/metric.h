@@ -3,8 +3,7 @@
  * from one document to the next (entries of lists are named by what they are about, not by their
  * place), what it is, and how far it may move without meaning anything. Diff, history and baseline
  * are made of them. */
-#ifndef SPHPROOF_METRIC_H
-#define SPHPROOF_METRIC_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -85,5 +84,3 @@ const struct metric_rule *metric_rule(const char *path, const char *name);
 
 /* Is name one of the path's parts outside brackets? */
 bool metric_passes(const char *path, const char *name);
-
-#endif

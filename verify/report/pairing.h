@@ -2,8 +2,7 @@
  * The claim that Wendland functions keep particles from pairing because their Fourier transforms
  * are nowhere negative (Dehnen & Aly 2012), measured: disordered gas comes to rest with every
  * kernel, from few neighbours to many, in 2D and 3D, and particles in pairs are counted. */
-#ifndef SPHPROOF_PAIRING_H
-#define SPHPROOF_PAIRING_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -28,5 +27,3 @@ json_t *pairing_judge(const struct pairing *pairing, const struct pool *pool,
                       const json_t *kernels);
 
 void pairing_free(struct pairing *pairing);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a report computes: a list of independent tasks (runs with their profiles, convergence
  * studies, the checks, kernel certificates), each giving one piece of the results. */
-#ifndef SPHPROOF_REPORT_H
-#define SPHPROOF_REPORT_H
+#pragma once
 
 #include <jansson.h>
 
@@ -44,5 +43,3 @@ enum status report_judge(struct report *report, const char *folder, json_t **res
                          struct error *error);
 
 void report_destroy(struct report *report);
-
-#endif

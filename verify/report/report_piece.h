@@ -2,8 +2,7 @@
  * The pieces of a report that are no studies: runs with their profiles, groups of checks, kernel
  * certificates, the league of gradient operators, what an error costs, what skips save, what an
  * order is lost to; each one job of a pool. */
-#ifndef SPHPROOF_REPORT_PIECE_H
-#define SPHPROOF_REPORT_PIECE_H
+#pragma once
 
 #include <jansson.h>
 
@@ -43,5 +42,3 @@ void report_piece_join(json_t *verify, json_t *part);
 /* Adds to results "bench": a document for each case of results' "studies", "schemes" and "points"
  * as those of `sphproof bench` have them, as far as levels say it. */
 void code_cost_add(json_t *results);
-
-#endif

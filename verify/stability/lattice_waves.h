@@ -5,8 +5,7 @@
  * -m (D e) X cos(k . x), and the eigenvalues of D(k) are omega^2 of the d waves of that k. Exact
  * for any Bravais lattice that fits the periodic box, for every kernel, gradient and formulation
  * without viscosity. */
-#ifndef SPHPROOF_LATTICE_WAVES_H
-#define SPHPROOF_LATTICE_WAVES_H
+#pragma once
 
 #include "initial.h"
 #include "run.h"
@@ -35,5 +34,3 @@ enum status lattice_waves_at(const struct lattice_waves *lattice, const int whol
  * apart): growth and frequency each over all of them; *where: of the fastest growth. */
 enum status lattice_waves_worst(const struct lattice_waves *lattice, struct lattice_wave *worst,
                                 int where[3], struct error *error);
-
-#endif

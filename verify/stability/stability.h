@@ -4,8 +4,7 @@
  * and the largest time step of an integrator from the eigenvalues of its amplification matrix.
  * Units: spacing, particle mass and sound speed are 1; kappa is the phase from one particle to the
  * next, 0 < kappa <= pi. */
-#ifndef SPHPROOF_STABILITY_H
-#define SPHPROOF_STABILITY_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -80,5 +79,3 @@ double stability_amplification(const struct stability *lattice, double dt);
 
 /* The largest stable c dt/dx, searched up to `to`. */
 double stability_time_step(const struct stability *lattice, double to);
-
-#endif

@@ -2,8 +2,7 @@
  * Maps of numerical stability: groups of cells, each a hard problem for a scheme or a prediction of
  * linear theory that short runs confirm. Every cell ends as ok, inaccurate or broke_down with a
  * reason, within a budget of steps, and names the command that repeats it. */
-#ifndef SPHPROOF_STRESS_H
-#define SPHPROOF_STRESS_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -33,5 +32,3 @@ void stress_free(struct stress *stress);
 
 /* "sphproof run CASE KEY=VALUE ..." of a cell. */
 void stress_command(const struct stress_cell *cell, char command[STRESS_COMMAND]);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The groups of the stress test (stress_groups.c lists them) and their cells. */
-#ifndef SPHPROOF_STRESS_CELL_H
-#define SPHPROOF_STRESS_CELL_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -62,5 +61,3 @@ struct stress_cell {
     uint64_t step_budget;
     size_t job; /* in the pool */
 };
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The kinds of cells of the stress test, each from its own file. */
-#ifndef SPHPROOF_STRESS_PART_H
-#define SPHPROOF_STRESS_PART_H
+#pragma once
 
 #include <jansson.h>
 
@@ -85,5 +84,3 @@ enum status stress_amplify(const struct stress_cell *cell, json_t **document, st
  * night, ending with a NULL label; they live as long as the program. Not for two threads at once.
  */
 const struct stress_entry *stress_tubes(void);
-
-#endif

@@ -5,8 +5,7 @@
  * acceleration where every particle has the exact velocity and energy, against the exact
  * acceleration -grad P/rho + g: at the regular positions of the start and at the positions that the
  * run itself has come to. Code units. */
-#ifndef SPHPROOF_AUTOPSY_H
-#define SPHPROOF_AUTOPSY_H
+#pragma once
 
 #include <jansson.h>
 
@@ -134,5 +133,3 @@ double autopsy_share(const struct autopsy_level *level, enum autopsy_share share
 /* Adds "case", "title", "settings", "shares", "sentence", "levels", "orders", "cause" and more to a
  * document. */
 void autopsy_add_case(const struct run *finest, const struct autopsy *autopsy, json_t *document);
-
-#endif

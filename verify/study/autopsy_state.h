@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What an autopsy reads off the state in which a run ends. Internal to autopsy. */
-#ifndef SPHPROOF_AUTOPSY_STATE_H
-#define SPHPROOF_AUTOPSY_STATE_H
+#pragma once
 
 #include "autopsy.h"
 
@@ -33,5 +32,3 @@ void autopsy_cells_aim(struct autopsy_cells *cells, double *const a[3], double *
 /* Of n vectors a - b, or a where b is NULL. */
 struct autopsy_split autopsy_split(const struct autopsy_cells *cells, double *const a[3],
                                    double *const b[3]);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Gates of a case beside its orders: the bound of an error at any number of particles, what schemes
  * that a report compares with the default are held to, and what one run alone can be judged by. */
-#ifndef SPHPROOF_GATES_H
-#define SPHPROOF_GATES_H
+#pragma once
 
 #include <jansson.h>
 
@@ -41,5 +40,3 @@ void gates_add_errors(const struct case_file *file, const json_t *run, json_t *l
 /* Likewise what a run in 2D or 3D conserves to round-off: mass, momentum in all directions unless
  * something pushes from outside, energy where total energy is integrated and nothing falls. */
 void gates_add_conserved(const json_t *run, json_t *list);
-
-#endif

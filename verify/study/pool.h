@@ -3,8 +3,7 @@
  * crash ends only its own computation, and results do not depend on how many run at once. Results
  * that the cache already holds are not computed again, and each new result is cached at once, so
  * that an interruption loses only unfinished ones. */
-#ifndef SPHPROOF_POOL_H
-#define SPHPROOF_POOL_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -83,5 +82,3 @@ enum status pool_run(struct pool *pool, const struct pool_settings *settings, st
 void pool_end_with_parent(void);
 
 void pool_free(struct pool *pool);
-
-#endif

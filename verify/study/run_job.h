@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Runs as jobs of a pool: the key that decides a run's result, and what it leaves behind. */
-#ifndef SPHPROOF_RUN_JOB_H
-#define SPHPROOF_RUN_JOB_H
+#pragma once
 
 #include "pool.h"
 #include "run.h"
@@ -23,5 +22,3 @@ enum status run_job_add(struct pool *pool, const struct run *run, size_t *job, s
 /* In a job of a pool: the document that another program computes, run->asked.external. */
 enum status run_job_external(const struct run *run, bool profile, json_t **document,
                              struct error *error);
-
-#endif

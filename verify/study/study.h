@@ -5,8 +5,7 @@
  * one n is a draw, with strong shocks from a distribution 14 % wide.) Every run is a job of a pool;
  * from the runs come orders with their 95 % interval, gates, functionals with Richardson
  * extrapolation and GCI, error budgets, and whatever looks too good to be true. */
-#ifndef SPHPROOF_STUDY_H
-#define SPHPROOF_STUDY_H
+#pragma once
 
 #include <jansson.h>
 
@@ -125,5 +124,3 @@ void study_add_json(const struct study *study, json_t *document);
  * STATUS_ENVIRONMENT and others: a run is missing. */
 enum status study_read_levels(struct study *study, size_t c, const struct pool *pool,
                               struct error *error);
-
-#endif

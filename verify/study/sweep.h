@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Variations of a run: `--vary kernel,gradient` (all members of each family), `--vary
  * kernel=a,b,eta=2,4` (these values), every combination of them; and ladders of resolutions. */
-#ifndef SPHPROOF_SWEEP_H
-#define SPHPROOF_SWEEP_H
+#pragma once
 
 #include <jansson.h>
 #include <stddef.h>
@@ -38,5 +37,3 @@ json_t *sweep_json(const struct sweep *sweep, size_t i);
  * the case, see setting_check_power. */
 enum status sweep_ladder(const char *text, size_t least, int dim, size_t ladder[CASE_LADDER_MAX],
                          size_t *count, struct error *error);
-
-#endif

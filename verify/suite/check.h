@@ -2,8 +2,7 @@
  * A check: a property, measured on subjects (kernels, operators, solvers, norms ...), each figure
  * against a bound with the noise floor beside it; and the mutants, wrong subjects that the same
  * code must reject. Adding a check: one file in check/ and one line in its checks.def. */
-#ifndef SPHPROOF_CHECK_H
-#define SPHPROOF_CHECK_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -67,5 +66,3 @@ struct check {
 #define CHECK_DEFINE(group_, name_, rank_, ...)                                                    \
     const struct check check_##group_##_##name_ = {                                                \
         .group = #group_, .name = #name_, .rank = rank_, __VA_ARGS__}
-
-#endif

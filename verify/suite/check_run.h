@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Inside of the suite: what one run of a check collects. */
-#ifndef SPHPROOF_CHECK_RUN_H
-#define SPHPROOF_CHECK_RUN_H
+#pragma once
 
 #include "suite.h"
 
@@ -21,5 +20,3 @@ struct check_run {
     bool no_memory;
     bool mutant, rejected;
 };
-
-#endif

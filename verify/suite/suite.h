@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Running checks: every check on all its right subjects, and on its mutants where asked. A check
  * that rejects none of its mutants is vacuous: a failure of the harness, reported as a figure. */
-#ifndef SPHPROOF_SUITE_H
-#define SPHPROOF_SUITE_H
+#pragma once
 
 #include <jansson.h>
 
@@ -79,5 +78,3 @@ bool suite_names(const char *name, const struct check *check);
 /* The distinct groups of checks[0..count-1], in order, and their number; to be freed. NULL: no
  * memory. */
 const char **suite_groups(const struct check *const *checks, size_t count, size_t *total);
-
-#endif

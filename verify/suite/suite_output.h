@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a run of checks tells: a table for people, the JSON document, a JUnit file, and for each
  * failing check a folder entry with its figures and data. */
-#ifndef SPHPROOF_SUITE_OUTPUT_H
-#define SPHPROOF_SUITE_OUTPUT_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -41,5 +40,3 @@ json_t *headline_list(const struct suite *suite);
 
 /* For people: each headline, and below it how far over the bound, where, and what else fails. */
 void headline_print(const json_t *headlines, FILE *stream, bool color);
-
-#endif

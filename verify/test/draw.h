@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Numbers drawn at random, the same in every run. Include after test.h. */
-#ifndef DRAW_H
-#define DRAW_H
-
-#include <math.h>
+#pragma once
 
 static uint64_t draw_state = 1;
 
@@ -25,5 +22,3 @@ static inline int draw_count(int low, int high)
 {
     return low + (int)draw(0, high - low + 1);
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * For tests of where particles start. Include after cmocka.h. */
-#ifndef GAS_H
-#define GAS_H
+ * For tests of where particles start. Include after test.h. */
+#pragma once
 
 #include "problem.h"
 
@@ -36,5 +35,3 @@ static inline struct settings gas_settings(int n, char **keys)
 }
 
 static const struct problem gas_problem = {.sample = gas_sample, .smooth = false};
-
-#endif

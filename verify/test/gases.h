@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The gases of a tube that was made of keys, solved, for the tests of tubes. Include after
- * cmocka.h.
+ * test.h.
  */
-#ifndef GASES_H
-#define GASES_H
+#pragma once
 
 #include "prepared.h"
 #include "riemann.h"
@@ -22,5 +21,3 @@ static inline struct gases gases_of(double gamma, const struct settings *setting
     assert_null(riemann_solve(gamma, &gases.right, &gases.left, &gases.mirror));
     return gases;
 }
-
-#endif

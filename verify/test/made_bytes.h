@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Memory that a serialiser writes a state to, and restores it from. Include after cmocka.h. */
-#ifndef MADE_BYTES_H
-#define MADE_BYTES_H
-
-#include <string.h>
+ * Memory that a serialiser writes a state to, and restores it from. Include after test.h. */
+#pragma once
 
 #include "serialiser.h"
 
@@ -29,5 +26,3 @@ static inline bool made_take(void *context, void *bytes, size_t n)
     kept->read += n;
     return true;
 }
-
-#endif

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Checks of nothing but a number, for tests of what runs them: good ones, one that fails, one that
  * misses a mutant, vacuous ones. */
-#ifndef MADE_CHECKS_H
-#define MADE_CHECKS_H
-
-#include <math.h>
+#pragma once
 
 #include "suite.h"
 
@@ -44,5 +41,3 @@ static const struct check failing = {.group = "a",
                                      .subjects = failing_subjects,
                                      .measure = measure,
                                      .mutants = caught};
-
-#endif

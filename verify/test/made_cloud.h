@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Particles anywhere in a box, and questions to a problem about them, for the tests of gas that
- * falls onto a centre or flies away from it. Include after cmocka.h. */
-#ifndef MADE_CLOUD_H
-#define MADE_CLOUD_H
+ * falls onto a centre or flies away from it. Include after test.h. */
+#pragma once
 
-#include <math.h>
-
-#include "near.h"
 #include "prepared.h"
 
 enum { N = 300 }; /* and one behind them, which nobody may count */
@@ -98,5 +94,3 @@ static inline void refused_late(const struct prepared *p, double t, const char *
         snprintf(words, sizeof words, format, t, longest * (1 - 1e-3));
     assert_string_equal(error.message, words);
 }
-
-#endif

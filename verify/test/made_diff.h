@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Documents for tests of diff. Include after cmocka.h. */
-#ifndef MADE_DIFF_H
-#define MADE_DIFF_H
-
-#include <string.h>
+ * Documents for tests of diff. Include after test.h. */
+#pragma once
 
 #include "diff.h"
 
@@ -42,5 +39,3 @@ static inline void put(json_t *document, const char *inside, const char *name, c
     }
     json_object_set_new(object, name, json_loads(text, JSON_DECODE_ANY, NULL));
 }
-
-#endif

@@ -6,16 +6,11 @@
  * integer from 1 to 12. "#t": text that HTML has to escape. ["|", a, b, ...]: one of them. ["*",
  * low, high, a]: a list of so many. A member "NAME?" is left out in one draw of four. All else
  * stands for itself. */
-#ifndef SPHPROOF_MADE_DOCUMENT_H
-#define SPHPROOF_MADE_DOCUMENT_H
+#pragma once
 
 #include <inttypes.h>
 #include <jansson.h>
 #include <stdbool.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 struct made_draw {
     uint64_t state;
@@ -155,5 +150,3 @@ static inline json_t *made_template(const char *folder, const char *name)
     if (!template) fail_msg("%s:%d: %s", path, error.line, error.text);
     return template;
 }
-
-#endif

@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Binaries of GADGET with random particles, and what their reader must find. Include after
- * cmocka.h. */
-#ifndef MADE_GADGET_H
-#define MADE_GADGET_H
+ * test.h. */
+#pragma once
 
 #include <float.h>
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
 
 #include "made_notes.h"
 #include "made_place.h"
@@ -233,5 +229,3 @@ static inline void refuses(size_t size, const char *what, const char *says)
     if (status != STATUS_BAD_INPUT || !strstr(error.message, says))
         fail_msg("%s: status %d: '%s' is not in: %s", what, (int)status, says, error.message);
 }
-
-#endif

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * HDF5 files made from a list of what is in them, in every form in which a code may store it.
  * Include after cmocka.h and where HAVE_HDF5 is defined. */
-#ifndef MADE_HDF5_H
-#define MADE_HDF5_H
+#pragma once
 
 #include <hdf5.h>
 #include <stdbool.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { ITEM_NUMBERS = 64 };
 
@@ -101,5 +98,3 @@ static void write_items(const char *path, const struct item *items, size_t n)
         if (items[k].path[0]) write_item(file, &items[k]);
     H5Fclose(file);
 }
-
-#endif

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Jobs for tests of the pool and of the cache: each counts that it was computed, and leaves a
- * document that is known; some crash or take long. Include after cmocka.h. */
-#ifndef MADE_JOBS_H
-#define MADE_JOBS_H
+ * document that is known; some crash or take long. Include after test.h. */
+#pragma once
 
 #include <ftw.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -107,5 +103,3 @@ static inline void same_results(const struct pool *a, const struct pool *b)
         assert_string_equal(a->jobs[i].error.message, b->jobs[i].error.message);
     }
 }
-
-#endif

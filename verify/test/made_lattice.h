@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Gas on a lattice in 2D and 3D and a plain scheme, of which each test changes what it likes before
  * it makes a simulation of it. Include after test.h. */
-#ifndef MADE_LATTICE_H
-#define MADE_LATTICE_H
-
-#include <math.h>
+#pragma once
 
 #include "integrator.h"
 #include "simulation.h"
@@ -80,5 +77,3 @@ static inline struct setup long_box_of(const struct scheme *scheme)
     }
     return setup;
 }
-
-#endif

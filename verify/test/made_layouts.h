@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * All that each layout in HDF5 may hold, and what a reader must find there. Include after cmocka.h
  * and where HAVE_HDF5 is defined. */
-#ifndef MADE_LAYOUTS_H
-#define MADE_LAYOUTS_H
-
-#include <math.h>
-#include <stdlib.h>
+#pragma once
 
 #include "made_hdf5.h"
 #include "made_notes.h"
@@ -310,5 +306,3 @@ static inline void refuses(const struct layout *l, const struct item *items, con
         fail_msg("%s: %s: status %d, '%s' is not in: %s", l->name, what, (int)status, says,
                  error.message);
 }
-
-#endif

@@ -2,13 +2,10 @@
  * Calls for memory that fail. The linker's --wrap brings every call for some of the project here
  * first, where the first one fails, then the second one, and so on until all goes well. Include
  * after cmocka.h, in tests of meson.build's list `wraps`. */
-#ifndef MADE_NO_MEMORY_H
-#define MADE_NO_MEMORY_H
+#pragma once
 
 #include <stdatomic.h>
 #include <stdbool.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "status.h"
 
@@ -70,5 +67,3 @@ static void without_memory(enum status work(struct error *error), int least, boo
             fail_msg("call %d: status %d: %s", k, status, error.message);
     }
 }
-
-#endif

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a reader says that it assumed. Include after cmocka.h. */
-#ifndef MADE_NOTES_H
-#define MADE_NOTES_H
-
-#include <stdio.h>
-#include <string.h>
+ * What a reader says that it assumed. Include after test.h. */
+#pragma once
 
 #include "snapshot_file.h"
 
@@ -25,5 +21,3 @@ static inline void noted(const struct snapshot_file *file, const char *what, con
         fail_msg("%s: '%s', '%s'; not '%s', '%s'", what, found->value, found->evidence, value,
                  words);
 }
-
-#endif

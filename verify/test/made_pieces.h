@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What the computations of a report came to, drawn from data/drawn/pieces.json: a document each,
  * and one of so many broke down. */
-#ifndef MADE_PIECES_H
-#define MADE_PIECES_H
-
-#include <stdlib.h>
-#include <string.h>
+#pragma once
 
 #include "made_document.h"
 #include "pool.h"
@@ -53,5 +49,3 @@ static inline void made_pieces(struct made_draw *draw, struct pool *pool, size_t
         }
     }
 }
-
-#endif

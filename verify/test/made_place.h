@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A folder of a test's own, beside what was built: there before the first test, and gone with all
  * that is in it after the last one. Include after test.h. */
-#ifndef MADE_PLACE_H
-#define MADE_PLACE_H
+#pragma once
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include "output.h"
@@ -45,5 +42,3 @@ static inline char *whole_path_of(const char *name)
     snprintf(path, sizeof path, "%s/%s", getcwd(here, sizeof here) ? here : "", path_of(name));
     return path;
 }
-
-#endif

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A small simulation on a periodic line, whose particles are all different: for tests of what is
- * done with a simulation, whatever it computes. Include after cmocka.h. */
-#ifndef MADE_SIMULATION_H
-#define MADE_SIMULATION_H
-
-#include <math.h>
-#include <stdlib.h>
+ * done with a simulation, whatever it computes. Include after test.h. */
+#pragma once
 
 #include "settings.h"
 #include "simulation.h"
@@ -67,5 +63,3 @@ static inline bool made_alike(const struct simulation *a, const struct simulatio
     }
     return alike;
 }
-
-#endif

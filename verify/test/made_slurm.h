@@ -2,16 +2,11 @@
  * Slurm as the engine sees it, in this process: sbatch, squeue and scancel answer what Slurm 22.05
  * answered (recorded on a cluster of two nodes), seconds pass only while somebody sleeps, and every
  * task meets the fate that a test has written for it. Needs the linker's --wrap of child_run,
- * clock_wall, isatty and nanosleep. Include after cmocka.h. */
-#ifndef MADE_SLURM_H
-#define MADE_SLURM_H
+ * clock_wall, isatty and nanosleep. Include after test.h. */
+#pragma once
 
-#include <math.h>
 #include <signal.h>
 #include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -314,5 +309,3 @@ enum status __wrap_child_run(const char *const *words, struct child_said *said, 
     assert_string_equal(words[0], "scancel");
     return fake_scancel(words, said);
 }
-
-#endif

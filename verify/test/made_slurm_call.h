@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A study, and a call of the engine slurm for it on the cluster of made_slurm.h. Include after
  * cmocka.h; needs _GNU_SOURCE. */
-#ifndef MADE_SLURM_CALL_H
-#define MADE_SLURM_CALL_H
+#pragma once
 
 #include <fcntl.h>
 #include <glob.h>
@@ -152,5 +151,3 @@ static inline size_t shares_computations(int share)
     for (int i = 0; i < N; i++) n += shares[i] == share;
     return n;
 }
-
-#endif

@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Snapshots as text with values that a test plants, and what judge says of them. Include after
- * cmocka.h. */
-#ifndef MADE_SNAPSHOT_H
-#define MADE_SNAPSHOT_H
-
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
+ * test.h. */
+#pragma once
 
 #include "judge.h"
 #include "made_place.h"
@@ -102,5 +97,3 @@ static inline const struct snapshot_note *note(const struct judged *judged, cons
 
 __attribute__((unused)) static const char *const boxes[] = {"", "# box = 2\n", "# box = 2 1\n",
                                                             "# box = 2 1 1\n"};
-
-#endif

@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Studies whose runs are documents that are made here, of errors and functionals that fall with the
  * spacing by known orders: nothing is computed. A test may change them before they are judged.
- * Include after cmocka.h. */
-#ifndef MADE_STUDY_H
-#define MADE_STUDY_H
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+ * Include after test.h. */
+#pragma once
 
 #include "problem_list.h"
 #include "study.h"
@@ -128,5 +123,3 @@ static inline struct study made(const char *name, const char *vary, size_t repli
     pool_free(&pool);
     return study;
 }
-
-#endif

@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Tables of text with random columns, written in every style, and what readers must find in them.
- * Include after cmocka.h. */
-#ifndef MADE_TABLE_H
-#define MADE_TABLE_H
-
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
+ * Include after test.h. */
+#pragma once
 
 #include "made_notes.h"
 #include "made_place.h"
@@ -190,5 +185,3 @@ static inline void refuses(const char *text, size_t size, const char *map, const
     if (status != STATUS_BAD_INPUT || !strstr(error.message, says))
         fail_msg("'%s' is not in: %s\n%s", says, error.message, text);
 }
-
-#endif

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Is a document well-formed? Elements nest and close, attributes are quoted and unique, '&' starts
  * an entity, ids are distinct. For XML and for HTML written as XML. */
-#ifndef SPHPROOF_TEST_MARKUP_H
-#define SPHPROOF_TEST_MARKUP_H
+#pragma once
 
 #include <ctype.h>
 #include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #ifdef HAVE_ZLIB
 #include <zlib.h>
 #endif
@@ -180,5 +176,3 @@ static inline const char *markup_network(const char *document)
     }
     return NULL;
 }
-
-#endif

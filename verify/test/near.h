@@ -3,8 +3,7 @@
  * a NaN anywhere fails (cmocka's own float asserts pass NaN == 1). A failure prints value,
  * expected, error and bound. test.h includes this behind cmocka.h; NEAR_FAIL may be defined before
  * (test_near.c does). */
-#ifndef NEAR_H
-#define NEAR_H
+#pragma once
 
 #include <math.h>
 
@@ -68,5 +67,3 @@ static inline void near_inside_at(double value, double lo, double hi, const char
     if (!(lo <= value && value <= hi))
         NEAR_FAIL(file, line, "%s: got %.17g, allowed [%.17g, %.17g]\n", text, value, lo, hi);
 }
-
-#endif

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Problems made of a line of keys, and parts of their descriptors by name, for the tests of
- * problems. Include after cmocka.h. */
-#ifndef PREPARED_H
-#define PREPARED_H
-
-#include <stdio.h>
-#include <string.h>
+ * problems. Include after test.h. */
+#pragma once
 
 #include "initial.h"
 #include "problem_list.h"
@@ -78,5 +74,3 @@ static inline const struct functional *prepared_functional(const struct prepared
     fail_msg("no functional %s", name);
     return NULL;
 }
-
-#endif

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a function prints on standard output, as a text, and how a text is expected where some words
  * of it have a colour. */
-#ifndef SPHPROOF_PRINTED_H
-#define SPHPROOF_PRINTED_H
+#pragma once
 
-#include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "table.h"
@@ -52,5 +49,3 @@ static inline void printed_dress(const char *of, bool color, char *text)
             *text++ = *of;
     *text = '\0';
 }
-
-#endif

@@ -2,8 +2,7 @@
  * What every test in C includes first: cmocka, with what it asks for, the standard library's usual
  * headers, comparisons of numbers, and TEST. A file of tests needs neither a list of them nor
  * main. */
-#ifndef TEST_H
-#define TEST_H
+#pragma once
 
 #include <math.h>
 #include <setjmp.h>
@@ -39,5 +38,3 @@ void test_between(CMFixtureFunction before, CMFixtureFunction after);
 
 /* The k-th word behind the program's name, from 1. NULL: there is none. */
 const char *test_word(int k);
-
-#endif

@@ -4,14 +4,10 @@
  * block are fenced; a fence that was overwritten is counted when the block is freed. Calls can be
  * refused, and are counted. For one test file; memory that a library has allocated must not be
  * freed here. */
-#ifndef SPHPROOF_WATCHED_H
-#define SPHPROOF_WATCHED_H
+#pragma once
 
 #include <stdatomic.h>
 #include <stdbool.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { WATCHED_FENCE = 64 }; /* bytes on either side; the first ones hold the size */
 
@@ -101,5 +97,3 @@ static void watched_begin(long refuse)
     watched_now = watched_most = 0;
     watched_refuse = refuse;
 }
-
-#endif
