@@ -54,7 +54,7 @@ enum status ini_text_load(const char *path, const char *kind, char **bytes, size
     *bytes = NULL;
     *length = 0;
     snprintf(too_large, sizeof too_large, "larger than 64 KiB: not a %s", kind);
-    /* a pipe must not hold us up */
+    /* not blocking: to open a pipe would wait for somebody who writes into it */
     const int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (descriptor < 0) return cannot_read(path, kind, strerror(errno), error);
     if (fstat(descriptor, &info) || S_ISDIR(info.st_mode))

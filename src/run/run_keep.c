@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* On a line particles start in the order of their numbers, round the box. */
+/* In 1D the particles start in the order of their numbers, periodically: counts those whose right
+ * neighbour is no longer the next one. */
 static size_t count_crossed(const struct snapshot *snapshot)
 {
     size_t crossed = 0;
@@ -14,7 +15,8 @@ static size_t count_crossed(const struct snapshot *snapshot)
     return crossed;
 }
 
-/* Particles that were carried through the end of the box come last: positions shall rise. */
+/* Copies a field in the order of positions: particles that have passed the periodic end come last.
+ */
 static void copy_line(const struct snapshot *seen, const double *from, double *to)
 {
     size_t first = 0;
@@ -24,7 +26,7 @@ static void copy_line(const struct snapshot *seen, const double *from, double *t
     memcpy(to + seen->n - first, from, first * sizeof(double));
 }
 
-/* In the order of their numbers, as they have started. */
+/* Copies a field in the order of the particles' numbers, which is that of the initial state. */
 static void copy_cloud(const struct snapshot *seen, const double *from, double *to)
 {
     for (size_t i = 0; i < seen->n; i++) to[seen->id[i]] = from[i];

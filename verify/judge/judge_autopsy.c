@@ -29,7 +29,8 @@ static enum status take_kernel(const struct judged *judged, struct settings *set
     return status ? status : settings_set(settings, SETTING_eta, eta, SOURCE_USER, NULL, error);
 }
 
-/* The errors of the snapshot, with the widths that the run has: the file may have none. */
+/* The errors of the snapshot, with the widths of our run at its particles: the file may have none.
+ */
 static enum status look(const struct judged *judged, const struct run *used,
                         struct autopsy_level *level, struct error *error)
 {

@@ -44,7 +44,7 @@ static enum status set_integer(struct run_settings *settings, enum setting key, 
     return settings_set(&settings->settings, key, text, SOURCE_USER, NULL, error);
 }
 
-/* What no level could run is said before anything runs. */
+/* Refuses settings that no level could run, before anything runs. */
 static enum status try_coarsest(const struct run *run, struct error *error)
 {
     struct run_result *plan = malloc(sizeof *plan);

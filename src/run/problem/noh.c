@@ -12,7 +12,7 @@
 #include "problem.h"
 #include "shells.h"
 
-/* Of a pressure so low that nothing is seen of it (Mach 800). */
+/* The initial pressure is too low to change the flow (Mach 800). */
 static const double cold = 1e-6;
 
 /* The ball's radius at t = 0: half of the way to the nearest end of the box. */
@@ -55,7 +55,7 @@ static enum status fill(const struct prepared *p, const struct settings *setting
     return initial_fill_ball(p, settings, radius_of(p), initial, error);
 }
 
-/* Gas from the edge of the ball has not come into the window. */
+/* Until gas from the edge of the ball reaches the window. */
 static bool holds(const struct prepared *p, double t)
 {
     double far = 0;
@@ -99,14 +99,16 @@ static double shock_exact(const struct prepared *p, double t)
     return noh_shock(p->gamma, t);
 }
 
-/* Away from the centre, where gas is too hot, and from the shock, which has a width. */
+/* Mean density behind the shock, away from the centre, where gas is too hot, and from the shock
+ * itself, which has a width. */
 static double plateau_measured(const struct prepared *p, const struct snapshot *s)
 {
     const double R = noh_shock(p->gamma, s->time);
     return R > 0 ? shells_mean(p, s, 0.25 * R, 0.75 * R) : 1;
 }
 
-/* Too low: what the collision heats at first stays too hot (Noh's "wall heating"). */
+/* Mean density at the centre. It comes out too low, since gas that the first collision overheats
+ * stays too hot (Noh's "wall heating"). */
 static double centre_measured(const struct prepared *p, const struct snapshot *s)
 {
     const double R = noh_shock(p->gamma, s->time);
