@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """vtk.py SPHPROOF: legacy files of VTK, as text and binary, with arrays as SCALARS, VECTORS and FIELD, are judged as the
 table of the same particles is; every file that is cut off anywhere is told. (Other refusals: test_readers_text_faults.)"""
+import itertools
 import json
 import random
 import struct
@@ -13,6 +14,12 @@ draw = random.Random(5)
 
 def judged(path):
     return said("judge", path, "--case", "taylor_green", "--time", "0", "--allow-far", "--json", "-")
+
+
+# kinds of whole numbers, as letters of struct; each document has two of them, the next ones in turn
+LETTERS = {b"unsigned_int": "I", b"vtkIdType": "i", b"char": "b", b"unsigned_char": "B", b"short": "h", b"unsigned_short": "H",
+           b"int": "i", b"long": "q", b"unsigned_long": "Q", b"vtktypeint64": "q"}
+WHOLE = itertools.cycle(LETTERS)
 
 
 def make(points, binary, field, grid, kind):
@@ -30,7 +37,8 @@ def make(points, binary, field, grid, kind):
     if grid:
         text += b"CELL_TYPES %d\n" % n + numbers([(1,)] * n, "i")
     text += b"POINT_DATA %d\n" % n
-    arrays = [(b"Idp", b"unsigned_int", [(i,) for i in range(n)]), (b"Vel", kind, [(p[2], p[3], 0.0) for p in points]),
+    arrays = [(name, next(WHOLE), [(i,) for i in range(n)]) for name in (b"Idp", b"Type")]
+    arrays += [(b"Vel", kind, [(p[2], p[3], 0.0) for p in points]),
               (b"Rhop", kind, [(p[5],) for p in points]), (b"Mass", kind, [(p[4],) for p in points])]
     draw.shuffle(arrays)
     if field:
@@ -42,7 +50,7 @@ def make(points, binary, field, grid, kind):
             text += b"VECTORS %s %s\n" % (name, type_)
         else:
             text += b"SCALARS %s %s%s\nLOOKUP_TABLE default\n" % (name, type_, draw.choice((b"", b" 1")))
-        text += numbers(rows, {b"unsigned_int": "I"}.get(type_, type_.decode()))
+        text += numbers(rows, LETTERS.get(type_, type_.decode()))
     return text
 
 

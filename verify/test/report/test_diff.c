@@ -49,3 +49,21 @@ TEST(settings_of_a_problem)
     for (size_t i = 0; i < sizeof problem / sizeof *problem; i++)
         problem_is("run", "settings", problem[i], true);
 }
+
+/* Of other documents what they are about; of a run its case and mode alone. */
+TEST(members_of_a_problem)
+{
+    static const struct {
+        const char *command, *members[6];
+    } rows[] = {{"run", {"case", "mode"}},
+                {"kernel", {"kernel", "dim", "h", "case"}},
+                {"gradient", {"dim", "operator", "kernel"}},
+                {"riemann", {"left", "right", "gamma", "time", "x0"}},
+                {"judge", {"n", "time", "case"}}};
+    static const char *const others[] = {"kernel", "dim", "h", "operator", "left", "time", "n"};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
+        for (int k = 0; rows[r].members[k]; k++)
+            problem_is(rows[r].command, NULL, rows[r].members[k], true);
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+        problem_is("run", NULL, others[k], false);
+}
