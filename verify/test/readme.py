@@ -15,9 +15,6 @@ import shutil
 import subprocess
 import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "mutants"))
-from mutants import OPTIONS  # noqa: E402: those of other copies that tests build, so that ccache has much of it already
-
 
 def keys(program, readme):
     table = subprocess.run([program, "list", "keys", "--markdown"], capture_output=True, text=True,
@@ -178,9 +175,8 @@ def stories(source, work):
     tree = os.path.join(work, "tree")
     shutil.rmtree(work, ignore_errors=True)
     shutil.copytree(source, tree, ignore=shutil.ignore_patterns("build*", ".git", "out"))
-    subprocess.run(["meson", "setup", os.path.join(work, "build"), tree, *OPTIONS, "-Dtests=false"],
-                   check=True, stdout=subprocess.DEVNULL)
-    os.symlink(os.path.join("..", "build"), os.path.join(tree, "build"))
+    # where a build stands in a tree, and with its options, so that ccache has it already
+    subprocess.run(["meson", "setup", "build", "-Dtests=false"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["ninja", "-C", "build"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
     print("  %6.1f s  the build" % cpu())
     environment = dict(os.environ, PATH=os.path.join(tree, "build") + os.pathsep + os.environ["PATH"])
