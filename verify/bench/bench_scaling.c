@@ -58,8 +58,9 @@ static enum status work(void *context, uint64_t times, struct clock_taken *taken
     return STATUS_OK;
 }
 
-/* The work of one thread in several processes at once, which share nothing but the machine: what
- * threads would gain that never wait for one another. Until the last of them has ended. */
+/* The work of one thread, done by several processes at once, which share nothing but the machine:
+ * what they gain, threads could gain if they never waited for one another. It takes until the last
+ * process has ended. */
 static enum status work_at_once(void *context, uint64_t times, struct clock_taken *taken,
                                 struct error *error)
 {
@@ -190,7 +191,7 @@ static void read_threads(struct bench *bench, size_t i, size_t first, int thread
         .threads = threads,
         .wall_s = more->time.wall_s / STEPS_THREADS,
         .gain = one->time.wall_s / more->time.wall_s,
-        .limit = threads * one->time.wall_s / apart->time.wall_s,
+        .gain_of_processes = threads * one->time.wall_s / apart->time.wall_s,
         .same_bits = !(bench_skips_difference(&last->snapshot, &with_more->snapshot,
                                               domain_length(&last->problem.domain, 0)) > 0)};
 }

@@ -28,8 +28,8 @@ struct scaling_level {
 struct scaling_threads {
     size_t n;
     int threads;
-    double wall_s, gain; /* of a step with its share of the set-up; one thread over it */
-    double limit;        /* how much more work than one as many processes do in the same time */
+    double wall_s, gain;      /* of a step with its share of the set-up; one thread over it */
+    double gain_of_processes; /* the same for as many runs of one thread, at once */
     bool same_bits;
 };
 

@@ -38,8 +38,9 @@ void bench_scaling_add_json(const struct scaling *scaling, json_t *document)
         const struct scaling_threads *t = &scaling->threads[i];
         json_array_append_new(
             threads,
-            result_object("n=%zu threads=%d step_wall_s=%g gain=%g gain_limit=%g same_bits=%d?",
-                          t->n, t->threads, t->wall_s, t->gain, t->limit, t->same_bits));
+            result_object(
+                "n=%zu threads=%d step_wall_s=%g gain=%g gain_of_processes=%g same_bits=%d?", t->n,
+                t->threads, t->wall_s, t->gain, t->gain_of_processes, t->same_bits));
     }
     if (scaling->step.n)
         json_array_append_new(exponents, exponent_json("step_cpu_s", &scaling->step));
@@ -91,11 +92,13 @@ void bench_scaling_print(const struct scaling *scaling, const struct table_style
            style->bold, style->end);
     for (size_t i = 0; i < scaling->thread_count; i++) {
         const struct scaling_threads *t = &scaling->threads[i];
-        printf("  n = %-8zu %d threads: %.3e s, %.2f times as fast, %s; at most %.2f\n", t->n,
-               t->threads, t->wall_s, t->gain, t->same_bits ? "same bits" : "OTHER BITS", t->limit);
+        printf("  n = %-8zu %d threads: %.3e s, %.2f times as fast, %s; processes %.2f\n", t->n,
+               t->threads, t->wall_s, t->gain, t->same_bits ? "same bits" : "OTHER BITS",
+               t->gain_of_processes);
     }
     printf(
-        "%sat most: what as many runs of one thread at once gain, each in a process of its own%s\n",
+        "%sprocesses: what as many runs of one thread gain, at once, each in a process of its own, "
+        "whose start counts%s\n",
         style->faint, style->end);
 }
 

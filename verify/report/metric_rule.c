@@ -18,7 +18,7 @@ static const struct metric_rule rules[] = {
     {"", "share", OUT},
     {"", "skipped_fraction", OUT},
     {"", "on_front", OUT},
-    {"threads", "gain", OUT},
+    {"threads", "gain*", OUT},
     /* time, memory, work */
     {"", "wall_s", 0, READING_TIMING, 3, 0}, /* what else runs counts */
     {"", "*_s", 0, READING_TIMING, 1.5, 0},

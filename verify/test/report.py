@@ -59,7 +59,7 @@ def computed(value):
 
 
 def entries():
-    return glob.glob(os.path.join(folder, "cache", "*", "*.entry"))
+    return sorted(glob.glob(os.path.join(folder, "cache", "*", "*.entry")))
 
 
 def kill_one():

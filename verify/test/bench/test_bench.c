@@ -557,7 +557,8 @@ TEST(test_scaling)
     }
     assert_int_equal(scaling.thread_count, 1);
     assert_true(scaling.threads[0].same_bits);
-    assert_true(scaling.threads[0].limit > 0 && isfinite(scaling.threads[0].limit));
+    assert_true(scaling.threads[0].gain_of_processes > 0 &&
+                isfinite(scaling.threads[0].gain_of_processes));
     assert_int_equal(scaling.run.n, 4);
 }
 
@@ -677,8 +678,6 @@ TEST(test_signal)
     precision_free(&precision);
 }
 
-/* A vortex in 2D: errors of the velocity along its circles, in parts of how far it is from uniform;
- * work grows as n^(3/2), and the merit at order 2 is error^(3/2) x CPU. */
 /* A scheme that the case's gravity excludes is told, and the others are measured. */
 TEST(test_what_gravity_excludes)
 {
@@ -700,6 +699,8 @@ TEST(test_what_gravity_excludes)
     precision_free(&precision);
 }
 
+/* A vortex in 2D: errors of the velocity along its circles, in parts of how far it is from uniform;
+ * work grows as n^(3/2), and the merit at order 2 is error^(3/2) x CPU. */
 TEST(test_plane)
 {
     static struct run_settings settings;
