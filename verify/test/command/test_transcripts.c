@@ -198,7 +198,8 @@ static void add_filtered(struct buffer *to, const char *text)
         next = text + length + (text[length] == '\n');
         assert_true(length + 2 < sizeof line);
         snprintf(line, sizeof line, "\n%.*s", (int)length, text);
-        if (strstr(line, " s left")) continue; /* progress, where the machine is slow */
+        /* progress, where the machine is slow */
+        if (strstr(line, " s left") || strstr(line, " (0 %), ")) continue;
         const int indentation = (int)strspn(line + 1, " ");
         if (closed >= 0) {
             if (indentation == closed) closed = -1;
@@ -212,8 +213,12 @@ static void add_filtered(struct buffer *to, const char *text)
             const bool by_hand = at[0] == '"' && at[1] && at[2] == '"'; /* a word of one letter */
             if (!by_hand) strcpy(at, "~");
         }
-        if (strncmp(line, "\n  ok   ", 8) == 0 && strlen(line) > 26)
-            strcpy(line + 26, "~"); /* round-off */
+        /* round-off, and seconds of a processor */
+        for (size_t k = 0; k < 2; k++) {
+            const char *ok = k ? "\n  \033[32mok  \033[0m " : "\n  ok   ";
+            const size_t name = strlen(ok) + 18;
+            if (!strncmp(line, ok, strlen(ok)) && strlen(line) > name) strcpy(line + name, "~");
+        }
         /* what follows, a verdict, has times as well */
         if (strncmp(line, "\nCPU time ", 10) == 0) strcpy(line + 10, "~"), next = "";
         const size_t end = strlen(line);
