@@ -169,7 +169,7 @@ struct cells *cells_create(const struct cells_method *method, size_t n)
                                             &cells->shift};
     for (int k = 0; k < 4; k++) layouts[k]->gather = gather_choose(layouts[k]->size);
     cells->grid = grid_create(&method->box, n, method->threads);
-    cells->lanes = calloc((size_t)method->threads, sizeof *cells->lanes);
+    cells->lanes = team_allocate(method->threads, sizeof *cells->lanes);
     if (cells->grid && cells->lanes && reserve_records(cells, n)) return cells;
     cells_destroy(cells);
     return NULL;

@@ -20,6 +20,7 @@ static void find_balsara(struct simulation *simulation)
     const struct particles *a = &simulation->particles;
     double *const *L = workspace->fields.slope;
     const double floor_of = simulation->scheme.balsara_floor;
+#pragma omp parallel for num_threads(simulation->team.size) if (simulation->team.size > 1)
     for (ptrdiff_t i = 0; i < a->n; i++) {
         if (!simulation_evaluates(simulation, i)) continue;
         const double rate = a->c[i] * a->h_inverse[i];

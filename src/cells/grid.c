@@ -328,8 +328,8 @@ struct grid *grid_create(const struct grid_box *box, size_t n, int threads)
     grid->take = grid_take_choose();
     grid->find = grid_find_choose();
     grid->read = grid_read_choose();
-    grid->pools = calloc((size_t)threads, sizeof *grid->pools);
-    grid->candidates = calloc((size_t)threads, sizeof *grid->candidates);
+    grid->pools = team_allocate(threads, sizeof *grid->pools);
+    grid->candidates = team_allocate(threads, sizeof *grid->candidates);
     if (grid->pools && grid->candidates && reserve_points(grid, n)) return grid;
     grid_destroy(grid);
     return NULL;

@@ -7,6 +7,7 @@
 #include <math.h>
 
 #include "grid.h"
+#include "team.h"
 
 enum {
     TILE = 8,             /* columns of a tile, each way */
@@ -22,21 +23,19 @@ enum {
 
 /* Memory for lists, in chunks that never move. */
 struct grid_pool {
-    int32_t **chunks;
+    _Alignas(TEAM_APART) int32_t **chunks;
     size_t *sizes;
     size_t count, used_chunks, used; /* chunks there are; in use; words used of the last one */
-    char apart[GRID_APART];
 };
 
 /* What one thread needs for the cell that it works on: candidates of its points. */
 struct candidates {
-    size_t capacity, most; /* most: points around a cell in this search */
-    size_t seen;           /* points of the cells around, that it has candidates of */
+    _Alignas(TEAM_APART) size_t capacity, most; /* most: points around a cell in this search */
+    size_t seen; /* points of the cells around, that it has candidates of */
     float *x[3], *radius2;
     uint8_t *near;
     uint16_t *marks;
     int32_t *slots; /* 2D: of the points of the cells around */
-    char apart[GRID_APART];
 };
 
 /* What the points of a cell lie in, and the largest of their radii squared. */

@@ -350,9 +350,11 @@ enum status grid_make_lists(struct grid *grid, struct error *error)
     if (!find_runs(grid)) return error_set(error, STATUS_ENVIRONMENT, "no memory for neighbours");
     int longest = 0;
     bool enough = true;
-#pragma omp parallel for num_threads(grid->team) schedule(dynamic) reduction(max : longest) \
-    reduction(&& : enough) if (grid->team > 1)
-    for (size_t p = 0; p < grid->parts; p++) {
+    struct team_shares shares;
+    team_share(&shares, grid->team, grid->parts);
+#pragma omp parallel num_threads(grid->team) reduction(max : longest) reduction(&& : enough) \
+    if (grid->team > 1)
+    for (size_t p; team_next(&shares, &p);) {
         const int t = team_thread();
         for (size_t cell = grid->part_cell[p]; cell < grid->part_cell[p + 1]; cell++) {
             ptrdiff_t c[3];

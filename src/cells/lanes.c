@@ -193,9 +193,10 @@ int lanes_gather_part(const struct cells *cells, const struct lanes_layout *layo
 void lanes_all(struct cells *cells, const struct cells_fields *fields, lanes_pass *pass)
 {
     const uint32_t *begin;
-    const size_t parts = grid_parts(cells->grid, &begin);
-#pragma omp parallel for num_threads(cells->team) schedule(dynamic) if (cells->team > 1)
-    for (size_t p = 0; p < parts; p++) {
+    struct team_shares shares;
+    team_share(&shares, cells->team, grid_parts(cells->grid, &begin));
+#pragma omp parallel num_threads(cells->team) if (cells->team > 1)
+    for (size_t p; team_next(&shares, &p);) {
         struct lanes *lanes = &cells->lanes[team_thread()];
         for (size_t slot = begin[p]; slot < begin[p + 1]; slot++)
             if (cells->lists[slot].kept) pass(cells, fields, slot, lanes);

@@ -8,6 +8,7 @@
 #include "gather.h"
 #include "reactions.h"
 #include "shapes.h"
+#include "team.h"
 #include "width.h"
 
 /* What a record may hold of a particle; which of it there is, is the method's. Records are what
@@ -89,7 +90,8 @@ enum lanes_array {
 };
 
 struct lanes {
-    double *block; /* LANES_OWN arrays and those of the longest record, stride each */
+    _Alignas(TEAM_APART) double
+        *block; /* LANES_OWN arrays and those of the longest record, stride each */
     ptrdiff_t stride;
     int64_t pairs;
     struct cells_left_out left_out;
@@ -97,7 +99,6 @@ struct lanes {
     int32_t *slots; /* a list without inactive particles, used instead of the grid's */
     ptrdiff_t room; /* entries, of two such lists */
     struct reactions_chunk chunk;
-    char apart[GRID_APART];
 };
 
 /* A search for widths: what each thread reads of it. */

@@ -14,8 +14,9 @@
 #endif
 
 /* Slots of a chunk: small systems are cut into so many that threads have some to share, large ones
- * so that a chunk's records and reactions stay in the second-level cache. */
-enum { CHUNKS = 8, CHUNK_LEAST = 1024, CHUNK_MOST = 8192 };
+ * so that a chunk's records and reactions stay in the second-level cache. In 3D there are fewer, as
+ * thin slabs have many neighbours beyond the next one. */
+enum { CHUNKS_2D = 32, CHUNKS_3D = 8, CHUNK_LEAST = 512, CHUNK_MOST = 8192 };
 
 double reactions_bytes(int values)
 {
@@ -46,7 +47,8 @@ static void cut_chunks(struct cells *cells)
 {
     struct reactions *reactions = &cells->reactions;
     const uint32_t *begin;
-    const size_t parts = grid_parts(cells->grid, &begin), wanted = cells->points / CHUNKS;
+    const size_t parts = grid_parts(cells->grid, &begin);
+    const size_t wanted = cells->points / (cells->method.box.dim == 2 ? CHUNKS_2D : CHUNKS_3D);
     const size_t size = wanted < CHUNK_LEAST  ? CHUNK_LEAST
                         : wanted > CHUNK_MOST ? CHUNK_MOST
                                               : wanted;
@@ -81,16 +83,18 @@ void reactions_all(struct cells *cells, const struct cells_fields *fields, lanes
 {
     struct reactions *reactions = &cells->reactions;
     cut_chunks(cells);
-    reactions->all = true;
+    bool all = true;
+#pragma omp parallel for num_threads(cells->team) reduction(&& : all) if (cells->team > 1)
     for (size_t slot = 0; slot < cells->points; slot++) {
         reactions->reach[slot] = cells->lists[slot].kept != NULL;
-        reactions->all &= reactions->reach[slot];
+        all = all && reactions->reach[slot];
     }
-#pragma omp parallel for num_threads(cells->team) schedule(dynamic) if (cells->team > 1)
-    for (size_t c = 0; c < reactions->chunks; c++) {
-        struct lanes *lanes = &cells->lanes[team_thread()];
-        work(cells, fields, c, lanes, pass);
-    }
+    reactions->all = all;
+    struct team_shares shares;
+    team_share(&shares, cells->team, reactions->chunks);
+#pragma omp parallel num_threads(cells->team) if (cells->team > 1)
+    for (size_t c; team_next(&shares, &c);)
+        work(cells, fields, c, &cells->lanes[team_thread()], pass);
 }
 
 /* The entries of a list that a slot works out: those that get a reaction, and the others. Both have

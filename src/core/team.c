@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "team.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 /* A trial is longer than the slice of time that schedulers give to one of two programs on a core;
  * stretches between trials last so many times as long, in time and in steps, at first and in the
  * end: a trial of the wrong size costs no more than its part of this. */
@@ -59,4 +62,11 @@ void team_step(struct team *team, double now)
         choose(team, now);
     else
         begin_stretch(team, other, true, now);
+}
+
+void *team_allocate(int threads, size_t size)
+{
+    void *block = aligned_alloc(TEAM_APART, (size_t)threads * size);
+    if (block) memset(block, 0, (size_t)threads * size);
+    return block;
 }

@@ -9,7 +9,7 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 
-enum { WATCHED_FENCE = 64 }; /* bytes on either side; the first ones hold the size */
+enum { WATCHED_FENCE = 128 }; /* bytes on either side; the first ones hold the size */
 
 static atomic_long watched_calls;  /* that asked for memory */
 static atomic_long watched_refuse; /* the number of the call that gets none; 0: all do */

@@ -15,10 +15,7 @@
 
 /* A list is read in whole vectors; the rest of the last one is filled with the sentinel, a slot of
  * its own at the end of every array in slot order. */
-enum {
-    GRID_LANES = 8,
-    GRID_APART = 128 /* bytes between what two threads write: they never share a cache line */
-};
+enum { GRID_LANES = 8 };
 
 struct grid_box {
     int dim; /* 2 or 3 */

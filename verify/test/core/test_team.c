@@ -158,3 +158,47 @@ TEST(four_milliseconds)
     team_step(&team, 8e-3);
     assert_int_equal(team.size, 1);
 }
+
+/* Every piece of work is done once, also by more threads than have ranges of their own. */
+TEST(every_part_is_taken_once)
+{
+    static const int teams[] = {1, 2, 3, 5, TEAM_SHARES, TEAM_SHARES + 6};
+    for (size_t k = 0; k < sizeof teams / sizeof *teams; k++)
+        for (size_t parts = 0; parts < 300; parts += parts < 9 ? 1 : 97) {
+            struct team_shares shares;
+            int taken[300] = {0};
+            team_share(&shares, teams[k], parts);
+#pragma omp parallel num_threads(teams[k])
+            for (size_t p; team_next(&shares, &p);)
+#pragma omp atomic
+                taken[p]++;
+            for (size_t p = 0; p < 300; p++) assert_int_equal(taken[p], p < parts);
+        }
+}
+
+/* Each thread begins with its own range, the same one every time; what others have not begun comes
+ * after it. */
+TEST(own_parts_first)
+{
+    enum { TEAM = 3, PARTS = 11 };
+    for (int again = 0; again < 20; again++) {
+        struct team_shares shares;
+        size_t first[TEAM] = {PARTS, PARTS, PARTS};
+        int threads = 0;
+        team_share(&shares, TEAM, PARTS);
+#pragma omp parallel num_threads(TEAM) reduction(+ : threads)
+        {
+            threads = 1;
+            assert_true(team_next(&shares, &first[team_thread()]));
+        }
+        for (int t = 0; t < threads; t++) assert_int_equal(first[t], t * PARTS / TEAM);
+    }
+    struct team_shares shares;
+    size_t p;
+    team_share(&shares, TEAM, PARTS);
+    for (size_t k = 0; k < PARTS; k++) {
+        assert_true(team_next(&shares, &p));
+        assert_int_equal(p, k);
+    }
+    assert_false(team_next(&shares, &p));
+}
