@@ -270,13 +270,21 @@ static void set_compared(struct parser *parser, struct case_gate *gate, const ch
         snprintf(compared->why, sizeof compared->why, "%s", why);
 }
 
-/* A bound beyond the case's own ladder. */
+/* Beyond the case's own ladder: what the gate has, an order's range and a bound or a bound alone.
+ */
 static void set_finer(struct parser *parser, struct case_gate *gate, const char *name,
                       const char *value)
 {
-    if (!text_real(value, &gate->finer) || !(gate->finer > 0))
+    const bool ordered = isfinite(gate->gate.high);
+    const char *why;
+    double numbers[3] = {gate->gate.low, gate->gate.high}, least;
+    if (!read_gate(value, ordered ? 3 : 1, ordered ? numbers : numbers + 2, &least, &why) ||
+        least > 0 || *why || !(numbers[0] < numbers[1]))
         ini_text_fail_value(&parser->at, name, value,
-                            "bound of the error beyond the case's own ladder");
+                            ordered ? "least order, greatest order, bound beyond the case's ladder"
+                                    : "bound of the error beyond the case's ladder");
+    else
+        gate->finer = (struct order_gate){numbers[0], numbers[1], numbers[2]};
 }
 
 /* A key of [compared] or [finer] belongs to a gate of [converge]. */

@@ -24,8 +24,9 @@ enum { CASE_LADDER_MAX = ORDER_LEVELS_MAX, CASE_GATES_MAX = FIELDS * NORMS + 16 
  * have a bound thrice as wide, or their own, in a line of the same name in [compared]: `density_l1
  * = BOUND`. `density_l1 = BOUND known: WHY`: they are known to fail the gate, but their error is a
  * number up to BOUND. `density_l1 = none known: WHY`: there is nothing to be measured (no shock to
- * be found), their error is no number. A bound in [finer], `shock_radius = BOUND`, replaces that of
- * [converge] for more particles than the finest level of the case's own ladder has. */
+ * be found), their error is no number. What [finer] says, `velocity_l1 = LOW HIGH BOUND` or
+ * `shock_radius = BOUND`, replaces what [converge] says where there are more particles than the
+ * finest level of the case's own ladder has. */
 struct case_weakness {
     double bound;  /* of the finest error; INFINITY: any number, NAN: none at all, 0: unsaid */
     char why[160]; /* "" if there is none */
@@ -37,7 +38,7 @@ struct case_gate {
     struct order_gate gate; /* of the error alone: low = ORDER, high = INFINITY */
     struct case_weakness known, compared;
     double least; /* of the finest error; 0: as little as there may be */
-    double finer; /* its bound beyond the case's own ladder; 0: the same */
+    struct order_gate finer; /* beyond the case's own ladder; bound 0: the same */
 };
 
 struct case_file {

@@ -40,8 +40,8 @@ static void end_case(struct parser *parser)
     for (size_t g = 0; g < of->file.gate_count; g++) {
         of->file.gates[g].least = 0; /* it is of our scheme */
         if (parser->ladder)
-            of->file.gates[g].gate.bound *= gates_raise(&parser->given, &parser->given.gates[g],
-                                                        of->file.ladder[of->file.ladder_count - 1]);
+            of->file.gates[g].gate = gates_at(&parser->given, &parser->given.gates[g],
+                                              of->file.ladder[of->file.ladder_count - 1]);
     }
 }
 

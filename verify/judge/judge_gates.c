@@ -240,7 +240,8 @@ static void add_case(const struct judged *main, const json_t *figures, json_t *g
         if (gate->functional || gate->norm != NORM_L1 || !isfinite(gate->gate.high) || !order)
             continue;
         snprintf(text, sizeof text, "case %s: its ladder's order", file->name);
-        json_t *found = gate_json(name, order, true, gate->gate.low, text);
+        const double low = gates_at(file, gate, (size_t)main->case_n).low;
+        json_t *found = gate_json(name, order, true, low, text);
         if (*gate->known.why && strcmp(value_text(found, "status"), finding_words[FINDING_PASS])) {
             result_add(found, "status=%s why=%s", finding_words[FINDING_KNOWN], gate->known.why);
         }

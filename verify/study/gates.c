@@ -19,11 +19,18 @@ static const double open_width = 1;
 
 double gates_raise(const struct case_file *file, const struct case_gate *gate, size_t n)
 {
-    if (!file->ladder_count) return 1;
+    return gates_at(file, gate, n).bound / gate->gate.bound;
+}
+
+struct order_gate gates_at(const struct case_file *file, const struct case_gate *gate, size_t n)
+{
+    struct order_gate at = gate->gate;
+    if (!file->ladder_count) return at;
     const size_t finest = file->ladder[file->ladder_count - 1];
-    if (n > finest && gate->finer > 0) return gate->finer / gate->gate.bound;
+    if (n > finest && gate->finer.bound > 0) return gate->finer;
     const double coarser = (double)finest / (double)n;
-    return pow(fmax(1, coarser), gate->gate.low / file->dimension);
+    at.bound *= pow(fmax(1, coarser), at.low / file->dimension);
+    return at;
 }
 
 bool gates_know(const struct case_weakness *known, double raise, double error)
@@ -32,24 +39,23 @@ bool gates_know(const struct case_weakness *known, double raise, double error)
     return isnan(known->bound) ? isnan(error) : error <= known->bound * raise;
 }
 
-enum finding_status gates_weigh(const struct case_file *file, const struct case_gate *gate,
-                                size_t n, double bound, double exact, const struct order_fit *fit,
-                                char *why)
+enum finding_status gates_weigh(const struct case_file *file, const struct order_gate *gate,
+                                size_t n, double exact, const struct order_fit *fit, char *why)
 {
-    const double asked = gate->gate.low;
-    const bool ordered = isfinite(gate->gate.high);
+    const double asked = gate->low;
+    const bool ordered = isfinite(gate->high);
     why[0] = '\0';
     if (file->ladder_count && n <= file->ladder[0] && (ordered || asked > 0)) {
         snprintf(why, GATE_WHY, "too coarse to say: n = %zu, and the case's ladder begins at %zu",
                  n, file->ladder[0]);
         return FINDING_SMOKE;
     }
-    if (fabs(exact) > 0 && bound > coarse_part * fabs(exact)) {
+    if (fabs(exact) > 0 && gate->bound > coarse_part * fabs(exact)) {
         snprintf(why, GATE_WHY, "too coarse to say: an error of %.2g of the exact value is allowed",
-                 bound / fabs(exact));
+                 gate->bound / fabs(exact));
         return FINDING_SMOKE;
     }
-    const double allowed = ordered ? gate->gate.high - asked : open_width;
+    const double allowed = ordered ? gate->high - asked : open_width;
     if (!fit || !(ordered || asked > 0) || fit->high - fit->low <= allowed) return FINDING_PASS;
     snprintf(why, GATE_WHY, "the order is known to +-%.2g only, the gate is +-%.2g wide",
              (fit->high - fit->low) / 2, allowed / 2);
@@ -63,10 +69,10 @@ void gates_compare(struct case_file *file)
         if (*gate->compared.why) gate->known = gate->compared;
         if (gate->compared.bound > 0 && !*gate->compared.why) {
             gate->gate.bound = gate->compared.bound;
-            gate->finer = 0; /* theirs holds at every n */
+            gate->finer.bound = 0; /* theirs holds at every n */
         } else {
             gate->gate.bound *= compared_bound;
-            gate->finer *= compared_bound;
+            gate->finer.bound *= compared_bound;
         }
     }
 }
@@ -113,14 +119,14 @@ static json_t *read_error(const struct case_gate *gate, const json_t *run, doubl
 json_t *gates_error(const struct case_file *file, const struct case_gate *gate, const json_t *run)
 {
     const size_t n = (size_t)value_member(run, "n");
-    const double raise = gates_raise(file, gate, n), bound = raise * gate->gate.bound;
+    const struct order_gate at = gates_at(file, gate, n);
     struct case_weakness known = gate->known;
     double value, exact;
     char why[GATE_WHY];
     json_t *name = read_error(gate, run, &value, &exact);
-    known.bound *= raise;
-    const enum finding_status weighed = gates_weigh(file, gate, n, bound, exact, NULL, why);
-    return name ? weighed_json(name, value, bound, &known, weighed, why) : NULL;
+    known.bound *= gates_raise(file, gate, n);
+    const enum finding_status weighed = gates_weigh(file, &at, n, exact, NULL, why);
+    return name ? weighed_json(name, value, at.bound, &known, weighed, why) : NULL;
 }
 
 void gates_add_errors(const struct case_file *file, const json_t *run, json_t *list)

@@ -10,16 +10,18 @@
 
 /* Of a gate that passes: PASS, SMOKE or UNDETERMINED. Too coarse is a bound that was raised for a
  * run no finer than the coarsest level of the case's own ladder, and one that allows more than a
- * quarter of the exact value. n: particles; bound: as raised; exact: the value, NaN of a field;
- * fit: NULL of one run alone. why: of GATE_WHY bytes, "" for PASS. */
+ * quarter of the exact value. n: particles; gate: as gates_at has it; exact: the value, NaN of a
+ * field; fit: NULL of one run alone. why: of GATE_WHY bytes, "" for PASS. */
 enum { GATE_WHY = ORDER_GATE_TEXT };
-enum finding_status gates_weigh(const struct case_file *file, const struct case_gate *gate,
-                                size_t n, double bound, double exact, const struct order_fit *fit,
-                                char *why);
+enum finding_status gates_weigh(const struct case_file *file, const struct order_gate *gate,
+                                size_t n, double exact, const struct order_fit *fit, char *why);
 
 /* What a gate's bound is multiplied by for a level of n particles: at the case's own finest level
  * 1, beyond it what [finer] says (else 1), below it as the least order allows. */
 double gates_raise(const struct case_file *file, const struct case_gate *gate, size_t n);
+
+/* The gate for a finest level of n particles: its bound is raised, its order what [finer] says. */
+struct order_gate gates_at(const struct case_file *file, const struct case_gate *gate, size_t n);
 
 /* Is an error that fails a gate the weakness that is known? raise: of its bound, see gates_raise.
  * An error that is no number is known only where none can be measured. */

@@ -173,13 +173,12 @@ static void judge_gates(const struct study *study, struct study_result *result)
         const struct case_gate *gate = &file->gates[i];
         struct study_order *order = gated(result, gate);
         if (!order) continue;
-        order->gate = gate->gate;
-        order->gate.bound *= gates_raise(file, gate, finest->n);
+        const struct order_gate at = order->gate = gates_at(file, gate, finest->n);
         order->least = is_untouched(study, result) ? gate->least : 0;
-        order->status = passes(gate, order)
-                            ? gates_weigh(file, gate, finest->n, order->gate.bound,
-                                          exact_of(result, gate), &order->fit, order->why)
-                            : FINDING_FAIL;
+        order->status =
+            passes(gate, order)
+                ? gates_weigh(file, &at, finest->n, exact_of(result, gate), &order->fit, order->why)
+                : FINDING_FAIL;
         order->known = gate->known.why;
         if (order->status == FINDING_FAIL && is_known(file, gate, finest->n, order))
             order->status = FINDING_KNOWN;

@@ -198,13 +198,28 @@ TEST(finer)
     struct error error;
 #define BOUNDED FLAT "[converge]\nvelocity_l1 = 0.5 3 0.125\ndisc_error = 0 2e-2\n"
     if (parse(&file, BOUNDED "[finer]\ndisc_error = 0.25\n", &error)) fail_msg("%s", error.message);
-    assert_true(file.gates[1].finer == 0.25 && file.gates[0].finer == 0);
+    assert_true(file.gates[1].finer.bound == 0.25 && file.gates[0].finer.bound == 0);
+    if (parse(&file, BOUNDED "[finer]\nvelocity_l1 = 0.25 2 0.5\n", &error))
+        fail_msg("%s", error.message);
+    const struct order_gate *gate = &file.gates[0].finer;
+    assert_true(gate->low == 0.25 && gate->high == 2 && gate->bound == 0.5);
+    static const char *const ordered[] = {"0.5",   "0.5 1",       "2 1 0.5",
+                                          "1 2 0", "1 2 0.1:0.5", "1 2 0.5 known: x"};
+    for (size_t k = 0; k < sizeof ordered / sizeof *ordered; k++) {
+        char text[400], said[200];
+        snprintf(text, sizeof text, "%s[finer]\nvelocity_l1 = %s\n", BOUNDED, ordered[k]);
+        snprintf(said, sizeof said,
+                 AT("16") "velocity_l1 = %s; allowed: least order, greatest "
+                          "order, bound beyond the case's ladder",
+                 ordered[k]);
+        refused(text, said);
+    }
     refused(BOUNDED "[finer]\npressure_l1 = 1\n",
             AT("16") "key pressure_l1 in [finer] has no gate above, in [converge]");
     refused(BOUNDED "[finer]\ndisc_error = 0\n",
-            AT("16") "disc_error = 0; allowed: bound of the error beyond the case's own ladder");
+            AT("16") "disc_error = 0; allowed: bound of the error beyond the case's ladder");
     refused(BOUNDED "[finer]\ndisc_error = 1 known: x\n",
-            AT("16") "disc_error = 1 known: x; allowed: bound of the error beyond the case's own "
+            AT("16") "disc_error = 1 known: x; allowed: bound of the error beyond the case's "
                      "ladder");
     refused(BOUNDED "[finer]\ndisc_error = 1\ndisc_error = 1\n",
             AT("17") "key disc_error is given twice, first in line 16");

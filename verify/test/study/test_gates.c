@@ -69,11 +69,11 @@ TEST(errors)
     }
 }
 
-/* Above the case's own ladder another bound may hold; the bound of a compared scheme holds at every
- * n. */
+/* Above the case's own ladder another order and bound may hold; the bound of a compared scheme
+ * holds at every n. */
 TEST(beyond_the_ladder)
 {
-    static const char more[] = "[finer]\nvelocity_l1 = 0.25\ndisc_error = 0.5\n";
+    static const char more[] = "[finer]\nvelocity_l1 = 0.25 1 0.25\ndisc_error = 0.5\n";
     char whole[sizeof text + sizeof more];
     struct case_file file;
     struct error error;
@@ -85,6 +85,12 @@ TEST(beyond_the_ladder)
         near_relative(gates_raise(&file, &file.gates[0], 400), 1, 1e-14);
         near_relative(gates_raise(&file, &file.gates[0], 100), M_SQRT2, 1e-14);
         near_relative(gates_raise(&file, &file.gates[1], 401), compared ? 1 : 2, 1e-14);
+        const struct order_gate own = file.gates[0].gate;
+        for (size_t n = 100; n < 402; n += n < 400 ? 300 : 1) {
+            const struct order_gate at = gates_at(&file, &file.gates[0], n);
+            assert_true(at.low == (n > 400 ? 0.25 : own.low));
+            assert_true(at.high == (n > 400 ? 1 : own.high));
+        }
         near_relative(gates_raise(&file, &file.gates[2], 401), 1, 1e-14);
         gates_compare(&file);
     }

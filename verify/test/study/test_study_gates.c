@@ -326,20 +326,19 @@ TEST(what_passes_is_weighed)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct case_file usual = {.ladder = {100, 200}, .ladder_count = 2};
         const struct case_file alone = {.dimension = 1};
-        const struct case_gate gate = {.gate = {rows[k].low, rows[k].high, 0}};
+        const struct order_gate gate = {rows[k].low, rows[k].high, rows[k].bound};
         const struct order_fit fit = {.low = 1 - rows[k].half, .high = 1 + rows[k].half};
         const struct order_fit *of = rows[k].half < 0 ? NULL : &fit;
         char why[GATE_WHY] = "?";
         const enum finding_status outcome =
-            gates_weigh(&usual, &gate, rows[k].n, rows[k].bound, rows[k].exact, of, why);
+            gates_weigh(&usual, &gate, rows[k].n, rows[k].exact, of, why);
         if (outcome != rows[k].outcome) fail_msg("row %zu: outcome %d, %s", k, outcome, why);
         assert_int_equal(!why[0], outcome == FINDING_PASS);
         if (outcome == FINDING_SMOKE) assert_non_null(strstr(why, "too coarse to say"));
         if (outcome == FINDING_UNDETERMINED) assert_non_null(strstr(why, "is known to"));
         /* a case without a ladder has no coarsest level */
         if (rows[k].n == 100 && rows[k].half < 0)
-            assert_int_equal(gates_weigh(&alone, &gate, 100, rows[k].bound, rows[k].exact, of, why),
-                             FINDING_PASS);
+            assert_int_equal(gates_weigh(&alone, &gate, 100, rows[k].exact, of, why), FINDING_PASS);
     }
 }
 
