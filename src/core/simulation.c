@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 
 #include "fixed.h"
@@ -34,11 +35,21 @@ static enum status check_work(const struct simulation *simulation, struct error 
                      simulation->time, most, simulation->largest_dt);
 }
 
-static double seconds(clockid_t clock)
+static double wall_seconds(void)
 {
     struct timespec now;
-    clock_gettime(clock, &now);
+    clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Of all threads. CLOCK_PROCESS_CPUTIME_ID advances by whole ticks of 4 ms once a process has a
+ * limit of its CPU time (ulimit -t). */
+static double cpu_seconds(void)
+{
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
 static enum status check_particle(const struct setup *setup, size_t i, struct error *error)
@@ -174,8 +185,8 @@ enum status simulation_take(const struct setup *setup, struct simulation **resul
     if (status) return status;
     struct simulation *simulation = calloc(1, sizeof *simulation);
     if (!simulation) return error_set(error, STATUS_ENVIRONMENT, "no memory");
-    simulation->wall_start = seconds(CLOCK_MONOTONIC);
-    simulation->cpu_start = seconds(CLOCK_PROCESS_CPUTIME_ID);
+    simulation->wall_start = wall_seconds();
+    simulation->cpu_start = cpu_seconds();
     simulation->scheme = setup->scheme;
     simulation->plan = plan_of_setup(setup);
     simulation->gamma = setup->gamma;
@@ -236,8 +247,8 @@ void simulation_destroy(struct simulation *simulation)
 
 static void stop_clocks(struct simulation *simulation)
 {
-    simulation->cost.wall_s = seconds(CLOCK_MONOTONIC) - simulation->wall_start;
-    simulation->cost.cpu_s = seconds(CLOCK_PROCESS_CPUTIME_ID) - simulation->cpu_start;
+    simulation->cost.wall_s = wall_seconds() - simulation->wall_start;
+    simulation->cost.cpu_s = cpu_seconds() - simulation->cpu_start;
 }
 
 /* Signal speeds know velocities, and so nothing of light particles at rest beside a high pressure:
@@ -340,7 +351,7 @@ enum status simulation_run(struct simulation *simulation, double t_end,
     team_pause(&simulation->team);
     while (simulation->time < t_end && !stopped && !status) {
         status = advance(simulation, error);
-        if (simulation->team.most > 1) team_step(&simulation->team, seconds(CLOCK_MONOTONIC));
+        if (simulation->team.most > 1) team_step(&simulation->team, wall_seconds());
         if (!status && progress)
             stopped = !progress(context, simulation->time, simulation->cost.steps);
     }
@@ -375,8 +386,8 @@ void simulation_serialise(struct simulation *simulation, struct serialiser *seri
     serialise(serialiser, simulation->integrator_state, simulation->scheme.integrator->keeps);
     simulation->plan.sums->serialise(simulation, serialiser);
     if (!serialiser->back) return;
-    simulation->wall_start = seconds(CLOCK_MONOTONIC) - simulation->cost.wall_s;
-    simulation->cpu_start = seconds(CLOCK_PROCESS_CPUTIME_ID) - simulation->cost.cpu_s;
+    simulation->wall_start = wall_seconds() - simulation->cost.wall_s;
+    simulation->cpu_start = cpu_seconds() - simulation->cost.cpu_s;
 }
 
 void simulation_asleep(const struct simulation *simulation, bool *asleep)

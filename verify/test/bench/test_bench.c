@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The benchmark's own arithmetic on made-up data (no test looks at a real clock), and its plain C
- * baseline against the solver. */
+ * The benchmark's own arithmetic on made-up data (but the first, no test looks at a real clock),
+ * and its plain C baseline against the solver. */
 #include "test.h"
 
 #include <gsl/gsl_rng.h>
+#include <sys/resource.h>
 
 #include "bench.h"
 #include "bench_cells.h"
@@ -13,6 +14,23 @@
 #include "bench_skips.h"
 #include "precision.h"
 #include "worst.h"
+
+/* A process may have a limit of its CPU time, as this one has from here on. */
+TEST(test_a_limit_of_cpu_time_leaves_the_clock_fine)
+{
+    struct rlimit limit;
+    assert_int_equal(getrlimit(RLIMIT_CPU, &limit), 0);
+    if (limit.rlim_cur > 3600) limit.rlim_cur = 3600;
+    assert_int_equal(setrlimit(RLIMIT_CPU, &limit), 0);
+    const double begin = clock_now().cpu_s;
+    double before = begin;
+    for (int changes = 0; changes < 500;) {
+        const double now = clock_now().cpu_s;
+        changes += now > before;
+        before = now;
+    }
+    near_below(before - begin, 0.5);
+}
 
 /* --- the timing core, on a clock of our own --------------------------------------------------- */
 
