@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Every problem of the list, with every case that has it, keeps what problem.h promises: one walk
- * over its descriptor, its particles and its exact solution. The same walk accepts a vortex in two
- * dimensions that is not in the list, and rejects copies of descriptors with one planted fault. */
+ * over its descriptor, its particles and its exact solution. The same walk rejects copies of
+ * descriptors with one planted fault. */
 #include "test.h"
 
 #include "cases.h"
@@ -352,119 +352,9 @@ TEST(every_problem_by_itself)
     assert_null(problem_functional_name("no_such"));
 }
 
-/* ---- a problem of two dimensions that is not in the list: the vortex of Gresho & Chan ---- */
-
-static enum status vortex_prepare(struct prepared *p, struct settings *settings,
-                                  struct error *error)
-{
-    (void)settings, (void)error;
-    for (int d = 0; d < 2; d++) p->window.centre[d] = 0.5 * (p->domain.lo[d] + p->domain.hi[d]);
-    p->window.radius = 0.4;
-    return STATUS_OK;
-}
-
-static void vortex_sample(const struct prepared *p, const double x[3], double t,
-                          struct problem_state *state)
-{
-    const double *centre = p->window.centre, dx = x[0] - centre[0], dy = x[1] - centre[1];
-    const double R = hypot(dx, dy), R2 = R * R;
-    const double v = R < 0.2 ? 5 * R : R < 0.4 ? 2 - 5 * R : 0;
-    const double P = R < 0.2   ? 5 + 12.5 * R2
-                     : R < 0.4 ? 9 + 12.5 * R2 - 20 * R + 4 * log(R / 0.2)
-                               : 3 + 4 * log(2);
-    (void)t;
-    *state = (struct problem_state){.rho = 1,
-                                    .v = {R > 0 ? -v * dy / R : 0, R > 0 ? v * dx / R : 0},
-                                    .P = P,
-                                    .u = P / (p->gamma - 1)};
-}
-
-static enum status vortex_fill(const struct prepared *p, const struct settings *settings,
-                               struct initial *initial, struct error *error)
-{
-    const size_t side = (size_t)round(sqrt(settings_real(settings, SETTING_n)));
-    const double dx = domain_length(&p->domain, 0) / (double)side;
-    if (initial_allocate(initial, 2, side * side, error)) return error->status;
-    for (size_t i = 0; i < side * side; i++) {
-        struct problem_state s;
-        const size_t row = i / side;
-        const double x[3] = {p->domain.lo[0] + ((double)(i % side) + 0.5) * dx,
-                             p->domain.lo[1] + ((double)row + 0.5) * dx};
-        vortex_sample(p, x, 0, &s);
-        for (int d = 0; d < 2; d++) initial->x[d][i] = x[d], initial->v[d][i] = s.v[d];
-        initial->m[i] = dx * dx;
-        initial->u[i] = s.u;
-        initial->rho[i] = s.rho;
-    }
-    return STATUS_OK;
-}
-
-/* The other way round, but with the same sums. */
-static enum status vortex_backwards(const struct prepared *p, const struct settings *settings,
-                                    struct initial *initial, struct error *error)
-{
-    const enum status status = vortex_fill(p, settings, initial, error);
-    for (size_t i = 0; !status && i < initial->n; i++) initial->v[1][i] *= -1;
-    return status;
-}
-
-static double fastest(const struct prepared *p, const struct snapshot *s)
-{
-    double most = 0, x[3];
-    for (size_t i = 0; i < s->n; i++) {
-        problem_place(p, s, i, x);
-        if (window_contains(&p->window, x)) most = fmax(most, hypot(s->v[0][i], s->v[1][i]));
-    }
-    return most;
-}
-
-static double fastest_exact(const struct prepared *p, double t)
-{
-    (void)p, (void)t;
-    return 1;
-}
-
-static const struct functional peak = {"peak", NULL, fastest, fastest_exact};
-
-static const struct problem vortex = {.member = {"vortex", "Gresho & Chan", ""},
-                                      .reference = "stationary",
-                                      .least_dim = 2,
-                                      .most_dim = 2,
-                                      .prepare = vortex_prepare,
-                                      .sample = vortex_sample,
-                                      .fill = vortex_fill,
-                                      .random = initial_is_shaken,
-                                      .functionals = {&peak}};
-
-static struct walk walk_vortex(const struct problem *problem)
-{
-    static char *keys[] = {"lo=0", "hi=1", "window=0 1", "n=4096", "gamma=1.6666666666666667"};
-    struct walk walk = {.problem = problem, .sums = 1e-3};
-    struct error error;
-    settings_init(&walk.settings);
-    assert_int_equal(settings_apply(&walk.settings, 5, keys, &error), STATUS_OK);
-    walk_all(&walk, 2);
-    return walk;
-}
-
-TEST(two_dimensions)
-{
-    struct walk walk = walk_vortex(&vortex);
-    assert_string_equal(walk.fault, "");
-    assert_true(window_contains(&walk.p.window, (double[3]){0.5, 0.89}));
-    assert_false(window_contains(&walk.p.window, (double[3]){0.2, 0.2})); /* in the box around it */
-    json_t *window = run_window_json(&walk.p.window);
-    assert_int_equal(json_array_size(json_object_get(window, "centre")), 2);
-    json_decref(window);
-    struct problem flat = vortex;
-    flat.least_dim = flat.most_dim = 3;
-    walk = walk_vortex(&flat);
-    assert_non_null(strstr(walk.fault, "no form in 2 dimensions"));
-}
-
 /* ---- planted faults ---- */
 
-static const struct problem *tube; /* the right ones */
+static const struct problem *tube, *gresho; /* the right ones */
 
 static enum status heavy(const struct prepared *p, const struct settings *settings,
                          struct initial *initial, struct error *error)
@@ -483,6 +373,15 @@ static enum status one_too_far(const struct prepared *p, const struct settings *
             initial->u[i - 1] = initial->u[i];
             break;
         }
+    return status;
+}
+
+/* Turns the other way round, with the same sums. */
+static enum status backwards(const struct prepared *p, const struct settings *settings,
+                             struct initial *initial, struct error *error)
+{
+    const enum status status = gresho->fill(p, settings, initial, error);
+    for (size_t i = 0; !status && i < initial->n; i++) initial->v[1][i] *= -1;
     return status;
 }
 
@@ -553,8 +452,10 @@ TEST(planted_faults_are_found)
         if (!strstr(walk.fault, words[i]))
             fail_msg("fault %zu ('%s' expected): '%s'", i, words[i], walk.fault);
     }
-    struct problem backwards = vortex;
-    backwards.fill = vortex_backwards;
-    const struct walk walk = walk_vortex(&backwards);
-    assert_non_null(strstr(walk.fault, "another velocity"));
+    gresho = (const struct problem *)family_find(&problem_family, "gresho");
+    struct problem turned = *gresho, flat = *gresho;
+    turned.fill = backwards;
+    assert_non_null(strstr(walk_case("gresho", "n=400", &turned).fault, "another velocity"));
+    flat.least_dim = flat.most_dim = 3;
+    assert_non_null(strstr(walk_case("gresho", "n=400", &flat).fault, "no form in 2 dimensions"));
 }
