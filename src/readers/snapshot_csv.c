@@ -25,6 +25,26 @@ static enum status scale_widths(struct snapshot_file *file, char why[200], struc
     return STATUS_OK;
 }
 
+enum status snapshot_csv_named(const char *path, struct snapshot_file *said, struct csv *csv,
+                               char unknown[200], struct error *error)
+{
+    size_t used = 0;
+    unknown[0] = '\0';
+    if (csv_read(path, csv, error) || csv_comments(path, said, error)) return error->status;
+    for (size_t k = 0; k < csv->columns; k++) {
+        const int column = snapshot_column_of(csv->names[k]);
+        const char *ours = column < 0 ? NULL : snapshot_column_names[column];
+        if (!ours && used < 200)
+            used += (size_t)snprintf(unknown + used, 200 - used, "%s%s", used ? " " : "",
+                                     csv->names[k]);
+        if (!ours || csv_column(csv, ours) >= 0) continue;
+        free(csv->names[k]);
+        if (!(csv->names[k] = strdup(ours)))
+            return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
+    }
+    return STATUS_OK;
+}
+
 enum status snapshot_csv(const char *path, struct snapshot_file *file, struct csv *csv,
                          char why[200], struct error *error)
 {

@@ -6,6 +6,13 @@
 #include "csv.h"
 #include "snapshot_file.h"
 
+/* Reads a table strictly, see csv_read, and calls its columns by our names where theirs are usual
+ * ones (acceleration_x: ax) and no column has ours. said: what the comments before its rows say of
+ * its box, boundary and gamma, no columns. unknown: names that say nothing, "" if there is none.
+ * Free csv with csv_free, also after a failure. */
+enum status snapshot_csv_named(const char *path, struct snapshot_file *said, struct csv *csv,
+                               char unknown[200], struct error *error);
+
 /* Reads path; file: what is known beside the columns, which have moved to csv. h becomes the
  * support radius if the file proves what its h is, else the column is left out; why says so. Free
  * both, also after a failure. STATUS_BAD_INPUT: as snapshot_read. */

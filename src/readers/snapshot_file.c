@@ -26,10 +26,10 @@ static const char *const called[SNAPSHOT_COLUMNS] = {
     "u internalenergy internalenergies specificinternalenergy energy thermalenergy utherm",
     "p pres pressure pressures press",
     "h hsml smoothinglength smoothinglengths",
-    "ax accx accelerationx",
-    "ay accy accelerationy",
-    "az accz accelerationz",
-    "du dudt",
+    "ax acc accx acceleration accelerationx accelerations accelerationsx",
+    "ay accy accelerationy accelerationsy",
+    "az accz accelerationz accelerationsz",
+    "du dudt udot rateofchangeofinternalenergy",
 };
 
 int snapshot_column_of(const char *name)

@@ -87,6 +87,10 @@ enum status snapshot_read(const char *path, const struct snapshot_options *optio
                           struct snapshot_file *file, struct error *error);
 void snapshot_file_free(struct snapshot_file *file);
 
+/* What the comments before the rows of a text table say: time, gamma, box, case, boundary, keys. No
+ * columns, so that there is nothing to be freed. Errors as source_open's. */
+enum status csv_comments(const char *path, struct snapshot_file *said, struct error *error);
+
 /* STATUS_BAD_INPUT: it has neither u nor P, or a pressure below 0, which no gas has. */
 enum status snapshot_check_gas(const char *path, struct snapshot_file *file, struct error *error);
 

@@ -30,6 +30,7 @@ struct request {
     double tolerance;
     struct snapshot_file snapshot; /* what the particles come from, if they do: no columns */
     char widths[200];              /* what was found of its h */
+    char unknown[200];             /* columns of theirs whose names say nothing */
 };
 
 /* ---- input ---- */
@@ -71,12 +72,29 @@ static enum status take_boundaries(const char *text, int dim, enum boundary boun
     return STATUS_OK;
 }
 
-/* Keys of the box, which a file lacks; others are left in rest. */
+/* What a file says of its box holds unless the keys say otherwise. */
+static enum status take_said(struct request *r, bool *lo, bool *hi, bool *boundary,
+                             struct error *error)
+{
+    const struct snapshot_file *said = &r->snapshot;
+    if (!*boundary && *said->boundary &&
+        take_boundaries(said->boundary, r->file.dim, r->setup.boundary, error))
+        return error->status;
+    if (!said->boxed || *lo || *hi) return STATUS_OK;
+    *lo = *hi = true;
+    for (int a = 0; a < r->file.dim; a++) {
+        r->setup.lo[a] = said->corner[a];
+        r->setup.hi[a] = said->corner[a] + said->box[a];
+    }
+    return STATUS_OK;
+}
+
+/* Keys of the box; others are left in rest. */
 static enum status take_box(struct request *r, int n, char **arguments, char **rest, int *left,
                             struct error *error)
 {
     const int dim = r->file.dim;
-    bool lo = false, hi = false;
+    bool lo = false, hi = false, boundary = false;
     *left = 0;
     for (int k = 0; k < n; k++) {
         const char *text = strchr(arguments[k], '=');
@@ -89,14 +107,12 @@ static enum status take_box(struct request *r, int n, char **arguments, char **r
         else if (length == 7 && !strncmp(arguments[k], "gravity", 7))
             status = take_numbers("gravity", text, dim, r->setup.gravity, error);
         else if (length == 8 && !strncmp(arguments[k], "boundary", 8))
-            status = take_boundaries(text, dim, r->setup.boundary, error);
+            status = take_boundaries(text, dim, r->setup.boundary, error), boundary = true;
         else
             rest[(*left)++] = arguments[k];
         if (status) return status;
     }
-    for (int a = 0; a < dim && r->snapshot.boxed && !lo && !hi; a++)
-        r->setup.lo[a] = 0, r->setup.hi[a] = r->snapshot.box[a];
-    lo = lo || r->snapshot.boxed, hi = hi || r->snapshot.boxed;
+    if (take_said(r, &lo, &hi, &boundary, error)) return error->status;
     for (int a = 0; a < dim; a++)
         if ((!lo || !hi) && r->setup.boundary[a] != BOUNDARY_OPEN)
             return error_set(error, STATUS_BAD_INPUT,
@@ -141,7 +157,7 @@ static enum status take_theirs(struct request *r, const char *path, bool toleran
 {
     enum { SINGLE = 1 };
     struct snapshot_file file = {0};
-    if (is_csv(path)) return csv_read(path, &r->theirs, error);
+    if (is_csv(path)) return snapshot_csv_named(path, &file, &r->theirs, r->unknown, error);
     const enum status status = snapshot_csv(path, &file, &r->theirs, r->widths, error);
     /* rates of a snapshot in single precision agree to that */
     if (!status && !tolerance && file.precision[SINGLE] > 1e-9) r->tolerance = 1e-5;
@@ -151,13 +167,14 @@ static enum status take_theirs(struct request *r, const char *path, bool toleran
 
 static enum status take_file(struct request *r, int n, char **arguments, struct error *error)
 {
-    char *rest[KEYS_MAX];
+    char *rest[KEYS_MAX], unknown[200]; /* as ignored are told */
     int left;
     if (n > KEYS_MAX) return error_set(error, STATUS_BAD_INPUT, "rates: %d keys are too many", n);
     enum status status =
-        is_csv(r->source) ? particle_file_read(r->source, &r->file, error)
-                          : snapshot_csv(r->source, &r->snapshot, &r->file.csv, r->widths, error);
-    if (!status && !is_csv(r->source)) status = particle_file_of(r->source, &r->file, error);
+        is_csv(r->source)
+            ? snapshot_csv_named(r->source, &r->snapshot, &r->file.csv, unknown, error)
+            : snapshot_csv(r->source, &r->snapshot, &r->file.csv, r->widths, error);
+    if (!status) status = particle_file_of(r->source, &r->file, error);
     if (!status) status = take_box(r, n, arguments, rest, &left, error);
     if (status) return status;
     settings_init(&r->settings);
@@ -172,11 +189,13 @@ static enum status take_file(struct request *r, int n, char **arguments, struct 
     if ((status = sharpen(&r->settings, error)) ||
         (status = settings_scheme(&r->settings, r->file.dim, &r->setup.scheme, error)))
         return status;
+    if (r->snapshot.gamma.known && r->settings.value[SETTING_gamma].source != SOURCE_USER) {
+        char gamma[32];
+        snprintf(gamma, sizeof gamma, "%.17g", r->snapshot.gamma.value);
+        status = settings_set(&r->settings, SETTING_gamma, gamma, SOURCE_CASE, r->source, error);
+        if (status) return status;
+    }
     r->setup.gamma = settings_real(&r->settings, SETTING_gamma);
-    if (r->snapshot.gamma.known && r->settings.value[SETTING_gamma].source != SOURCE_USER)
-        return error_set(error, STATUS_BAD_INPUT,
-                         "%.200s: says gamma = %.9g: gamma=... is needed, as you mean it",
-                         r->source, r->snapshot.gamma.value);
     return particle_file_fill(&r->file, r->source, &r->setup, error);
 }
 
@@ -242,7 +261,8 @@ static void print_table(const struct request *r, const struct rate_table *t, siz
     if (matrix[0]) printf("matrices: %s\n", matrix);
 }
 
-/* The verdict in one sentence: of what departs most among those whose cause is known, that one. */
+/* The verdict in one sentence: of the first quantity that departs, if there is one of the first
+ * whose cause is known. */
 static void print_verdict(const struct rate_check *check, double tolerance)
 {
     const struct rate_comparison *told = NULL;
@@ -265,8 +285,9 @@ static void print_verdict(const struct rate_check *check, double tolerance)
             failed, check->count, tolerance, told->quantity, told->worst, told->particle);
 }
 
-static void print_check(const struct rate_check *check)
+static void print_check(const struct rate_check *check, const char *unknown)
 {
+    if (*unknown) printf("\ncolumns of theirs that are not compared: %s\n", unknown);
     printf("\n%-8s %10s %10s %9s  %-4s  %s\n", "quantity", "worst", "rms", "particle", "",
            "likely cause");
     for (size_t k = 0; k < check->count; k++) {
@@ -389,7 +410,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (!status) {
         if (options->speak) {
             print_table(&r, &table, theirs ? ROWS_CHECKED : ROWS_SHOWN);
-            if (theirs) print_check(&check), print_verdict(&check, r.tolerance);
+            if (theirs) print_check(&check, r.unknown), print_verdict(&check, r.tolerance);
         }
         if (csv) status = write_csv(csv, &r, &table, error);
         if (!status && options->json) status = write_json(options, &r, &table, &check, error);
@@ -416,9 +437,10 @@ const struct command command_rates = {
     .help =
         "one evaluation, nothing moves: h, rho, P, dp/dt, dU/dt of every particle\n"
         "A file holds columns x[,y[,z]], vx[,vy[,vz]], m, u in any order; its header gives the\n"
-        "dimension. So does a snapshot (see judge). Beside the keys of the scheme and gamma it\n"
-        "needs its box, unless a snapshot says it: lo and hi (one number, or one for each\n"
-        "direction), boundary (periodic, open or reflecting; one word or one each), gravity. h is\n"
+        "dimension; other usual names (acceleration_x) are known, too. So does a snapshot (see\n"
+        "judge). Beside the keys of the scheme it needs gamma and its box, unless it says them\n"
+        "(# box = 0:1): lo and hi (one number, or one for each direction), boundary (periodic,\n"
+        "open or reflecting; one word or one each), gravity. h is\n"
         "found to 1e-14 unless h_tolerance says otherwise. With --check (a CSV file, or a "
         "snapshot\n"
         "with accelerations; in single precision the tolerance is 1e-5) the exit status is 1 if a\n"

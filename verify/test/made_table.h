@@ -45,10 +45,10 @@ __attribute__((unused)) static const char *const spelt[SNAPSHOT_COLUMNS][7] = {
      "energy"},
     {"P", "p", "pressure", "Pressures", "pres", "Pressure", "pres"},
     {"h", "H", "hsml", "smoothing length", "SmoothingLengths", "Hsml", "h"},
-    {"ax", "a_x", "acc_x", "acceleration x", "AX", "accx", "ax"},
-    {"ay", "a_y", "acc_y", "acceleration y", "AY", "accy", "ay"},
-    {"az", "a_z", "acc_z", "acceleration z", "AZ", "accz", "az"},
-    {"du", "du/dt", "dudt", "DU", "du_dt", "dU/dt", "du"}};
+    {"ax", "a_x", "acc_x", "acceleration x", "Acceleration", "Accelerations", "acc"},
+    {"ay", "a_y", "acc_y", "acceleration y", "accelerations_y", "accy", "AY"},
+    {"az", "a_z", "acc_z", "acceleration z", "accelerations_z", "accz", "AZ"},
+    {"du", "du/dt", "dudt", "DU", "du_dt", "udot", "RateOfChangeOfInternalEnergy"}};
 
 static inline struct table table_of(int dim, bool all)
 {

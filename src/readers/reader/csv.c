@@ -158,6 +158,21 @@ static bool begins_with_number(const char *line)
     return text_table_number(word, &number);
 }
 
+enum status csv_comments(const char *path, struct snapshot_file *said, struct error *error)
+{
+    struct snapshot_source source;
+    *said = (struct snapshot_file){0};
+    const enum status status = source_open(&source, path, error);
+    const char *line = status ? "" : (const char *)source.bytes;
+    while (*line && !begins_with_number(line)) {
+        const size_t length = strcspn(line, "\n");
+        if (line[strspn(line, " \t\r")] == '#') take_remark(line, length, said);
+        line += length + (line[length] == '\n');
+    }
+    source_free(&source);
+    return status;
+}
+
 static enum status read(const struct snapshot_source *source,
                         const struct snapshot_options *options, struct snapshot_file *file,
                         struct error *error)
