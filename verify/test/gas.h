@@ -2,6 +2,7 @@
  * For tests of where particles start. Include after test.h. */
 #pragma once
 
+#include "keyed.h"
 #include "problem.h"
 
 /* A gas that jumps, and is nowhere the same. */
@@ -23,15 +24,6 @@ static inline void gas_sample(const struct prepared *p, const double x[3], doubl
                                 .v = {x[0], 2 * x[0] - x[1] + t, 5 + x[2]},
                                 .P = 1 + t,
                                 .u = gas_energy(x) + t};
-}
-
-static inline struct settings gas_settings(int n, char **keys)
-{
-    struct settings settings;
-    struct error error;
-    settings_init(&settings);
-    if (settings_apply(&settings, n, keys, &error)) fail_msg("%s", error.message);
-    return settings;
 }
 
 static const struct problem gas_problem = {.sample = gas_sample, .smooth = false};

@@ -3,15 +3,13 @@
  * done with a simulation, whatever it computes. Include after test.h. */
 #pragma once
 
-#include "settings.h"
-#include "simulation.h"
+#include "keyed.h"
 
 /* Of n particles on [0, 1]; simulation_destroy it. */
 static inline struct simulation *made_simulation(size_t n)
 {
     double *storage = malloc(4 * n * sizeof *storage);
     double *place = storage, *velocity = place + n, *mass = velocity + n, *energy = mass + n;
-    struct settings settings;
     struct simulation *simulation = NULL;
     struct error error = {0};
     for (size_t i = 0; i < n; i++) {
@@ -31,10 +29,8 @@ static inline struct simulation *made_simulation(size_t n)
                           .m = mass,
                           .u = energy,
                           .threads = 1};
-    settings_init(&settings);
-    if (settings_scheme(&settings, 1, &setup.scheme, &error) ||
-        simulation_create(&setup, &simulation, &error))
-        fail_msg("%s", error.message);
+    setup.scheme = keyed_scheme(1, "");
+    if (simulation_create(&setup, &simulation, &error)) fail_msg("%s", error.message);
     free(storage);
     return simulation;
 }

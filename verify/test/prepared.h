@@ -4,6 +4,7 @@
 #pragma once
 
 #include "initial.h"
+#include "keyed.h"
 #include "problem_list.h"
 #include "problem_prepare.h"
 
@@ -23,17 +24,11 @@ const char *__tsan_default_options(void)
 static inline enum status prepared_try(struct prepared *p, struct settings *settings, int dim,
                                        const char *keys, struct error *error)
 {
-    enum { KEYS = 16 };
-    char text[256], *words[KEYS], *rest = text;
-    int n = 0;
+    struct keyed_words words;
     *error = (struct error){0};
-    snprintf(text, sizeof text, "%s", keys);
-    for (char *word; (word = strtok_r(rest, "|", &rest));) {
-        assert_true(n < KEYS);
-        words[n++] = word;
-    }
+    keyed_words(&words, keys, "|");
     settings_init(settings);
-    if (settings_apply(settings, n, words, error)) fail_msg("%s", error->message);
+    if (settings_apply(settings, words.n, words.word, error)) fail_msg("%s", error->message);
     return problem_prepare(p, settings, dim, error);
 }
 

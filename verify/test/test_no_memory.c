@@ -44,9 +44,8 @@ static void make_places(void)
 
 static enum status fill(struct error *error)
 {
-    char *keys[] = {"n=16", "lattice=square"};
     const struct prepared p = {.problem = &gas_problem, .domain = {2, {0, 0}, {1, 1}}};
-    const struct settings settings = gas_settings(2, keys);
+    const struct settings settings = keyed_settings("n=16 lattice=square");
     struct initial initial = {0};
     const enum status status = initial_fill(&p, &settings, &initial, error);
     initial_free(&initial);
@@ -56,10 +55,9 @@ static enum status fill(struct error *error)
 /* Shaken ones, and of equal masses. */
 static enum status created(struct error *error)
 {
-    char *keys[] = {"n=16", "lattice=square", "jitter=0.1"};
     const struct problem problem = {.sample = gas_sample, .fill = initial_fill};
     const struct prepared p = {.problem = &problem, .domain = {2, {0, 0}, {1, 1}}};
-    const struct settings settings = gas_settings(3, keys);
+    const struct settings settings = keyed_settings("n=16 lattice=square jitter=0.1");
     struct initial initial;
     const enum status status = initial_create(&initial, &p, &settings, error);
     assert_true(!status || !initial.storage);
@@ -69,9 +67,8 @@ static enum status created(struct error *error)
 
 static enum status equal(struct error *error)
 {
-    char *keys[] = {"n=4", "lattice=random", "equal_masses=yes"};
     const struct prepared p = {.problem = &gas_problem, .domain = {2, {0, 0}, {1, 1}}};
-    const struct settings settings = gas_settings(3, keys);
+    const struct settings settings = keyed_settings("n=4 lattice=random equal_masses=yes");
     struct initial initial = {0};
     const enum status status = initial_fill(&p, &settings, &initial, error);
     initial_free(&initial);
@@ -316,7 +313,6 @@ static enum status computed(struct error *error)
 /* Eight particles on a line. */
 static struct setup line_setup(double arrays[4][8])
 {
-    struct settings settings;
     struct setup setup = {.dim = 1,
                           .hi = {1, 1, 1},
                           .gamma = 1.4,
@@ -332,8 +328,7 @@ static struct setup line_setup(double arrays[4][8])
         arrays[1][i] = 0;
         arrays[2][i] = 0.125, arrays[3][i] = 1;
     }
-    settings_init(&settings);
-    assert_int_equal(settings_scheme(&settings, 1, &setup.scheme, NULL), STATUS_OK);
+    setup.scheme = keyed_scheme(1, "");
     return setup;
 }
 

@@ -4,10 +4,10 @@
  * particles are on one level, and that neighbours are never further apart than two levels. */
 #include "test.h"
 
+#include "keyed.h"
 #include "made_bytes.h"
 #include "made_lattice.h"
 #include "made_simulation.h"
-#include "settings.h"
 #include "solver.h"
 
 static uint64_t seed;
@@ -22,22 +22,9 @@ static double draw(double low, double high)
  */
 static struct scheme scheme_with(int dim, const char *keys)
 {
-    struct settings settings;
-    struct scheme scheme;
-    struct error error = {0};
-    char text[200], *rest = text;
-    settings_init(&settings);
-    snprintf(text, sizeof text, "%s%s", keys, dim == 3 ? " kernel=quadratic_spline eta=1.6" : "");
-    for (char *key; (key = strtok_r(rest, " ", &rest));) {
-        char *value = strchr(key, '=');
-        *value++ = '\0';
-        int which = 0;
-        while (strcmp(setting_keys[which].name, key) != 0) which++;
-        if (settings_set(&settings, (enum setting)which, value, SOURCE_USER, NULL, &error))
-            fail_msg("%s", error.message);
-    }
-    if (settings_scheme(&settings, dim, &scheme, &error)) fail_msg("%s", error.message);
-    return scheme;
+    char words[200];
+    snprintf(words, sizeof words, "%s%s", keys, dim == 3 ? " kernel=quadratic_spline eta=1.6" : "");
+    return keyed_scheme(dim, words);
 }
 
 /* A lattice of side^dim particles in a periodic box, each off its place by so much of a spacing,

@@ -6,10 +6,10 @@
 #include "test.h"
 
 #include "draw.h"
+#include "keyed.h"
 #include "made_bytes.h"
 #include "made_lattice.h"
 #include "made_simulation.h"
-#include "settings.h"
 #include "solver.h"
 
 static const char *member = "fluxes";

@@ -6,6 +6,7 @@
 
 #include <stdatomic.h>
 
+#include "keyed.h"
 #include "run.h"
 
 static atomic_bool stepping;
@@ -57,19 +58,11 @@ enum status __wrap_simulation_run(struct simulation *simulation, double t_end,
 static int calls_in(const char *case_name, const char *keys, int threads,
                     simulation_progress *progress)
 {
-    char text[256], *words[16];
-    int n = 0;
-    struct run_settings settings;
-    struct run run;
+    struct run run = keyed_run(case_name, keys);
     struct run_result result;
     struct error error;
-    assert_true(strlen(keys) < sizeof text);
-    strcpy(text, keys);
-    for (char *word = strtok(text, " "); word; word = strtok(NULL, " ")) words[n++] = word;
-    if (run_prepare(&settings, case_name, n, words, &error)) fail_msg("%s", error.message);
-    settings.threads = threads;
-    settings.progress = progress;
-    if (run_resolve(&run, &settings, &error)) fail_msg("%s", error.message);
+    run.asked.threads = threads;
+    run.asked.progress = progress;
     calls = 0;
     const enum status status = run_execute(&run, &result, &error);
     /* cold gas that collides: not every scheme gets far */

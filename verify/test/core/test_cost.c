@@ -2,8 +2,7 @@
  * What a run says that it has done, on lattices whose neighbours can be counted on paper. */
 #include "test.h"
 
-#include "settings.h"
-#include "simulation.h"
+#include "keyed.h"
 
 enum { SIDE = 16, MOST = SIDE * SIDE * SIDE };
 
@@ -12,7 +11,6 @@ static struct simulation *lattice(int dim, int threads, bool sleep)
 {
     static double x[3][MOST], v[MOST], m[MOST], u[MOST];
     const size_t n = dim == 2 ? SIDE * SIDE : MOST;
-    struct settings settings;
     struct simulation *simulation = NULL;
     struct error error = {0};
     for (size_t i = 0; i < n; i++) {
@@ -30,12 +28,8 @@ static struct simulation *lattice(int dim, int threads, bool sleep)
                           .skip = sleep,
                           .threads = threads};
     for (int a = 0; a < dim; a++) setup.x[a] = x[a], setup.v[a] = v;
-    settings_init(&settings);
-    char *keys[] = {"kernel=cubic_spline", "eta=2.4", "gradient=standard"};
-    if (settings_apply(&settings, 3, keys, &error) ||
-        settings_scheme(&settings, dim, &setup.scheme, &error) ||
-        simulation_create(&setup, &simulation, &error))
-        fail_msg("%s", error.message);
+    setup.scheme = keyed_scheme(dim, "kernel=cubic_spline eta=2.4 gradient=standard");
+    if (simulation_create(&setup, &simulation, &error)) fail_msg("%s", error.message);
     return simulation;
 }
 

@@ -4,7 +4,7 @@
 #include "test.h"
 
 #include "fixed.h"
-#include "settings.h"
+#include "keyed.h"
 #include "solver.h"
 
 enum { N = 16 };
@@ -154,15 +154,10 @@ TEST(energy_of_layers)
             .u = u,
             .rho = rho,
             .threads = 1};
-        struct settings settings;
         struct simulation *simulation = NULL;
         struct error error = {0};
-        settings_init(&settings);
-        if (settings_set(&settings, SETTING_kernel, "cubic_spline", SOURCE_USER, NULL, &error) ||
-            settings_set(&settings, SETTING_eta, "2", SOURCE_USER, NULL, &error) ||
-            settings_scheme(&settings, 2, &setup.scheme, &error) ||
-            simulation_create(&setup, &simulation, &error))
-            fail_msg("%s", error.message);
+        setup.scheme = keyed_scheme(2, "kernel=cubic_spline eta=2");
+        if (simulation_create(&setup, &simulation, &error)) fail_msg("%s", error.message);
         assert_true(!simulation->held == !fixed);
         simulation->start_energy *= 3;
         assert_int_equal(simulation_run(simulation, 1e-3, NULL, NULL, &error),

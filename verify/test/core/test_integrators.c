@@ -5,8 +5,8 @@
 #include "test.h"
 
 #include "hydro_setup.h"
+#include "keyed.h"
 #include "memory.h"
-#include "settings.h"
 #include "solver.h"
 
 static bool is_used(const double *array, ptrdiff_t n)
@@ -41,11 +41,9 @@ TEST(test_start_of_a_step)
 enum { SIDE = 12, N = SIDE * SIDE, ARRAYS_MOST = 64 };
 
 /* Disordered gas in a periodic box in 1D or 2D, with these keys. */
-static struct setup disordered(int dim, int count, char *const *keys)
+static struct setup disordered(int dim, const char *keys)
 {
     static double x[3][N], v[3][N], m[N], u[N];
-    struct settings settings;
-    struct error error;
     struct setup setup = {.dim = dim,
                           .hi = {1, 1, 1},
                           .gamma = 1.4,
@@ -63,10 +61,7 @@ static struct setup disordered(int dim, int count, char *const *keys)
         m[i] = 1. / N, u[i] = 1 + 0.2 * sin(3 * i);
     }
     for (int k = 0; k < dim; k++) setup.x[k] = x[k], setup.v[k] = v[k];
-    settings_init(&settings);
-    if (settings_apply(&settings, count, keys, &error) ||
-        settings_scheme(&settings, dim, &setup.scheme, &error))
-        fail_msg("%s", error.message);
+    setup.scheme = keyed_scheme(dim, keys);
     return setup;
 }
 
@@ -100,25 +95,15 @@ static size_t list(const struct particles *a, unsigned uses, double *arrays[ARRA
     return count;
 }
 
-static struct setup setup_of(size_t integrator, int dim, const char *viscosity, const char *energy)
-{
-    char of_time[64], of_viscosity[64], of_energy[64];
-    char *keys[] = {of_time, of_viscosity, of_energy};
-    snprintf(of_time, sizeof of_time, "integrator=%s", integrator_family.members[integrator]->name);
-    snprintf(of_viscosity, sizeof of_viscosity, "viscosity=%s", viscosity);
-    snprintf(of_energy, sizeof of_energy, "energy=%s", energy);
-    return disordered(dim, 3, keys);
-}
-
 /* A particle that loses its last energy in a step is named with what is left of it. */
 TEST(test_without_energy)
 {
-    static const char *const energies[] = {"internal", "total"};
+    static const char *const energies[] = {
+        "integrator=predicted_midpoint viscosity=none energy=internal",
+        "integrator=predicted_midpoint viscosity=none energy=total"};
     for (int total = 0; total < 2; total++)
         for (int dim = 1; dim <= 2; dim++) {
-            size_t k = 0;
-            while (strcmp(integrator_family.members[k]->name, "predicted_midpoint") != 0) k++;
-            const struct setup setup = setup_of(k, dim, "none", energies[total]);
+            const struct setup setup = disordered(dim, energies[total]);
             struct simulation *simulation = created(&setup);
             const struct particles *a = &simulation->particles;
             struct error error;
@@ -139,26 +124,26 @@ TEST(test_without_energy)
 /* The estimate counts the arrays that are written to, the snapshot's and three more; no others. */
 TEST(test_arrays_that_are_counted)
 {
-    static char *const schemes[][3] = {
-        {"viscosity=constant", "gradient=standard", "formulation=vanilla_ice"},
-        {"viscosity=time_dependent", "gradient=standard", "formulation=vanilla_ice"},
-        {"viscosity=reconstructed", "gradient=standard", "formulation=vanilla_ice"},
-        {"viscosity=constant", "gradient=ia", "formulation=vanilla_ice"},
-        {"viscosity=constant", "gradient=standard", "formulation=lagrangian"},
-        {"viscosity=time_dependent", "gradient=ia", "formulation=lagrangian"},
-        {"viscosity=cullen_dehnen", "gradient=standard", "formulation=vanilla_ice"},
-        {"viscosity=cullen_dehnen", "gradient=ia", "formulation=lagrangian"},
+    static const char *const schemes[] = {
+        "viscosity=constant gradient=standard formulation=vanilla_ice",
+        "viscosity=time_dependent gradient=standard formulation=vanilla_ice",
+        "viscosity=reconstructed gradient=standard formulation=vanilla_ice",
+        "viscosity=constant gradient=ia formulation=vanilla_ice",
+        "viscosity=constant gradient=standard formulation=lagrangian",
+        "viscosity=time_dependent gradient=ia formulation=lagrangian",
+        "viscosity=cullen_dehnen gradient=standard formulation=vanilla_ice",
+        "viscosity=cullen_dehnen gradient=ia formulation=lagrangian",
     };
     for (int way = 0; way < 3; way++)
         for (size_t k = 0; k < sizeof schemes / sizeof *schemes; k++)
             for (size_t integrator = 0; integrator < integrator_family.n; integrator++) {
                 const int dim = way < 2 ? 1 : 2;
                 const bool still = way == 1;
-                char of_time[64], *keys[] = {schemes[k][0], schemes[k][1], schemes[k][2], of_time};
-                if (dim == 1 && strcmp(keys[0], "viscosity=cullen_dehnen") == 0) continue;
-                snprintf(of_time, sizeof of_time, "integrator=%s",
+                char keys[128];
+                if (dim == 1 && strstr(schemes[k], "cullen_dehnen")) continue;
+                snprintf(keys, sizeof keys, "%s integrator=%s", schemes[k],
                          integrator_family.members[integrator]->name);
-                struct setup setup = disordered(dim, 4, keys);
+                struct setup setup = disordered(dim, keys);
                 if (still) lie_still(&setup);
                 struct simulation *simulation = created(&setup),
                                   bare = {.scheme = setup.scheme, .plan = plan_of_setup(&setup)};
@@ -173,8 +158,7 @@ TEST(test_arrays_that_are_counted)
                     assert_false(is_used(arrays[i], N));
                 const double room = bare.plan.sums->bytes(&bare, N);
                 if (memory_bytes(&setup) - room != 8. * N * (double)used)
-                    fail_msg("%dD %s %s %s %s%s: %g arrays, not %zu", dim, keys[0], keys[1],
-                             keys[2], keys[3], still ? ", sleeping" : "",
+                    fail_msg("%dD %s%s: %g arrays, not %zu", dim, keys, still ? ", sleeping" : "",
                              (memory_bytes(&setup) - room) / (8 * N), used);
                 simulation_destroy(simulation);
             }

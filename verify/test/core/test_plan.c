@@ -4,19 +4,9 @@
 #include "test.h"
 
 #include "integrator.h"
+#include "keyed.h"
 #include "plan.h"
-#include "run.h"
 #include "value.h"
-
-static struct run resolved(const char *name, size_t n, char *const *words)
-{
-    struct run_settings settings;
-    struct run run = {0};
-    struct error error = {0};
-    if (run_prepare(&settings, name, (int)n, words, &error) || run_resolve(&run, &settings, &error))
-        fail_msg("%s", error.message);
-    return run;
-}
 
 /* Words that the reason of each pass must have, if it runs and if it is skipped. */
 static void speaks_of_its_pass(const struct run *run, const struct plan_line *line)
@@ -165,11 +155,10 @@ static void every_choice(const char *name, int dim, const char *size)
         const struct family *family = setting_keys[keys[k]].family;
         if (dim == 1 && keys[k] == SETTING_balsara) continue; /* has no such key */
         for (size_t i = 0; i < scheme_members(family, dim); i++) {
-            char word[96], resolution[16], *words[] = {resolution, word};
-            snprintf(resolution, sizeof resolution, "%s", size);
-            snprintf(word, sizeof word, "%s=%s", setting_keys[keys[k]].name,
+            char words[128];
+            snprintf(words, sizeof words, "%s %s=%s", size, setting_keys[keys[k]].name,
                      family->members[i]->name);
-            const struct run run = resolved(name, 2, words);
+            const struct run run = keyed_run(name, words);
             plan_is_right(&run);
         }
     }
@@ -180,22 +169,17 @@ TEST(plans)
     every_choice("sod", 1, "n=40");
     every_choice("gresho", 2, "n=8^2");
     every_choice("rest_3d", 3, "n=4^3");
-    char alpha_u[] = "alpha_u=0.5", viscosity[] = "viscosity=constant", n[] = "n=8^2";
-    const struct run heated = resolved("gresho", 3, (char *[]){alpha_u, viscosity, n}),
-                     heavy = resolved("rayleigh_taylor_mode", 1, (char *[]){n});
+    const struct run heated = keyed_run("gresho", "alpha_u=0.5 viscosity=constant n=8^2"),
+                     heavy = keyed_run("rayleigh_taylor_mode", "n=8^2");
     plan_is_right(&heated);
     plan_is_right(&heavy);
 }
 
 static void warns(const char *name, const char *words, const char *what)
 {
-    char text[128], *list[4], *rest = text;
-    size_t n = 0;
+    const struct run run = keyed_run(name, words);
     struct run_result plan;
     struct error error = {0};
-    strcpy(text, words);
-    for (char *word; (word = strtok_r(rest, " ", &rest));) list[n++] = word;
-    const struct run run = resolved(name, n, list);
     if (run_explain(&run, &plan, &error)) fail_msg("%s", error.message);
     if (*what ? !strstr(plan.warnings, what) : plan.warnings[0] != '\0')
         fail_msg("%s: '%s', not '%s'", words, plan.warnings, what);

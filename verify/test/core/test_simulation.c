@@ -5,6 +5,7 @@
 
 #include "draw.h"
 #include "breakdown.h"
+#include "keyed.h"
 #include "made_simulation.h"
 #include "solver.h"
 
@@ -18,10 +19,8 @@ enum { SIDE = 8, N = SIDE * SIDE };
 static double x[3][N + 1], v[3][N + 1], m[N + 1], u[N + 1], rho[N + 1];
 
 /* Of N particles on an uneven lattice of the box [-1, 3] x [0.5, 2.5]; or along its first side. */
-static struct setup plain(int dim, int words, char *const *keys)
+static struct setup plain(int dim, const char *keys)
 {
-    struct settings settings;
-    struct error error;
     struct setup setup = {.dim = dim,
                           .lo = {-1, 0.5},
                           .hi = {3, 2.5},
@@ -42,14 +41,11 @@ static struct setup plain(int dim, int words, char *const *keys)
     }
     for (int k = 0; k < dim; k++) setup.x[k] = x[k], setup.v[k] = v[k], x[k][N] = v[k][N] = 7;
     m[N] = u[N] = rho[N] = 7;
-    settings_init(&settings);
-    if (settings_apply(&settings, words, keys, &error) ||
-        settings_scheme(&settings, dim, &setup.scheme, &error))
-        fail_msg("%s", error.message);
+    setup.scheme = keyed_scheme(dim, keys);
     return setup;
 }
 
-static char *const few_neighbours[] = {"kernel=cubic_spline", "eta=2.4"};
+static const char few_neighbours[] = "kernel=cubic_spline eta=2.4";
 
 static struct simulation *created(const struct setup *setup)
 {
@@ -80,7 +76,7 @@ static void refused_with(const struct setup *setup, double *place, double value,
 TEST(setups_that_are_refused)
 {
     for (int dim = 1; dim <= 2; dim++) {
-        struct setup setup = plain(dim, 2, few_neighbours);
+        struct setup setup = plain(dim, few_neighbours);
         setup.dim = 0;
         refused(&setup, "dimension = 0: the solver is for dimension 1");
         setup.dim = 4;
@@ -112,7 +108,7 @@ TEST(setups_that_are_refused)
                               : "gravity = inf: finite, and 0 in 1 dimension, is needed");
         refused_with(&setup, &setup.scheme.cfl, 0, "cfl = 0: cfl must be positive and finite");
     }
-    struct setup plane = plain(2, 2, few_neighbours);
+    struct setup plane = plain(2, few_neighbours);
     refused_with(&plane, &x[1][9], 2.75, "particle 9: y = 2.75 is outside the box");
     plane.boundary[1] = BOUNDARY_OPEN;
     refused_with(&plane, &x[1][9], INFINITY, "particle 9: y = inf is outside the box");
@@ -125,12 +121,12 @@ TEST(setups_that_are_refused)
 TEST(setups_that_are_taken)
 {
     for (int dim = 1; dim <= 2; dim++) {
-        struct setup setup = plain(dim, 2, few_neighbours);
+        struct setup setup = plain(dim, few_neighbours);
         x[0][0] = -1, x[0][7] = 3;
         setup.gamma = 1 + 1e-9;
         simulation_destroy(created(&setup));
     }
-    struct setup two = plain(1, 0, NULL);
+    struct setup two = plain(1, "");
     two.n = 2;
     simulation_destroy(created(&two));
 }
@@ -138,16 +134,16 @@ TEST(setups_that_are_taken)
 /* The state that a simulation begins with, and its threads. */
 TEST(the_state_of_a_setup)
 {
-    static char *const schemes[][2] = {
-        {"energy=total", "viscosity=constant"},
-        {"energy=internal", "viscosity=constant"},
-        {"energy=internal", "viscosity=time_dependent"},
-        {"energy=internal", "viscosity=cullen_dehnen"},
+    static const char *const schemes[] = {
+        "energy=total viscosity=constant",
+        "energy=internal viscosity=constant",
+        "energy=internal viscosity=time_dependent",
+        "energy=internal viscosity=cullen_dehnen",
     };
     for (int dim = 1; dim <= 2; dim++)
         for (size_t k = 0; k < 4; k++) {
             if (dim == 1 && k == 3) continue;
-            struct setup setup = plain(dim, 2, schemes[k]);
+            struct setup setup = plain(dim, schemes[k]);
             setup.threads = (int)k - 1;
             setup.boundary[1] = BOUNDARY_REFLECTING;
             setup.gravity[1] = -0.5;
@@ -187,9 +183,8 @@ TEST(the_state_of_a_setup)
  * says, or the mean one where it says none. */
 TEST(the_first_guess_of_widths)
 {
-    char *keys[] = {"kernel=quadratic_spline", "eta=1.5"};
     for (int known = 0; known < 3; known++) {
-        struct setup setup = plain(1, 2, keys);
+        struct setup setup = plain(1, "kernel=quadratic_spline eta=1.5");
         double mass = 0;
         for (int i = 0; i < N; i++) m[i] = 0.5 + i % 3, mass += m[i];
         x[0][11] = x[0][12] = x[0][10];

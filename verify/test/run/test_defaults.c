@@ -6,6 +6,7 @@
 #include "test.h"
 
 #include "integrator.h"
+#include "keyed.h"
 #include "run.h"
 
 enum { ROWS = 32, CELL = 40 };
@@ -71,14 +72,6 @@ static bool scheme_of(const struct run_settings *base, size_t n, const char *con
     return run_resolve(run, &settings, &error) == STATUS_OK;
 }
 
-static struct run_settings case_of(const char *name)
-{
-    struct run_settings settings;
-    struct error error = {0};
-    if (run_prepare(&settings, name, 0, NULL, &error)) fail_msg("%s", error.message);
-    return settings;
-}
-
 static void is(double got, double want, const struct run *run, const char *what)
 {
     if (!(fabs(got - want) <= 1e-15 * want))
@@ -127,7 +120,7 @@ static void judge(const struct run *run, int dim)
 /* Every kernel, integrator, gradient, formulation and viscosity of so many dimensions. */
 static void every_scheme(const char *name, int dim)
 {
-    const struct run_settings base = case_of(name);
+    const struct run_settings base = keyed_case(name, "");
     const struct family *families[] = {&kernel_family, &integrator_family, &scheme_gradient_family,
                                        &scheme_formulation_family, &scheme_viscosity_family};
     static const char *const keys[] = {"kernel", "integrator", "gradient", "formulation",
@@ -183,7 +176,7 @@ TEST(nothing_chosen)
                  {"rest_3d", "wendland_c4", GRADIENT_IA, VISCOSITY_PROJECTED, VOLUME_NUMBER, 3}};
     struct run run;
     for (size_t i = 0; i < 3; i++) {
-        const struct run_settings base = case_of(cases[i].name);
+        const struct run_settings base = keyed_case(cases[i].name, "");
         assert_true(scheme_of(&base, 0, NULL, &run));
         assert_string_equal(run.scheme.kernel.member.name, cases[i].kernel);
         assert_int_equal(run.scheme.gradient, cases[i].gradient);
@@ -211,7 +204,7 @@ TEST(nothing_chosen)
     };
     const size_t count = sizeof steps / sizeof *steps;
     for (size_t i = 0; i < count; i++) {
-        const struct run_settings base = case_of(i < count - 2 ? "sod" : "yee");
+        const struct run_settings base = keyed_case(i < count - 2 ? "sod" : "yee", "");
         assert_true(scheme_of(&base, 2, steps[i].words, &run));
         is(run.scheme.cfl * run.scheme.eta, steps[i].spacings, &run, steps[i].words[0]);
     }
@@ -256,7 +249,7 @@ TEST(what_shifts)
         {"rayleigh_taylor_mode", {0}, SHIFTING_NONE},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        const struct run_settings base = case_of(rows[k].name);
+        const struct run_settings base = keyed_case(rows[k].name, "");
         struct run run;
         size_t n = 0;
         while (n < KEYS && rows[k].keys[n]) n++;
@@ -286,7 +279,7 @@ TEST(what_conducts)
         {"hydrostatic", {"shock_conductivity=1"}, 1},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        const struct run_settings base = case_of(rows[k].name);
+        const struct run_settings base = keyed_case(rows[k].name, "");
         struct run run;
         size_t n = 0;
         while (n < 2 && rows[k].keys[n]) n++;
@@ -300,7 +293,7 @@ TEST(what_conducts)
 /* sinc: half its exponent. */
 TEST(sinc)
 {
-    const struct run_settings sod = case_of("sod"), rest = case_of("rest_2d");
+    const struct run_settings sod = keyed_case("sod", ""), rest = keyed_case("rest_2d", "");
     for (int n = 3; n <= 12; n++) {
         char word[32];
         struct run run;
@@ -334,9 +327,10 @@ static void with(const struct scheme *scheme, int dim, size_t member, double val
 TEST(numbers_that_are_refused)
 {
     for (int dim = 1; dim <= 3; dim++) {
-        const struct run_settings base = case_of(dim == 1   ? "sod"
-                                                 : dim == 2 ? "rest_2d"
-                                                            : "rest_3d");
+        const struct run_settings base = keyed_case(dim == 1   ? "sod"
+                                                    : dim == 2 ? "rest_2d"
+                                                               : "rest_3d",
+                                                    "");
         struct run run;
         assert_true(scheme_of(&base, 0, NULL, &run));
         struct scheme s = run.scheme;
@@ -402,7 +396,7 @@ TEST(numbers_that_are_refused)
  * are for 2D and 3D only. */
 TEST(choices_that_are_refused)
 {
-    const struct run_settings base = case_of("sod");
+    const struct run_settings base = keyed_case("sod", "");
     struct run run;
     struct error error = {0};
     assert_true(scheme_of(&base, 0, NULL, &run));

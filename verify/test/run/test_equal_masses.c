@@ -24,8 +24,8 @@ TEST(equal_masses_follow_the_density)
 {
     for (int dim = 2; dim <= 3; dim++) {
         enum { N = 50 };
-        static char *keys[] = {"n=50", "lattice=random", "seed=5", "equal_masses=yes"};
-        const struct settings settings = gas_settings(4, keys);
+        const struct settings settings =
+            keyed_settings("n=50 lattice=random seed=5 equal_masses=yes");
         const struct prepared p = {.problem = &gas_problem, .domain = {dim, {-1, 0, 1}, {1, 3, 2}}};
         const int side = dim == 2 ? 512 : 96;
         double mass = 0, most = 0, shift[4];

@@ -40,14 +40,13 @@ TEST(arrays_lie_apart)
 TEST(seeds_matter_to_some)
 {
     static const struct {
-        char *key;
+        const char *key;
         bool shaken;
     } rows[] = {{"lattice=square", false}, {"lattice=jittered", false}, {"lattice=random", true},
                 {"lattice=glass", true},   {"lattice=bcc", false},      {"jitter=0", false},
                 {"jitter=0.01", true}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        char *keys[] = {rows[k].key};
-        const struct settings settings = gas_settings(1, keys);
+        const struct settings settings = keyed_settings(rows[k].key);
         assert_true(initial_is_shaken(&settings) == rows[k].shaken);
     }
 }
@@ -64,7 +63,7 @@ TEST(lays_and_keeps)
     for (int dim = 2; dim <= 3; dim++) {
         const struct prepared p = {.problem = &gas_problem, .domain = {dim, {-1, 0, 2}, {1, 3, 4}}};
         const struct domain box = {dim, {-1, 1, 2}, {0, 2, 3}};
-        struct settings settings = gas_settings(0, NULL);
+        struct settings settings = keyed_settings("");
         struct lattice_plan plan;
         struct initial initial;
         struct error error = {0};
@@ -123,9 +122,9 @@ TEST(balls_are_cut_from_lattices)
 {
     static const double part[] = {0, 1, 3.14159265358979323846 / 4, 3.14159265358979323846 / 6};
     for (int dim = 1; dim <= 3; dim++) {
-        static char *keys[] = {"n=200", "lattice=uniform"};
-        keys[1] = dim == 1 ? "lattice=uniform" : dim == 2 ? "lattice=hexagonal" : "lattice=bcc";
-        const struct settings settings = gas_settings(2, keys);
+        const struct settings settings = keyed_settings(dim == 1   ? "n=200 lattice=uniform"
+                                                        : dim == 2 ? "n=200 lattice=hexagonal"
+                                                                   : "n=200 lattice=bcc");
         const struct prepared p = {.problem = &gas_problem,
                                    .domain = {dim, {-1, -1, -1}, {5, 5, 5}},
                                    .window = {.dim = dim, .centre = {0.25, 0.5, 1}}};
@@ -204,14 +203,13 @@ TEST(pairs_of_a_line)
 {
     const struct prepared p = {.problem = &line, .domain = {1, {0}, {9}}, .boost = {100}};
     static const struct {
-        char *key;
+        const char *key;
         double x[LINE];
     } rows[] = {{"lattice=uniform", {0, 1.5, 2.5, 3, 4, 5, 6, 6.5, 7.5, 8}},
                 {"lattice=clustered", {0.675, 0.825, 2.725, 2.775, 4, 5, 6, 6.95, 7.05, 8}},
                 {"lattice=coincident", {0.75, 0.75, 2.75, 2.75, 4, 5, 6, 7, 7, 8}}};
     for (size_t k = 0; k < 3; k++) {
-        char *keys[] = {rows[k].key};
-        const struct settings settings = gas_settings(1, keys);
+        const struct settings settings = keyed_settings(rows[k].key);
         struct initial initial = created(&p, &settings);
         assert_int_equal(initial.n, LINE);
         for (int i = 0; i < LINE; i++) {
@@ -255,7 +253,6 @@ TEST(jitter_moves_all)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (int smooth = 0; smooth < 2; smooth++) {
-            static char *keys[] = {"jitter=0.4", "seed=77"};
             const struct problem problem = {
                 .sample = gas_sample, .fill = fill_cloud, .smooth = smooth};
             const struct prepared p = {
@@ -263,7 +260,8 @@ TEST(jitter_moves_all)
                 .domain = {dim, {-1, -1.5, -2}, {2, 2.5, 3}},
                 .boundary = {BOUNDARY_PERIODIC, BOUNDARY_REFLECTING, BOUNDARY_FIXED},
                 .boost = {0.5, -2, 3}};
-            const struct settings settings = gas_settings(2, keys), none = gas_settings(0, NULL);
+            const struct settings settings = keyed_settings("jitter=0.4 seed=77"),
+                                  none = keyed_settings("");
             struct initial before = created(&p, &none), after = created(&p, &settings);
             gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
             gsl_rng_set(random, 77);
@@ -308,12 +306,11 @@ TEST(jitter_moves_all)
 /* A lower end belongs to the box, an upper one is the lower one of the next box. */
 TEST(ends_of_the_box)
 {
-    static char *keys[] = {"jitter=1e-30"};
     const struct problem problem = {.sample = gas_sample, .fill = fill_cloud};
     const struct prepared p = {.problem = &problem,
                                .domain = {2, {-1, -1.5, 9}, {2, 2.5, 10}},
                                .boundary = {BOUNDARY_PERIODIC, BOUNDARY_REFLECTING}};
-    const struct settings settings = gas_settings(1, keys);
+    const struct settings settings = keyed_settings("jitter=1e-30");
     struct initial initial = created(&p, &settings);
     assert_true(initial.x[0][0] == -1 && initial.x[1][0] == -1.5);
     assert_true(initial.x[0][1] == -1 && initial.x[1][1] == nextafter(2.5, 0));
@@ -331,25 +328,23 @@ TEST(failures_are_passed_on)
 {
     const struct problem problem = {.sample = gas_sample, .fill = fill_nothing};
     const struct prepared p = {.problem = &problem, .domain = {2, {0, 0}, {1, 1}}};
-    const struct settings settings = gas_settings(0, NULL);
+    const struct settings settings = keyed_settings("");
     struct initial initial = {.storage = (double *)8}; /* nobody's */
     struct error error = {0};
     assert_int_equal(initial_create(&initial, &p, &settings, &error), STATUS_BAD_INPUT);
     assert_null(initial.storage);
-    static char *few[] = {"n=9", "lattice=glass", "equal_masses=yes"};
-    for (int n = 2; n <= 3; n++) { /* too few for a glass */
-        const struct settings glass = gas_settings(n, few);
+    for (int equal = 0; equal < 2; equal++) { /* too few for a glass */
+        const struct settings glass =
+            keyed_settings(equal ? "n=9 lattice=glass equal_masses=yes" : "n=9 lattice=glass");
         assert_int_equal(initial_fill(&p, &glass, &initial, &error), STATUS_BAD_INPUT);
         assert_non_null(strstr(error.message, "a glass needs more particles"));
         initial_free(&initial);
     }
-    static char *ball[] = {"lattice=glass", "n=9"};
-    struct settings of_ball = gas_settings(2, ball);
+    struct settings of_ball = keyed_settings("n=9 lattice=glass");
     assert_int_equal(initial_fill_ball(&p, &of_ball, 0.5, &initial, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "a glass needs more particles"));
     initial_free(&initial);
-    ball[0] = "lattice=fcc"; /* in a plane */
-    of_ball = gas_settings(2, ball);
+    of_ball = keyed_settings("n=9 lattice=fcc"); /* in a plane */
     assert_int_equal(initial_fill_ball(&p, &of_ball, 0.5, &initial, &error), STATUS_BAD_INPUT);
     assert_int_equal(initial_fill(&p, &of_ball, &initial, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "lattice=fcc has no form in 2 dimensions"));

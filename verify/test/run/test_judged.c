@@ -4,6 +4,7 @@
 #include "test.h"
 
 #include "judged.h"
+#include "keyed.h"
 
 enum { N = 5 };
 /* and one behind the last, which is none of them */
@@ -32,10 +33,8 @@ static struct problem problem; /* of the result; what the case's file names has 
 /* A result in two dimensions, of particles in a window that three of them are in. */
 static void make(struct run_settings *settings, struct run_result *result, const char *name)
 {
-    struct error error;
-    struct run run;
-    if (run_prepare(settings, name, 0, NULL, &error) || run_resolve(&run, settings, &error))
-        fail_msg("%s", error.message);
+    const struct run run = keyed_run(name, "");
+    *settings = run.asked;
     *result = (struct run_result){.settings = run.settings, .problem = run.problem, .n = N};
     problem = *run.problem.problem;
     problem.sample = sample;

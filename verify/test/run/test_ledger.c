@@ -4,26 +4,12 @@
 #include "test.h"
 
 #include "initial.h"
-#include "run.h"
+#include "keyed.h"
 
-static struct run resolved(const char *name, int n, const char *const *words)
+static struct run_result ran(const char *name, const char *keys)
 {
-    struct run_settings settings;
-    struct run run = {0};
-    struct error error = {0};
-    if (run_prepare(&settings, name, n, (char *const *)(uintptr_t)words, &error) ||
-        run_resolve(&run, &settings, &error))
-        fail_msg("%s: %s", name, error.message);
-    return run;
-}
-
-static struct run_result ran(const char *name, int n, const char *const *words)
-{
-    const struct run run = resolved(name, n, words);
-    struct run_result result = {0};
-    struct error error = {0};
-    if (run_execute(&run, &result, &error)) fail_msg("%s: %s", name, error.message);
-    return result;
+    const struct run run = keyed_run(name, keys);
+    return keyed_result(&run);
 }
 
 /* ---- sums over the particles of the window ---- */
@@ -43,15 +29,15 @@ static bool in_window(const struct prepared *p, const struct snapshot *s, size_t
 TEST(means)
 {
     static const struct {
-        const char *name, *words[3];
+        const char *name, *keys;
         double volume; /* of the box */
         int dim;
-    } cases[] = {{"sod", {"n=100", "t_end=0.05", "eta=2"}, 2, 1},
-                 {"lax", {"n=77", "t_end=0.02", "grade=0.5"}, 2, 1},
-                 {"gresho", {"n=16^2", "t_end=0.05", "window_radius=0.3"}, 1, 2},
-                 {"sound_wave_3d", {"n=8^3", "t_end=0.01", "eta=3"}, 1, 3}};
+    } cases[] = {{"sod", "n=100 t_end=0.05 eta=2", 2, 1},
+                 {"lax", "n=77 t_end=0.02 grade=0.5", 2, 1},
+                 {"gresho", "n=16^2 t_end=0.05 window_radius=0.3", 1, 2},
+                 {"sound_wave_3d", "n=8^3 t_end=0.01 eta=3", 1, 3}};
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-        struct run_result run = ran(cases[c].name, 3, cases[c].words);
+        struct run_result run = ran(cases[c].name, cases[c].keys);
         const struct prepared *p = &run.problem;
         const struct snapshot *s = &run.snapshot;
         double h = 0, error = 0, volume = 0, box = 1;
@@ -81,18 +67,19 @@ TEST(means)
 /* A mirrored tube has the same error in each of its regions, and gas as still. */
 TEST(mirrored_budgets)
 {
-    static const char *const tubes[][2][2] = {
-        {{"left=1,0,1", "right=0.125,0,0.1"}, {"right=1,0,1", "left=0.125,0,0.1"}},
-        {{"left=1,0.5,1", "right=0.5,-0.2,0.1"}, {"right=1,-0.5,1", "left=0.5,0.2,0.1"}},
-        {{"left=1,-1.5,0.4", "right=1,1.5,0.4"}, {"left=1,-1.5,0.4", "right=1,1.5,0.4"}},
-        {{"left=1,1,0.4", "right=1.3,-1,0.4"}, {"left=1.3,1,0.4", "right=1,-1,0.4"}},
+    static const char *const tubes[][2] = {
+        {"left=1,0,1 right=0.125,0,0.1", "right=1,0,1 left=0.125,0,0.1"},
+        {"left=1,0.5,1 right=0.5,-0.2,0.1", "right=1,-0.5,1 left=0.5,0.2,0.1"},
+        {"left=1,-1.5,0.4 right=1,1.5,0.4", "left=1,-1.5,0.4 right=1,1.5,0.4"},
+        {"left=1,1,0.4 right=1.3,-1,0.4", "left=1.3,1,0.4 right=1,-1,0.4"},
     };
     for (size_t t = 0; t < sizeof tubes / sizeof *tubes; t++) {
         struct run_result run[2];
-        for (int k = 0; k < 2; k++)
-            run[k] =
-                ran("sod", 4,
-                    (const char *const[]){tubes[t][k][0], tubes[t][k][1], "t_end=0.08", "n=300"});
+        for (int k = 0; k < 2; k++) {
+            char keys[128];
+            snprintf(keys, sizeof keys, "%s t_end=0.08 n=300", tubes[t][k]);
+            run[k] = ran("sod", keys);
+        }
         const struct regions *regions = run[0].budget.regions;
         assert_int_equal(run[0].n, run[1].n);
         for (size_t r = 0; regions->names[r]; r++)
@@ -114,13 +101,13 @@ TEST(mirrored_budgets)
 TEST(sound)
 {
     static const struct {
-        const char *name, *words[2];
-    } cases[] = {{"sod", {"n=60", "h_method=newton"}},
-                 {"gresho", {"n=12^2", "jitter=0.1"}},
-                 {"rayleigh_taylor_mode", {"n=12^2", "h_method=newton"}},
-                 {"rest_3d", {"n=8^3", "volume_element=energy"}}};
+        const char *name, *keys;
+    } cases[] = {{"sod", "n=60 h_method=newton"},
+                 {"gresho", "n=12^2 jitter=0.1"},
+                 {"rayleigh_taylor_mode", "n=12^2 h_method=newton"},
+                 {"rest_3d", "n=8^3 volume_element=energy"}};
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-        const struct run run = resolved(cases[c].name, 2, cases[c].words);
+        const struct run run = keyed_run(cases[c].name, cases[c].keys);
         struct initial initial;
         struct simulation *simulation;
         struct snapshot s;
@@ -158,13 +145,13 @@ TEST(sound)
 TEST(centres)
 {
     static const struct {
-        const char *name, *words[2];
+        const char *name, *keys;
         bool odd;
-    } cases[] = {{"sedov_3d", {"n=9^3", "t_end=0.02"}, true},
-                 {"sedov_3d", {"n=10^3", "t_end=0.02"}, false},
-                 {"sedov_2d", {"n=15^2", "t_end=0.01"}, true}};
+    } cases[] = {{"sedov_3d", "n=9^3 t_end=0.02", true},
+                 {"sedov_3d", "n=10^3 t_end=0.02", false},
+                 {"sedov_2d", "n=15^2 t_end=0.01", true}};
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-        struct run_result run = ran(cases[c].name, 2, cases[c].words);
+        struct run_result run = ran(cases[c].name, cases[c].keys);
         const struct prepared *p = &run.problem;
         const struct snapshot *s = &run.snapshot;
         const double unit = p->domain.dim == 2 ? M_PI : 4 * M_PI / 3;

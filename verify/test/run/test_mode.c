@@ -6,41 +6,19 @@
 #include <complex.h>
 
 #include "mode.h"
-#include "problem_list.h"
-#include "problem_prepare.h"
+#include "prepared.h"
 
-static const struct problem *problem_named(const char *name)
-{
-    return (const struct problem *)family_find(&problem_family, name);
-}
+/* Problems in boxes of another place and size than the unit one. */
+static const char shear_keys[] = "kind=kelvin_helmholtz_mode|lo=-0.9 3|hi=1.1 5|waves=2|"
+                                 "amplitude=0.001|gamma=1.6|boost=0.25 -0.5",
+                  heavy_keys[] = "kind=rayleigh_taylor_mode|lo=0.5 -2|hi=2.5 2|waves=2|"
+                                 "amplitude=0.001|gamma=1.4|gravity=0 -0.125";
 
-/* A problem in a box of another place and size than the unit one. */
-static enum status make(struct prepared *p, const char *name, int n, char **keys,
-                        struct error *error)
+static struct prepared made(const char *keys)
 {
     struct settings settings;
-    settings_init(&settings);
-    assert_int_equal(settings_apply(&settings, n, keys, error), STATUS_OK);
-    return problem_prepare_as(p, problem_named(name), &settings, 2, error);
+    return prepared_of(&settings, 2, keys);
 }
-
-static struct prepared made(const char *name, int n, char **keys)
-{
-    struct prepared p;
-    struct error error = {0};
-    if (make(&p, name, n, keys, &error)) fail_msg("%s", error.message);
-    return p;
-}
-
-static char *shear_keys[] = {"kind=kelvin_helmholtz_mode",
-                             "lo=-0.9 3",
-                             "hi=1.1 5",
-                             "waves=2",
-                             "amplitude=0.001",
-                             "gamma=1.6",
-                             "boost=0.25 -0.5"};
-static char *heavy_keys[] = {"kind=rayleigh_taylor_mode", "lo=0.5 -2", "hi=2.5 2",        "waves=2",
-                             "amplitude=0.001",           "gamma=1.4", "gravity=0 -0.125"};
 
 static const struct mode_start *start_of(const struct prepared *p)
 {
@@ -50,8 +28,7 @@ static const struct mode_start *start_of(const struct prepared *p)
 /* The layer that a problem stands for, in the units in which the box is 1 high. */
 TEST(layers_are_those_of_the_keys)
 {
-    const struct prepared shear = made("kelvin_helmholtz_mode", 7, shear_keys),
-                          heavy = made("rayleigh_taylor_mode", 7, heavy_keys);
+    const struct prepared shear = made(shear_keys), heavy = made(heavy_keys);
     const struct mode_start *s = start_of(&shear), *h = start_of(&heavy);
     const struct layer *shear_layer = &s->mode.layer, *heavy_layer = &h->mode.layer;
     assert_true(shear_layer->width == 0.05 && shear_layer->rho == 1.5 &&
@@ -88,8 +65,7 @@ TEST(layers_are_those_of_the_keys)
 TEST(samples_are_base_and_mode)
 {
     for (int k = 0; k < 2; k++) {
-        const struct prepared p = k ? made("rayleigh_taylor_mode", 7, heavy_keys)
-                                    : made("kelvin_helmholtz_mode", 7, shear_keys);
+        const struct prepared p = made(k ? heavy_keys : shear_keys);
         const struct mode_start *start = start_of(&p);
         for (int i = 0; i < 40; i++) {
             const double x[3] = {p.domain.lo[0] + 0.0237 * i, p.domain.lo[1] + 0.0471 * i, 7};
@@ -192,8 +168,7 @@ TEST(measured_as_defined)
                                                  &mode_other_parity};
     static struct made_state made_state;
     for (int k = 0; k < 2; k++) {
-        const struct prepared p = k ? made("rayleigh_taylor_mode", 7, heavy_keys)
-                                    : made("kelvin_helmholtz_mode", 7, shear_keys);
+        const struct prepared p = made(k ? heavy_keys : shear_keys);
         for (int scattered = 0; scattered < 2; scattered++) {
             double want[4];
             make_state(&made_state, &p, 0.05 * scattered);
@@ -214,7 +189,7 @@ TEST(grid_knows_the_mode_alone)
 {
     enum { SIDE = 64 };
     static double x[2][SIDE * SIDE], v[2][SIDE * SIDE], volume[SIDE * SIDE];
-    struct prepared p = made("kelvin_helmholtz_mode", 7, shear_keys);
+    struct prepared p = made(shear_keys);
     const struct mode_start *start = start_of(&p);
     const struct snapshot s = {
         .n = SIDE * SIDE, .x = {x[0], x[1]}, .v = {v[0], v[1]}, .volume = volume};
@@ -254,13 +229,13 @@ TEST(boxes_are_square)
         const double width = k * bit / 1e-12; /* from 1 to 2 */
         if (1e-12 * width != k * bit) continue;
         for (int more = -1; more <= 1; more++) {
-            char lo[] = "lo=0 0", hi[64], *keys[] = {lo, hi};
-            struct prepared p;
-            struct error error = {0};
-            snprintf(hi, sizeof hi, "hi=%.17g %.17g", width, width + (k + more) * bit);
-            assert_int_equal(make(&p, "kelvin_helmholtz_mode", 2, keys, &error),
-                             more > 0 ? STATUS_BAD_INPUT : STATUS_OK);
-            if (more > 0) assert_non_null(strstr(error.message, "the layers lie in a square box"));
+            char keys[128];
+            snprintf(keys, sizeof keys, "kind=kelvin_helmholtz_mode|lo=0 0|hi=%.17g %.17g", width,
+                     width + (k + more) * bit);
+            if (more > 0)
+                prepared_refused(2, keys, "the layers lie in a square box");
+            else
+                made(keys);
         }
         if (++tried == 2) break;
     }
@@ -269,32 +244,20 @@ TEST(boxes_are_square)
 
 TEST(what_no_mode_has_is_refused)
 {
-    static const struct {
-        const char *problem, *keys[4], *words;
-    } rows[] = {
-        {"kelvin_helmholtz_mode",
-         {"waves=30"},
+    static const char *const rows[][2] = {
+        {"kind=kelvin_helmholtz_mode|waves=30",
          "waves=30: no mode of 30 waves in the box grows in a layer of width 0.1"},
-        {"kelvin_helmholtz_mode", {"hi=2", "waves=30"}, "in a layer of width 0.15"},
-        {"kelvin_helmholtz_mode", {"amplitude=0"}, "amplitude=0: more than 0 and less than"},
-        {"kelvin_helmholtz_mode", {"hi=1 1.0001"}, "sides of 2 and 2.0001"},
-        {"kelvin_helmholtz_mode", {"hi=1 0.9999"}, "sides of 2 and 1.9999"},
-        {"rayleigh_taylor_mode", {"gravity=0 0.1"}, "gravity=\"0 0.1\""},
-        {"rayleigh_taylor_mode", {"gravity=0 0"}, "gravity=\"0 0\""},
-        {"rayleigh_taylor_mode", {"gravity=0.1 -0.5"}, "gravity=\"0.1 -0.5\""},
-        {"rayleigh_taylor_mode", {"gravity=0 -100"}, "pressure"},
+        {"kind=kelvin_helmholtz_mode|hi=2|waves=30", "in a layer of width 0.15"},
+        {"kind=kelvin_helmholtz_mode|amplitude=0", "amplitude=0: more than 0 and less than"},
+        {"kind=kelvin_helmholtz_mode|hi=1 1.0001", "sides of 2 and 2.0001"},
+        {"kind=kelvin_helmholtz_mode|hi=1 0.9999", "sides of 2 and 1.9999"},
+        {"kind=rayleigh_taylor_mode|gravity=0 0.1", "gravity=\"0 0.1\""},
+        {"kind=rayleigh_taylor_mode|gravity=0 0", "gravity=\"0 0\""},
+        {"kind=rayleigh_taylor_mode|gravity=0.1 -0.5", "gravity=\"0.1 -0.5\""},
+        {"kind=rayleigh_taylor_mode|gravity=0 -100", "pressure"},
     };
-    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        char kind[64], *keys[5] = {kind};
-        struct prepared p;
-        struct error error = {0};
-        int n = 1;
-        snprintf(kind, sizeof kind, "kind=%s", rows[k].problem);
-        for (; rows[k].keys[n - 1]; n++) keys[n] = (char *)rows[k].keys[n - 1];
-        assert_int_equal(make(&p, rows[k].problem, n, keys, &error), STATUS_BAD_INPUT);
-        if (!strstr(error.message, rows[k].words))
-            fail_msg("row %zu: '%s' expected, said: %s", k, rows[k].words, error.message);
-    }
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        prepared_refused(2, rows[k][0], rows[k][1]);
 }
 
 /* The growth is fitted from twice the initial amplitude up to, but not including, a tenth of the
@@ -303,20 +266,19 @@ TEST(amplitudes_leave_room_to_grow)
 {
     static const char *const names[] = {"kelvin_helmholtz_mode", "rayleigh_taylor_mode"};
     for (int k = 0; k < 2; k++) {
-        char kind[64], amplitude[64], *keys[] = {kind, amplitude};
-        struct error error = {0};
-        snprintf(kind, sizeof kind, "kind=%s", names[k]);
-        snprintf(amplitude, sizeof amplitude, "amplitude=0.001");
-        struct prepared p = made(names[k], 2, keys);
+        char keys[96], said[64];
+        snprintf(keys, sizeof keys, "kind=%s|amplitude=0.001", names[k]);
+        const struct prepared p = made(keys);
         const double speed = start_of(&p)->amplitude / 0.001;
         const double most = 0.1 * 0.05 / (2 * start_of(&p)->mode.displacement * speed);
-        char said[64];
         snprintf(said, sizeof said, "less than %.4g", most);
         for (int less = -1; less < 2; less++) {
-            snprintf(amplitude, sizeof amplitude, "amplitude=%.17g", most * (1 - less * 1e-12));
-            assert_int_equal(make(&p, names[k], 2, keys, &error),
-                             less > 0 ? STATUS_OK : STATUS_BAD_INPUT);
-            assert_non_null(strstr(error.message, said));
+            snprintf(keys, sizeof keys, "kind=%s|amplitude=%.17g", names[k],
+                     most * (1 - less * 1e-12));
+            if (less > 0)
+                made(keys);
+            else
+                prepared_refused(2, keys, said);
         }
     }
 }
@@ -324,28 +286,25 @@ TEST(amplitudes_leave_room_to_grow)
 /* Sides of a box that differ by rounding alone are the same. */
 TEST(layers_need_a_square)
 {
-    char side[64], *keys[] = {"kind=kelvin_helmholtz_mode", "lo=0", side};
     for (int part = -3; part <= 3; part += 2) {
-        struct prepared p;
-        struct error error = {0};
-        snprintf(side, sizeof side, "hi=2 %.17g", 2 + 2 * 0.5e-12 * part);
-        assert_int_equal(make(&p, "kelvin_helmholtz_mode", 3, keys, &error),
-                         abs(part) > 1 ? STATUS_BAD_INPUT : STATUS_OK);
+        char keys[96];
+        snprintf(keys, sizeof keys, "kind=kelvin_helmholtz_mode|lo=0|hi=2 %.17g",
+                 2 + 2 * 0.5e-12 * part);
+        if (abs(part) > 1)
+            prepared_refused(2, keys, "");
+        else
+            made(keys);
     }
     /* by 1e-12 of a side exactly, which few doubles can */
-    snprintf(side, sizeof side, "hi=1.000088900582341 1.000088900583341");
-    made("kelvin_helmholtz_mode", 3, keys);
+    made("kind=kelvin_helmholtz_mode|lo=0|hi=1.000088900582341 1.000088900583341");
 }
 
 /* Sinuous and varicose modes differ. Gravity that is not given is that of the layer. */
 TEST(keys_choose_the_mode)
 {
-    const struct prepared one = made("kelvin_helmholtz_mode", 2,
-                                     (char *[]){"kind=kelvin_helmholtz_mode", "parity=sinuous"}),
-                          two = made("kelvin_helmholtz_mode", 2,
-                                     (char *[]){"kind=kelvin_helmholtz_mode", "parity=varicose"}),
-                          heavy = made("rayleigh_taylor_mode", 2,
-                                       (char *[]){"kind=rayleigh_taylor_mode", "hi=1 3"});
+    const struct prepared one = made("kind=kelvin_helmholtz_mode|parity=sinuous"),
+                          two = made("kind=kelvin_helmholtz_mode|parity=varicose"),
+                          heavy = made("kind=rayleigh_taylor_mode|hi=1 3");
     assert_true(start_of(&one)->mode.layer.pressure_node);
     assert_false(start_of(&two)->mode.layer.pressure_node);
     assert_true(heavy.gravity[1] == -0.125 && heavy.gravity[0] == 0);

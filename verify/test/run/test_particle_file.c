@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "initial.h"
+#include "keyed.h"
 #include "particle_file.h"
 #include "problem.h"
 
@@ -201,11 +202,10 @@ TEST(starts_of_runs)
     assert_string_equal(initial.ignored, "");
     initial_free(&initial);
     /* as the settings ask: they move along, nothing shakes them */
-    struct settings settings;
-    char key[64], *keys[] = {key, "jitter=0.3", "lattice=random"};
-    snprintf(key, sizeof key, "file=%s", written(PLANE "\n1,2,3,4,5,6\n0,3,8,9,10,11\n"));
-    settings_init(&settings);
-    assert_int_equal(settings_apply(&settings, 3, keys, &error), STATUS_OK);
+    char keys[96];
+    snprintf(keys, sizeof keys, "file=%s jitter=0.3 lattice=random",
+             written(PLANE "\n1,2,3,4,5,6\n0,3,8,9,10,11\n"));
+    const struct settings settings = keyed_settings(keys);
     assert_int_equal(initial_create(&initial, &p, &settings, &error), STATUS_OK);
     assert_true(initial.x[0][0] == 1 && initial.x[1][1] == 3);
     assert_true(initial.v[0][0] == 3.5 && initial.v[1][0] == 4.25 && initial.v[1][1] == 9.25);

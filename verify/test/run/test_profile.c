@@ -3,6 +3,7 @@
  * where one of its fields bends, and nowhere else; the particles are those of the window. */
 #include "test.h"
 
+#include "keyed.h"
 #include "run_output.h"
 #include "value.h"
 
@@ -30,11 +31,7 @@ static const double rho[N + 1] = {1, 2, 3, 4, 5}, v[N + 1] = {6, 7, 8, 9, 10},
 static json_t *made(struct problem *problem)
 {
     static struct run_result result;
-    struct run_settings settings;
-    struct run run;
-    struct error error;
-    if (run_prepare(&settings, "sod", 0, NULL, &error) || run_resolve(&run, &settings, &error))
-        fail_msg("%s", error.message);
+    const struct run run = keyed_run("sod", "");
     result = (struct run_result){.problem = run.problem, .time = 0.5};
     *problem = *run.problem.problem;
     problem->sample = sample;

@@ -180,13 +180,11 @@ TEST(glasses_of_random_points)
 {
     enum { N = 300 };
     for (int equal = 0; equal < 2; equal++) {
-        static char *keys[] = {"n=300", "lattice=random", "equal_masses=yes"};
-        keys[1] = "lattice=random";
-        keys[2] = equal ? "equal_masses=yes" : "equal_masses=no";
         const struct prepared p = {.problem = &gas_problem, .domain = {2, {-1, 0}, {1, 2}}};
-        const struct settings random = gas_settings(3, keys);
-        keys[1] = "lattice=glass";
-        const struct settings glass = gas_settings(3, keys);
+        const struct settings random = keyed_settings(
+            equal ? "n=300 lattice=random equal_masses=yes" : "n=300 lattice=random");
+        const struct settings glass =
+            keyed_settings(equal ? "n=300 lattice=glass equal_masses=yes" : "n=300 lattice=glass");
         struct initial one, two;
         struct error error = {0};
         assert_int_equal(initial_fill(&p, &random, &one, &error), STATUS_OK);

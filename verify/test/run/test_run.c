@@ -7,35 +7,8 @@
 #include <unistd.h>
 
 #include "initial.h"
-#include "run.h"
+#include "keyed.h"
 #include "run_part.h"
-
-enum { KEYS = 8 };
-
-static struct run resolved(const char *name, const char *words)
-{
-    struct run_settings settings;
-    struct run run = {0};
-    struct error error;
-    char text[256], *keys[KEYS], *rest = text;
-    int n = 0;
-    snprintf(text, sizeof text, "%s", words);
-    for (char *word; n < KEYS && (word = strtok_r(rest, " ", &rest));) keys[n++] = word;
-    if (run_prepare(&settings, name, n, keys, &error) || run_resolve(&run, &settings, &error))
-        fail_msg("%s %s: %s", name, words, error.message);
-    assert_int_equal(settings.threads, 1);
-    assert_int_equal(run.asked.threads, 1);
-    assert_string_equal(run.asked.file.name, settings.file.name);
-    return run;
-}
-
-static struct run_result executed(const struct run *run)
-{
-    struct run_result result = {0};
-    struct error error;
-    if (run_execute(run, &result, &error)) fail_msg("%s", error.message);
-    return result;
-}
 
 /* ---- before ---- */
 
@@ -45,7 +18,9 @@ TEST(setups)
     static const char *const keys[] = {"n=40 t_end=0.01 skip=none", "n=16^2 t_end=0.01 skip=auto",
                                        "n=4^3 skip=auto boundary=periodic,periodic,reflecting"};
     for (int k = 0; k < 3; k++) {
-        struct run run = resolved(cases[k], keys[k]);
+        struct run run = keyed_run(cases[k], keys[k]);
+        assert_int_equal(run.asked.threads, 1);
+        assert_string_equal(run.asked.file.name, cases[k]);
         double arrays[9][1];
         const struct initial initial = {.n = 5,
                                         .x = {arrays[0], arrays[1], arrays[2]},
@@ -70,8 +45,8 @@ TEST(setups)
         assert_true(setup.t_end == settings_real(&run.settings, SETTING_t_end));
         assert_true(setup.scheme.eta == run.scheme.eta);
     }
-    assert_true(resolved(cases[1], keys[1]).problem.gravity[1] != 0);
-    assert_int_equal(resolved(cases[2], keys[2]).problem.boundary[2], BOUNDARY_REFLECTING);
+    assert_true(keyed_run(cases[1], keys[1]).problem.gravity[1] != 0);
+    assert_int_equal(keyed_run(cases[2], keys[2]).problem.boundary[2], BOUNDARY_REFLECTING);
     struct run_settings settings;
     struct error error = {0};
     assert_int_equal(run_prepare(&settings, "no_such", 0, NULL, &error), STATUS_BAD_INPUT);
@@ -91,8 +66,8 @@ TEST(explanations)
 {
     struct snapshots snapshots = {.path = "a.csv", .every = 0.1};
     for (int dense = 0; dense < 2; dense++) {
-        struct run run = resolved("rest_2d", dense ? "n=10^2 lattice=glass background=4,0,1"
-                                                   : "n=10^2 lattice=glass");
+        struct run run = keyed_run("rest_2d", dense ? "n=10^2 lattice=glass background=4,0,1"
+                                                    : "n=10^2 lattice=glass");
         const size_t n = 100;
         const struct run_result plain = explained(&run);
         run.asked.snapshots = &snapshots;
@@ -119,7 +94,7 @@ TEST(explanations)
                                        "n=10^2 lattice=glass boundary=periodic,reflecting",
                                        "n=10^2 lattice=glass boundary=reflecting,periodic"};
     for (int k = 0; k < 4; k++) {
-        const struct run run = resolved("rest_2d", none[k]);
+        const struct run run = keyed_run("rest_2d", none[k]);
         const struct run_result plain = explained(&run);
         assert_true(isnan(plain.start.density) && isnan(plain.start.gradient) &&
                     isnan(plain.start.spread));
@@ -129,7 +104,7 @@ TEST(explanations)
 /* The exact solution shall hold up to the end, unless somebody says that any window will do. */
 TEST(any_window)
 {
-    struct run run = resolved("sod", "n=40 t_end=5");
+    struct run run = keyed_run("sod", "n=40 t_end=5");
     struct run_result result;
     struct error error = {0};
     assert_int_equal(run_explain(&run, &result, &error), STATUS_BAD_INPUT);
@@ -144,7 +119,7 @@ TEST(too_large)
     struct run_result result;
     struct error error = {0};
     struct rlimit usual, few;
-    const struct run run = resolved("rest_3d", "n=215^3");
+    const struct run run = keyed_run("rest_3d", "n=215^3");
     assert_int_equal(getrlimit(RLIMIT_AS, &usual), 0);
     few = usual;
     few.rlim_cur = (rlim_t)1 << 31;
@@ -177,7 +152,7 @@ TEST(from_a_file)
         fclose(file);
         snprintf(words, sizeof words, "file=%s kernel=cubic_spline eta=2.3 gradient=standard %s",
                  path, keys[k]);
-        const struct run run = resolved("rest_2d", words);
+        const struct run run = keyed_run("rest_2d", words);
         result = explained(&run);
         assert_int_equal(result.n, 64);
         assert_true(settings_real(&result.settings, SETTING_n) == 64);
@@ -209,7 +184,7 @@ TEST(a_line_rises)
         {0, 1, 2, 3, 4, 5, 6, 7}, {3, 4, 5, 6, 7, 0, 1, 2}, {0, 2, 1, 3, 4, 5, 6, 7}};
     static const size_t crossed[] = {0, 0, 3};
     static double v[N], m[N], rho[N], u[N], P[N], h[N], volume[N];
-    const struct run run = resolved("sod", "t_end=0.1");
+    const struct run run = keyed_run("sod", "t_end=0.1");
     struct error error;
     for (int i = 0; i < N; i++) {
         v[i] = 1 + i, m[i] = 2 + i, rho[i] = 3 + i, u[i] = 4 + i, P[i] = 5 + i, h[i] = 6 + i;
@@ -255,8 +230,8 @@ TEST(clouds_by_number)
     static const size_t id[N] = {3, 0, 7, 1, 2, 6, 5, 4};
     static double x[3][N], v[3][N], rest[6][N];
     for (int dim = 2; dim <= 3; dim++) {
-        const struct run run = resolved(dim == 2 ? "gresho" : "rest_3d",
-                                        dim == 2 ? "t_end=0.1 boost=0.5" : "t_end=0.1");
+        const struct run run = keyed_run(dim == 2 ? "gresho" : "rest_3d",
+                                         dim == 2 ? "t_end=0.1 boost=0.5" : "t_end=0.1");
         struct run_result result;
         struct error error;
         double azimuthal = 0, radial = 0, all = 0, jump = 0, density = 0;
@@ -324,7 +299,7 @@ TEST(clouds_by_number)
 /* A state later than the exact solution holds is none that can be judged. */
 TEST(too_late)
 {
-    const struct run run = resolved("sod", "t_end=0.1");
+    const struct run run = keyed_run("sod", "t_end=0.1");
     const double x[2] = {-0.5, 0.5}, one[2] = {1, 1};
     const struct snapshot s = {.n = 2,
                                .x = {x},
@@ -362,13 +337,13 @@ static bool tell(void *context, double time, uint64_t steps)
 TEST(who_is_told)
 {
     static struct told told;
-    struct run run = resolved("sod", "n=400 t_end=0.2");
+    struct run run = keyed_run("sod", "n=400 t_end=0.2");
     run.asked.progress = tell;
     run.asked.progress_context = &told;
     for (int each = 0; each < 2; each++) {
         told = (struct told){.stop = 1000};
         run.asked.each_step = each;
-        struct run_result result = executed(&run);
+        struct run_result result = keyed_result(&run);
         const uint64_t stride = each ? 1 : 32;
         assert_true(result.cost.steps > 64 && result.cost.steps % 32 && result.time == 0.2);
         assert_int_equal(told.calls, result.cost.steps / stride);
@@ -379,7 +354,7 @@ TEST(who_is_told)
         run_free(&result);
     }
     told = (struct told){.stop = 5}; /* who says no stops it */
-    struct run_result result = executed(&run);
+    struct run_result result = keyed_result(&run);
     assert_true(result.cost.steps == 5 && result.time < 0.2 && result.time == told.time[4]);
     run_free(&result);
 }
@@ -391,15 +366,15 @@ TEST(what_is_left_on_the_way)
     static struct trace trace;
     static struct told told = {.stop = 1000};
     char folder[] = "sphproof_run_XXXXXX", path[64], file[80];
-    struct run run = resolved("sod", "n=40 t_end=0.06");
-    struct run_result plain = executed(&run);
+    struct run run = keyed_run("sod", "n=40 t_end=0.06");
+    struct run_result plain = keyed_result(&run);
     struct snapshots snapshots = {.path = path, .every = 0.001875};
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/a.csv", folder);
     run.asked.trace = &trace;
     run.asked.progress = tell, run.asked.progress_context = &told, run.asked.each_step = true;
     run.asked.snapshots = &snapshots;
-    struct run_result result = executed(&run);
+    struct run_result result = keyed_result(&run);
     assert_int_equal(snapshots.trouble.status, STATUS_OK);
     assert_int_equal(trace.count, result.cost.steps + 1);
     assert_int_equal(told.calls, result.cost.steps);
@@ -419,7 +394,7 @@ TEST(what_is_left_on_the_way)
     }
     snprintf(path, sizeof path, "%s/none/a.csv", folder);
     snapshots = (struct snapshots){.path = path, .every = 0.001875};
-    result = executed(&run);
+    result = keyed_result(&run);
     assert_true(snapshots.trouble.status != STATUS_OK && snapshots.trouble.message[0]);
     assert_true(result.snapshot.u[7] == plain.snapshot.u[7]);
     run_free(&result);
@@ -432,9 +407,9 @@ TEST(what_is_left_on_the_way)
 TEST(peaks)
 {
     struct rusage after;
-    const struct run run = resolved("sod", "n=40 t_end=0.01");
+    const struct run run = keyed_run("sod", "n=40 t_end=0.01");
     enum { MORE = 1 << 24 };
-    struct run_result result = executed(&run);
+    struct run_result result = keyed_result(&run);
     getrusage(RUSAGE_SELF, &after);
     near_inside(result.peak_rss, 2e6, 1024. * (double)after.ru_maxrss + 1e6);
     volatile char *more = malloc(MORE);
@@ -442,7 +417,7 @@ TEST(peaks)
     free((void *)more);
     const double first = result.peak_rss;
     run_free(&result);
-    result = executed(&run);
+    result = keyed_result(&run);
     near_inside(result.peak_rss, first + 0.5 * MORE, first + 2 * MORE);
     assert_true(fmod(result.peak_rss, 1024) == 0);
     run_free(&result);
@@ -461,8 +436,8 @@ TEST(walls_push)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         char words[128];
         snprintf(words, sizeof words, "n=10^2 t_end=0.05 jitter=0.2 boundary=%s", rows[k].boundary);
-        const struct run run = resolved("rest_2d", words);
-        struct run_result result = executed(&run);
+        const struct run run = keyed_run("rest_2d", words);
+        struct run_result result = keyed_result(&run);
         const struct snapshot *s = &result.snapshot;
         double p[2] = {0, 0};
         for (size_t i = 0; i < s->n; i++)

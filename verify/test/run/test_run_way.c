@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include "initial.h"
+#include "keyed.h"
 #include "precision.h"
-#include "run.h"
 
 static char folder[] = "run_way.XXXXXX";
 
@@ -23,34 +23,12 @@ static int end(void **state)
     return rmdir(folder);
 }
 
-static struct run resolved(const char *name, const char *words)
-{
-    struct run_settings settings;
-    struct run run = {0};
-    struct error error;
-    char text[256], *keys[8], *rest = text;
-    int n = 0;
-    snprintf(text, sizeof text, "%s", words);
-    for (char *word; n < 8 && (word = strtok_r(rest, " ", &rest));) keys[n++] = word;
-    if (run_prepare(&settings, name, n, keys, &error) || run_resolve(&run, &settings, &error))
-        fail_msg("%s %s: %s", name, words, error.message);
-    return run;
-}
-
-static struct run_result executed(const struct run *run)
-{
-    struct run_result result = {0};
-    struct error error;
-    if (run_execute(run, &result, &error)) fail_msg("%s", error.message);
-    return result;
-}
-
 /* Sums of the start and of the end, by hand; errors are measured, and so are functionals. */
 TEST(what_is_conserved)
 {
     for (int plain = 0; plain < 2; plain++) {
-        struct run run = resolved("sod", "n=60 t_end=0.1 energy=internal gradient=ia "
-                                         "integrator=leapfrog kernel=cubic_spline");
+        struct run run = keyed_run("sod", "n=60 t_end=0.1 energy=internal gradient=ia "
+                                          "integrator=leapfrog kernel=cubic_spline");
         struct initial initial;
         struct error error;
         run.asked.solver = plain ? precision_plain : NULL;
@@ -69,11 +47,10 @@ TEST(what_is_conserved)
             assert_ptr_equal(strstr(error.message, "plain: only"), error.message);
             assert_null(none.storage);
             run =
-                resolved("sod", "n=60 t_end=0.1 integrator=modified_leapfrog kernel=cubic_spline");
+                keyed_run("sod", "n=60 t_end=0.1 integrator=modified_leapfrog kernel=cubic_spline");
             run.asked.solver = precision_plain;
         }
-        struct run_result result = {0};
-        if (run_execute(&run, &result, &error)) fail_msg("%s", error.message);
+        struct run_result result = keyed_result(&run);
         const struct snapshot *s = &result.snapshot;
         for (size_t i = 0; i < s->n; i++) {
             energy[1] += s->m[i] * (s->u[i] + 0.5 * s->v[0][i] * s->v[0][i]);
@@ -96,7 +73,7 @@ TEST(what_is_conserved)
 /* What breaks down says so, in the result and as an error, and leaves its last sound state. */
 TEST(breakdowns)
 {
-    const struct run run = resolved("two_rarefactions", "n=40 cfl=50");
+    const struct run run = keyed_run("two_rarefactions", "n=40 cfl=50");
     struct run_result result = {0};
     struct error error = {0};
     assert_int_equal(run_execute(&run, &result, &error), STATUS_BROKE_DOWN);
@@ -123,13 +100,13 @@ TEST(snapshots_change_nothing)
     static char here[1 << 16], there[1 << 16];
     char path[64], alone[64];
     struct snapshots snapshots = {.path = path, .every = 0.025};
-    struct run run = resolved("sod", "n=60 t_end=0.1 energy=internal");
+    struct run run = keyed_run("sod", "n=60 t_end=0.1 energy=internal");
     struct error error = {0};
     snprintf(path, sizeof path, "%s/s.csv", folder);
     snprintf(alone, sizeof alone, "%s/alone.csv", folder);
-    struct run_result usual = executed(&run);
+    struct run_result usual = keyed_result(&run);
     run.asked.snapshots = &snapshots;
-    struct run_result with = executed(&run);
+    struct run_result with = keyed_result(&run);
     assert_int_equal(snapshots.trouble.status, STATUS_OK);
     assert_true(with.cost.steps == usual.cost.steps && with.energy == usual.energy);
     for (size_t i = 0; i < usual.snapshot.n; i++)
@@ -146,8 +123,8 @@ TEST(snapshots_change_nothing)
         assert_true((n > 0) == (k < 4));
         if (k == 4) break;
         snprintf(words, sizeof words, "n=60 energy=internal %s", ends[k]);
-        const struct run shorter = resolved("sod", words);
-        struct run_result result = executed(&shorter);
+        const struct run shorter = keyed_run("sod", words);
+        struct run_result result = keyed_result(&shorter);
         assert_int_equal(run_write_snapshot(&result, alone, &error), STATUS_OK);
         run_free(&result);
         const size_t lines = text_of(alone, there, sizeof there);
@@ -167,10 +144,10 @@ TEST(snapshots_are_in_time)
     char path[64];
     struct snapshots snapshots = {.path = path, .every = 0.01};
     struct run run =
-        resolved("noh_2d", "n=1394 t_end=0.12 steps=local kernel=cubic_spline skip=none");
+        keyed_run("noh_2d", "n=1394 t_end=0.12 steps=local kernel=cubic_spline skip=none");
     snprintf(path, sizeof path, "%s/s.csv", folder);
     run.asked.snapshots = &snapshots;
-    struct run_result result = executed(&run);
+    struct run_result result = keyed_result(&run);
     assert_int_equal(snapshots.trouble.status, STATUS_OK);
     assert_true(result.cost.skipped_particle_updates > 0);
     run_free(&result);
@@ -201,20 +178,20 @@ TEST(goes_on)
     char path[64];
     snprintf(path, sizeof path, "%s/state", folder);
     for (int k = 0; k < 2; k++) {
-        struct run run = resolved(cases[k], keys[k]);
-        struct run_result usual = executed(&run);
+        struct run run = keyed_run(cases[k], keys[k]);
+        struct run_result usual = keyed_result(&run);
         struct checkpoint checkpoint = {.path = path, .build = "b", .run = "{}", .snapshot = 7};
         run.asked.checkpoint = &checkpoint;
         run.asked.progress = stop_at_ten;
         run.asked.each_step = true;
-        struct run_result part = executed(&run);
+        struct run_result part = keyed_result(&run);
         assert_true(part.cost.steps == 10 && part.time < usual.time);
         assert_int_equal(checkpoint.trouble.status, STATUS_OK);
         assert_true(checkpoint.snapshot == -1); /* there are none on the way */
         run_free(&part);
         run.asked.progress = NULL;
         checkpoint.resume = true;
-        struct run_result again = executed(&run);
+        struct run_result again = keyed_result(&run);
         assert_true(again.cost.steps == usual.cost.steps && again.time == usual.time);
         assert_true(again.energy == usual.energy && again.momentum == usual.momentum);
         assert_int_equal(again.functional_count, usual.functional_count);
@@ -237,7 +214,7 @@ TEST(goes_on)
 /* While it grows the amplitude is seen 17 times, no more often than the run lasts. */
 TEST(growth)
 {
-    struct run run = resolved("kelvin_helmholtz_mode", "n=12^2 t_end=1.84");
+    struct run run = keyed_run("kelvin_helmholtz_mode", "n=12^2 t_end=1.84");
     double times[2];
     run.problem.problem->growing->during(&run.problem, times);
     assert_true(times[0] > 0 && times[1] < 1.84 + 1e-2 && times[0] < times[1]);
@@ -246,8 +223,8 @@ TEST(growth)
         /* between two stops */
         snprintf(words, sizeof words, "n=12^2 t_end=%.17g",
                  times[0] + (times[1] - times[0]) * (parts - 0.5) / 16);
-        run = resolved("kelvin_helmholtz_mode", words);
-        struct run_result result = executed(&run);
+        run = keyed_run("kelvin_helmholtz_mode", words);
+        struct run_result result = keyed_result(&run);
         double t = 0, tt = 0;
         for (int i = 0; i < parts; i++) {
             const double stop = times[0] + (times[1] - times[0]) * i / 16;

@@ -4,23 +4,15 @@
 #include "test.h"
 
 #include "bench_possible.h"
-
-enum { KEYS = 8 };
+#include "keyed.h"
 
 static struct bench_shares shares_of(const char *name, const char *words)
 {
-    struct run_settings settings;
-    struct run run = {0};
+    const struct run run = keyed_run(name, words);
     struct bench_shares shares;
     struct error error;
-    char text[256], *keys[KEYS], *rest = text;
-    int n = 0;
-    snprintf(text, sizeof text, "%s", words);
-    for (char *word; n < KEYS && (word = strtok_r(rest, ",", &rest));) keys[n++] = word;
-    if (run_prepare(&settings, name, n, keys, &error) || run_resolve(&run, &settings, &error) ||
-        bench_possible(&run, &shares, &error))
-        fail_msg("%s %s: %s", name, words, error.message);
-    print_message("%s,%s: skipped %.3f of %.3f allowed, %.3f by the waves alone\n", name, words,
+    if (bench_possible(&run, &shares, &error)) fail_msg("%s %s: %s", name, words, error.message);
+    print_message("%s %s: skipped %.3f of %.3f allowed, %.3f by the waves alone\n", name, words,
                   shares.skipped, shares.allowed, shares.possible);
     return shares;
 }
@@ -33,8 +25,8 @@ TEST(test_shares)
         double allowed;
     } cases[] = {{"sod", "n=800", 0.5},
                  {"sod_2d", "n=5600", 0.3},
-                 {"sedov_2d", "n=64^2,t_end=0.02", 0.7},
-                 {"sedov_3d", "n=24^3,t_end=0.01", 0.3}};
+                 {"sedov_2d", "n=64^2 t_end=0.02", 0.7},
+                 {"sedov_3d", "n=24^3 t_end=0.01", 0.3}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const struct bench_shares shares = shares_of(cases[k].name, cases[k].keys);
         near_inside(shares.allowed, cases[k].allowed, 1);
@@ -69,9 +61,9 @@ TEST(test_columns)
     static const struct {
         const char *name, *keys;
         int columns;
-    } cases[] = {{"rest_2d", "n=20^2,jitter=0,t_end=0.01,lattice=square", 20},
-                 {"sedov_3d", "n=12^3,t_end=0.001", 12},
-                 {"sound_wave", "n=1000,t_end=0.01", BENCH_COLUMNS}};
+    } cases[] = {{"rest_2d", "n=20^2 jitter=0 t_end=0.01 lattice=square", 20},
+                 {"sedov_3d", "n=12^3 t_end=0.001", 12},
+                 {"sound_wave", "n=1000 t_end=0.01", BENCH_COLUMNS}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const struct bench_shares shares = shares_of(cases[k].name, cases[k].keys);
         assert_int_equal(shares.columns, cases[k].columns);
@@ -87,7 +79,7 @@ TEST(test_coarse)
     static const struct {
         const char *name, *keys;
         double share;
-    } cases[] = {{"rest_2d", "n=400,jitter=0,t_end=0.1", 1}, {"noh_2d", "n=400,t_end=0.1", 0}};
+    } cases[] = {{"rest_2d", "n=400 jitter=0 t_end=0.1", 1}, {"noh_2d", "n=400 t_end=0.1", 0}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const struct bench_shares shares = shares_of(cases[k].name, cases[k].keys);
         assert_true(shares.coarse && shares.possible == cases[k].share);

@@ -5,8 +5,7 @@
 #include "test.h"
 
 #include "draw.h"
-#include "settings.h"
-#include "simulation.h"
+#include "keyed.h"
 
 enum { MOST = 5000, FIELDS_SEEN = 9 };
 enum kind { BLAST, TUBE, PULSE, KINDS };
@@ -130,12 +129,9 @@ static void skip_enough_of_pulse(const struct setup *setup)
 
 static void same_figures(int dim, enum shifting shifting, int draws)
 {
-    struct settings settings;
-    struct scheme scheme;
-    struct error error;
-    settings_init(&settings);
-    settings.value[SETTING_shifting].choice = (int)shifting;
-    if (settings_scheme(&settings, dim, &scheme, &error)) fail_msg("%s", error.message);
+    char keys[32];
+    snprintf(keys, sizeof keys, "shifting=%s", scheme_shifting_family.members[shifting]->name);
+    struct scheme scheme = keyed_scheme(dim, keys);
     if (dim == 3) scheme.eta = 2.4; /* a third of the neighbours */
     if (dim > 1) scheme.shock_conductivity = 1;
     for (int k = 0; k < draws; k++) {
@@ -168,12 +164,10 @@ TEST(test_same_figures_with_shifting)
 TEST(test_cold_gas_shifts)
 {
     for (enum shifting shifting = SHIFTING_NONE; shifting <= SHIFTING_CLOSED; shifting++) {
-        struct settings settings;
-        struct error error;
         struct setup setup = draw_setup(2, BLAST, 1e11, false);
-        settings_init(&settings);
-        settings.value[SETTING_shifting].choice = (int)shifting;
-        if (settings_scheme(&settings, 2, &setup.scheme, &error)) fail_msg("%s", error.message);
+        char keys[32];
+        snprintf(keys, sizeof keys, "shifting=%s", scheme_shifting_family.members[shifting]->name);
+        setup.scheme = keyed_scheme(2, keys);
         setup.scheme.shock_conductivity = 1;
         for (size_t i = 0; i < setup.n; i++)
             for (int k = 0; k < 2; k++) x[k][i] += draw(-0.1, 0.1) / 144;
@@ -186,11 +180,8 @@ TEST(test_cold_gas_shifts)
 TEST(test_boosted)
 {
     for (int dim = 1; dim <= 3; dim++) {
-        struct settings settings;
-        struct error error;
         struct setup setup = draw_setup(dim, TUBE, 10, true);
-        settings_init(&settings);
-        if (settings_scheme(&settings, dim, &setup.scheme, &error)) fail_msg("%s", error.message);
+        setup.scheme = keyed_scheme(dim, "");
         if (dim == 3) setup.scheme.eta = 2.4;
         run(&setup, true, &plain);
         memset(v, 0, sizeof v);
@@ -205,11 +196,8 @@ TEST(test_boosted)
  * that gas is active there, with the same figures. */
 TEST(test_cold_streams)
 {
-    struct settings settings;
-    struct error error;
     struct setup setup = draw_setup(1, TUBE, 1, true);
-    settings_init(&settings);
-    if (settings_scheme(&settings, 1, &setup.scheme, &error)) fail_msg("%s", error.message);
+    setup.scheme = keyed_scheme(1, "");
     const double boost = v[0][0];
     for (size_t i = 0; i < setup.n; i++) {
         u[i] = 1e-12;
@@ -243,38 +231,25 @@ static void compare_pairs(struct setup *setup, bool slope)
 
 TEST(test_pairs)
 {
-    enum { WORDS = 4 };
     static const struct {
         int dim;
-        const char *keys[WORDS];
+        const char *keys;
         bool slope, walls;
-    } schemes[] = {
-        {1, {"viscosity=reconstructed"}, true, false},
-        {1, {"viscosity=reconstructed", "gradient=ia", "energy=internal"}, true, false},
-        {2, {"viscosity=projected"}, false, true},
-        {2, {"viscosity=projected", "gradient=blended", "balsara=off"}, false, false},
-        {2, {"viscosity=reconstructed", "gradient=standard"}, true, false},
-        {2, {"viscosity=constant", "gradient=corrected", "balsara=on"}, true, false},
-        {2, {"viscosity=constant", "gradient=standard", "balsara=off"}, false, true},
-        {2, {"viscosity=fading", "formulation=lagrangian", "balsara=off"}, false, false},
-        {2, {"viscosity=time_dependent", "volume_element=energy", "balsara=on"}, true, false},
-        {3, {"eta=2.4", "viscosity=projected"}, false, false},
-        {3, {"eta=2.4", "viscosity=constant", "balsara=on", "gradient=standard"}, true, true}};
+    } schemes[] = {{1, "viscosity=reconstructed", true, false},
+                   {1, "viscosity=reconstructed gradient=ia energy=internal", true, false},
+                   {2, "viscosity=projected", false, true},
+                   {2, "viscosity=projected gradient=blended balsara=off", false, false},
+                   {2, "viscosity=reconstructed gradient=standard", true, false},
+                   {2, "viscosity=constant gradient=corrected balsara=on", true, false},
+                   {2, "viscosity=constant gradient=standard balsara=off", false, true},
+                   {2, "viscosity=fading formulation=lagrangian balsara=off", false, false},
+                   {2, "viscosity=time_dependent volume_element=energy balsara=on", true, false},
+                   {3, "eta=2.4 viscosity=projected", false, false},
+                   {3, "eta=2.4 viscosity=constant balsara=on gradient=standard", true, true}};
     for (size_t s = 0; s < sizeof schemes / sizeof *schemes; s++) {
-        struct settings settings;
-        struct error error;
         const int dim = schemes[s].dim;
         struct setup setup = draw_setup(dim, TUBE, draw(2, 100), dim > 1 && !schemes[s].walls);
-        char words[WORDS][40], *keys[WORDS];
-        int count = 0;
-        for (; count < WORDS && schemes[s].keys[count]; count++) {
-            snprintf(words[count], sizeof *words, "%s", schemes[s].keys[count]);
-            keys[count] = words[count];
-        }
-        settings_init(&settings);
-        if (settings_apply(&settings, count, keys, &error) ||
-            settings_scheme(&settings, dim, &setup.scheme, &error))
-            fail_msg("%zu: %s", s, error.message);
+        setup.scheme = keyed_scheme(dim, schemes[s].keys);
         for (size_t i = 0; i < setup.n; i++)
             for (int k = 0; k < dim; k++)
                 v[k][i] += dim == 1 ? 0.5 * (double)(i % 192) / 192 : u[i] > 1 ? draw(-1, 1) : 0;
@@ -289,14 +264,11 @@ TEST(test_pairs)
 TEST(test_conduction)
 {
     for (int k = 0; k < 6; k++) {
-        struct settings settings;
-        struct error error;
         const int dim = 2 + k % 2;
         struct setup setup = draw_setup(dim, PULSE, 1, false);
         const double most = draw(0.21, 0.3);
         for (size_t i = 0; i < setup.n; i++) u[i] = 1 + draw(-most, most);
-        settings_init(&settings);
-        if (settings_scheme(&settings, dim, &setup.scheme, &error)) fail_msg("%s", error.message);
+        setup.scheme = keyed_scheme(dim, "");
         setup.scheme.eta = 2.2;
         run(&setup, false, &plain);
         setup.scheme.shock_conductivity = 1;

@@ -2,6 +2,7 @@
  * What a run writes as its snapshot in HDF5. */
 #include "test.h"
 
+#include "keyed.h"
 #include "run.h"
 #include "snapshot_file.h"
 
@@ -115,20 +116,16 @@ static void gas_is_of(hid_t file, const struct run_result *run)
 TEST(runs_are_written)
 {
     static const struct {
-        const char *name, *words[2];
-    } cases[] = {{"sod", {"n=30", "t_end=0.01"}},
-                 {"shear", {"n=8^2", "t_end=0.01"}},
-                 {"rest_2d", {"n=12^2", "hi=1.2,1.5"}},
-                 {"rest_3d", {"n=8^3", "t_end=0.01"}}};
+        const char *name, *keys;
+    } cases[] = {{"sod", "n=30 t_end=0.01"},
+                 {"shear", "n=8^2 t_end=0.01"},
+                 {"rest_2d", "n=12^2 hi=1.2,1.5"},
+                 {"rest_3d", "n=8^3 t_end=0.01"}};
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-        struct run_settings settings;
-        struct run run;
-        struct run_result result;
-        struct error error = {0};
-        if (run_prepare(&settings, cases[c].name, 2, (char *const *)(uintptr_t)cases[c].words,
-                        &error) ||
-            run_resolve(&run, &settings, &error) || run_execute(&run, &result, &error) ||
-            run_write_snapshot(&result, path_of("run.hdf5"), &error))
+        const struct run run = keyed_run(cases[c].name, cases[c].keys);
+        struct run_result result = keyed_result(&run);
+        struct error error;
+        if (run_write_snapshot(&result, path_of("run.hdf5"), &error))
             fail_msg("%s: %s", cases[c].name, error.message);
         const hid_t file = H5Fopen(path_of("run.hdf5"), H5F_ACC_RDONLY, H5P_DEFAULT);
         assert_true(file >= 0);

@@ -3,23 +3,15 @@
  * particles come to rest. */
 #include "test.h"
 
-/* after the four that it needs */
-
-#include "run.h"
+#include "keyed.h"
 #include "run_output.h"
 #include "value.h"
 
-static void run(struct run_result *result, struct trace *trace, const char *name, int n,
-                char *const *arguments)
+static struct run_result traced(struct trace *trace, const char *name, const char *keys)
 {
-    struct run_settings settings;
-    struct run run;
-    struct error error;
-    if (run_prepare(&settings, name, n, arguments, &error) || run_resolve(&run, &settings, &error))
-        fail_msg("%s", error.message);
-    run.asked.threads = 1;
+    struct run run = keyed_run(name, keys);
     run.asked.trace = trace;
-    if (run_execute(&run, result, &error)) fail_msg("%s", error.message);
+    return keyed_result(&run);
 }
 
 static void same(double a, double b)
@@ -34,10 +26,8 @@ static double last(const json_t *list)
 
 TEST(ends_with_the_run)
 {
-    char *const keys[] = {"n=12^2", "t_end=0.5"};
     struct trace trace = {0};
-    struct run_result result;
-    run(&result, &trace, "rest_2d", 2, keys);
+    struct run_result result = traced(&trace, "rest_2d", "n=12^2 t_end=0.5");
     const struct regularity *start = &trace.seen[0], *end = &trace.seen[trace.looks - 1];
     assert_true(trace.looks >= 8 && trace.looks <= TRACE_LOOKS + 2);
     same(trace.looked[trace.looks - 1], result.time);
@@ -57,10 +47,8 @@ TEST(ends_with_the_run)
 
 TEST(on_a_line)
 {
-    char *const keys[] = {"n=40", "t_end=0.02"};
     struct trace trace = {0};
-    struct run_result result;
-    run(&result, &trace, "sod", 2, keys);
+    struct run_result result = traced(&trace, "sod", "n=40 t_end=0.02");
     json_t *through = trace_json(&trace, 1);
     assert_true(json_is_null(json_object_get(through, "angular_momentum")));
     /* of few steps each is seen once */
@@ -231,12 +219,9 @@ TEST(motion_is_told)
  * has no such figures. */
 TEST(a_run_tells_its_motion)
 {
-    char *const keys[] = {"n=12^2", "t_end=0.5"}, *const boosted[] = {"n=12^2", "t_end=0.5",
-                                                                      "boost=1 0.5"};
-    struct run_result result, moving, tube;
-    run(&result, NULL, "gresho", 2, keys);
-    run(&moving, NULL, "gresho", 3, boosted);
-    run(&tube, NULL, "sod", 1, (char *const[]){"n=40"});
+    struct run_result result = traced(NULL, "gresho", "n=12^2 t_end=0.5"),
+                      moving = traced(NULL, "gresho", "n=12^2 t_end=0.5 boost=1,0.5"),
+                      tube = traced(NULL, "sod", "n=40");
     assert_true(result.motion.rebound >= 0 && result.motion.asymmetry > 1e-4);
     assert_true(result.motion.centre < 1e-12 && result.motion.asymmetry < 1);
     /* the boost is no motion of the flow */

@@ -4,25 +4,16 @@
 
 #include "autopsy_state.h"
 #include "draw.h"
+#include "keyed.h"
 #include "problem_list.h"
 
-enum { LEVELS = 4, KEYS = 8 };
+enum { LEVELS = 4 };
 
 static void resolve(struct run *run, const char *case_name, size_t n, const char *keys)
 {
-    struct run_settings asked;
-    struct error error;
-    char text[256], *words[KEYS], *rest = text;
-    int count = 0;
-    snprintf(text, sizeof text, "n=%zu %s", n, keys);
-    for (char *word; (word = strtok_r(rest, " ", &rest));) {
-        assert_true(count < KEYS);
-        for (char *c = word; *c; c++)
-            if (*c == ':') *c = ' ';
-        words[count++] = word;
-    }
-    if (run_prepare(&asked, case_name, count, words, &error) || run_resolve(run, &asked, &error))
-        fail_msg("%s: %s", text, error.message);
+    char words[200];
+    snprintf(words, sizeof words, "n=%zu %s", n, keys);
+    *run = keyed_run(case_name, words);
 }
 
 /* problem NULL: the case's own. */
@@ -203,7 +194,7 @@ TEST(what_shakes_a_wave_is_not_what_damps_it)
     struct autopsy_level level;
     for (int off = 0; off < 2; off++) {
         resolve(&run, "sound_wave_2d", 1024,
-                off ? "direction=2:1 viscosity=none" : "direction=2:1");
+                off ? "direction=2,1 viscosity=none" : "direction=2,1");
         if (off ? run_execute(&run, &result, &error) : autopsy_measure(&run, &level, NULL, &error))
             fail_msg("%s", error.message);
     }

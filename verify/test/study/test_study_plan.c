@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include "keyed.h"
 #include "run_job.h"
 #include "run_output.h"
 #include "study.h"
@@ -16,17 +17,12 @@ static const size_t ladder[LEVELS] = {40, 60, 80, 400};
 static enum status plan(struct study *study, struct pool *pool, const char *name, const char *keys,
                         const char *vary, size_t replicates, struct error *error)
 {
-    char text[256], *arguments[8], *rest = text;
-    int n = 0;
     *error = (struct error){0};
     *pool = (struct pool){0};
     *study = (struct study){.level_count = LEVELS, .replicates = replicates};
     memcpy(study->ladder, ladder, sizeof ladder);
-    snprintf(text, sizeof text, "%s", keys);
-    for (char *word; (word = strtok_r(rest, " ", &rest));) arguments[n++] = word;
-    if (run_prepare(&study->settings, name, n, arguments, error) ||
-        sweep_parse(&study->sweep, vary, error))
-        fail_msg("%s", error->message);
+    study->settings = keyed_case(name, keys);
+    if (sweep_parse(&study->sweep, vary, error)) fail_msg("%s", error->message);
     return study_plan(study, pool, error);
 }
 
@@ -125,26 +121,10 @@ TEST(how_many_replicates)
                 {"sod_2d", "lattice=glass", 3},
                 {"sound_wave_2d", "jitter=0.1", 3}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        struct run_settings settings;
-        char key[32], *keys[] = {key};
-        snprintf(key, sizeof key, "%s", rows[k].key);
-        assert_int_equal(run_prepare(&settings, rows[k].name, 1, keys, NULL), STATUS_OK);
+        const struct run_settings settings = keyed_case(rows[k].name, rows[k].key);
         assert_int_equal(study_replicates(&settings), rows[k].replicates);
         assert_true(study_is_random(&settings.settings) == (rows[k].replicates == 3));
     }
-}
-
-static struct run resolved(const char *name, const char *key)
-{
-    struct run_settings settings;
-    struct run run = {0};
-    struct error error;
-    char text[128], *keys[] = {text};
-    snprintf(text, sizeof text, "%s", key);
-    if (run_prepare(&settings, name, *key ? 1 : 0, keys, &error) ||
-        run_resolve(&run, &settings, &error))
-        fail_msg("%s: %s", name, error.message);
-    return run;
 }
 
 static json_t *key_of(const struct run *run, const char *kind)
@@ -165,7 +145,7 @@ static json_t *key_of(const struct run *run, const char *kind)
 /* All that decides a result, and nothing else: of a file what it holds. */
 TEST(keys)
 {
-    struct run run = resolved("sod", "eta=2.3849999999999998");
+    struct run run = keyed_run("sod", "eta=2.3849999999999998");
     for (int any = 0; any < 2; any++) {
         run.asked.any_window = any;
         json_t *key = key_of(&run, "other");
@@ -179,7 +159,7 @@ TEST(keys)
     char folder[] = "study_plan.XXXXXX", path[64];
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/p.csv", folder);
-    run = resolved("gresho", "");
+    run = keyed_run("gresho", "");
     snprintf(run.settings.file, sizeof run.settings.file, "%s", path);
     char bytes[9000];
     for (size_t i = 0; i < sizeof bytes; i++) bytes[i] = (char)('0' + i * i % 71);
@@ -206,11 +186,11 @@ TEST(keys)
 
 TEST(weights)
 {
-    struct run run = resolved("sod", "n=1000");
+    struct run run = keyed_run("sod", "n=1000");
     near_relative(run_job_weight(&run), 0.052, 1e-14);
-    run = resolved("gresho", "n=100^2");
+    run = keyed_run("gresho", "n=100^2");
     near_relative(run_job_weight(&run), 0.002 + 10, 1e-14);
-    run = resolved("rest_3d", "n=10^3");
+    run = keyed_run("rest_3d", "n=10^3");
     near_relative(run_job_weight(&run), 0.002 + 1e-5 * 1e4, 1e-13);
 }
 
@@ -220,7 +200,7 @@ TEST(once)
     struct error error;
     struct pool pool = {0};
     size_t job[3];
-    struct run run = resolved("sod", "n=100"), other = resolved("sod", "n=200");
+    struct run run = keyed_run("sod", "n=100"), other = keyed_run("sod", "n=200");
     char *key = run_job_key(&run, RUN_JOB_PROFILE, &error);
     assert_int_equal(pool_add(&pool, "another", "another", 1, NULL, NULL), 0);
     assert_int_equal(pool_add(&pool, "with its profile", key, 1, NULL, NULL), 1);
@@ -240,7 +220,7 @@ TEST(run_elsewhere)
     struct pool pool = {0};
     const struct pool_settings settings = {.jobs = 1};
     size_t job[2];
-    struct run run = resolved("sod", "t_end=0.001"), lost = resolved("sod", "t_end=0.002");
+    struct run run = keyed_run("sod", "t_end=0.001"), lost = keyed_run("sod", "t_end=0.002");
     lost.settings.value[SETTING_n].real[0] = 0x1p53; /* more than there is room for */
     assert_int_equal(run_job_add(&pool, &run, &job[0], &error), STATUS_OK);
     assert_int_equal(run_job_add(&pool, &lost, &job[1], &error), STATUS_OK);

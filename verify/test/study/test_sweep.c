@@ -3,22 +3,15 @@
  * alike; ladders; what is refused. */
 #include "test.h"
 
+#include "keyed.h"
 #include "sweep.h"
 #include "value.h"
-
-static struct run_settings settings_of(const char *name)
-{
-    struct run_settings settings;
-    struct error error = {0};
-    if (run_prepare(&settings, name, 0, NULL, &error)) fail_msg("%s", error.message);
-    return settings;
-}
 
 /* That combination i says these words of these keys. */
 static void says(const struct sweep *sweep, size_t i, size_t n, const char *const *keys,
                  const char *const *words)
 {
-    struct run_settings settings = settings_of("sod");
+    struct run_settings settings = keyed_case("sod", "");
     struct error error = {0};
     char label[SWEEP_LABEL], want[SWEEP_LABEL] = "", text[SETTING_TEXT_MAX];
     json_t *json = sweep_json(sweep, i);
@@ -146,7 +139,7 @@ TEST(what_is_refused)
 /* A combination that settings refuse says which value it is. */
 TEST(applied)
 {
-    struct run_settings settings = settings_of("sod");
+    struct run_settings settings = keyed_case("sod", "");
     struct sweep sweep;
     struct error error = {0};
     assert_int_equal(sweep_parse(&sweep, "alpha=1,eta=2,3", &error), STATUS_OK);
