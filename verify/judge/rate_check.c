@@ -181,8 +181,13 @@ static void propose(struct rate_check *check, const double *const theirs[RATE_CO
     }
 }
 
-/* The eta that their widths and densities have in common; ours where these say nothing. */
-static double their_eta(const double *const theirs[RATE_COLUMNS], const struct setup *setup)
+/* So much of it, other codes leave h open: they find it from neighbours to 1e-4 or so. */
+static const double eta_known = 2e-3;
+
+/* The eta that their widths and densities have in common, and how far it is open relative to
+ * itself; ours where these say nothing. */
+static double their_eta(const double *const theirs[RATE_COLUMNS], const struct setup *setup,
+                        double *open)
 {
     const double *h = theirs[0], *rho = theirs[1];
     double least = INFINITY, most = -INFINITY;
@@ -192,14 +197,35 @@ static double their_eta(const double *const theirs[RATE_COLUMNS], const struct s
         least = fmin(least, eta), most = fmax(most, eta);
     }
     const double eta = 0.5 * (least + most);
-    return eta > 0 && most - least <= 1e-6 * eta ? eta : setup->scheme.eta;
+    if (!(eta > 0 && most - least <= eta_known * eta)) return setup->scheme.eta;
+    *open = (most - least) / eta;
+    return eta;
+}
+
+/* Of all kernels the one that comes nearest; where their eta is open, so is what a kernel must come
+ * to, but it must explain nine tenths. left: of each column what the best one so far leaves. */
+static void propose_kernel(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
+                           const struct rate_table *changed, const double *m, double tolerance,
+                           double open, double left[RATE_COLUMNS], const char *cause)
+{
+    for (size_t k = 0; k < check->count; k++) {
+        struct rate_comparison *c = &check->columns[k], now = *c;
+        if (c->good || (c->cause[0] && isinf(left[k]))) continue;
+        compare(&now, theirs[c->column], changed, m, c->column);
+        const double near = fmax(near_enough(c, tolerance), fmin(open, 0.1 * c->worst));
+        if (!(now.worst <= near && now.worst < left[k])) continue;
+        left[k] = now.worst;
+        snprintf(c->cause, sizeof c->cause, "%s", cause);
+    }
 }
 
 /* Another kernel, with our eta or theirs, or that eta alone. */
 static void propose_kernels(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
                             const struct setup *setup, double tolerance)
 {
-    const double found = their_eta(theirs, setup), ours = setup->scheme.eta;
+    double open = 0, left[RATE_COLUMNS];
+    for (int k = 0; k < RATE_COLUMNS; k++) left[k] = INFINITY;
+    const double found = their_eta(theirs, setup, &open), ours = setup->scheme.eta;
     const bool other = fabs(found - ours) > 1e-6 * ours;
     for (int k = -1; k < (int)kernel_family.n; k++) {
         struct setup changed = *setup;
@@ -216,7 +242,7 @@ static void propose_kernels(struct rate_check *check, const double *const theirs
         else
             snprintf(cause, sizeof cause, "kernel: theirs is %s", name);
         if (!rate_table_make(&table, &changed, NULL))
-            propose(check, theirs, &table, setup->m, tolerance, cause);
+            propose_kernel(check, theirs, &table, setup->m, tolerance, open, left, cause);
         rate_table_free(&table);
     }
 }

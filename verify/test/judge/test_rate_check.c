@@ -452,6 +452,38 @@ TEST(better_by_a_thousand)
     rate_table_free(&theirs);
 }
 
+/* Other codes leave their widths a little open: the kernel is named that comes nearest, with the
+ * eta that is common to all, unless it is open by more than two parts in a thousand. */
+TEST(open_widths)
+{
+    static struct gas gas;
+    static struct file file;
+    make(&gas, 2, sides[2], schemes[2]);
+    struct rate_table ours = table_of(&gas.setup);
+    for (size_t k = 0; k < kernel_family.n; k++)
+        for (int wide = 0; wide < 2; wide++) {
+            const char *name = kernel_family.members[k]->name;
+            struct setup changed = gas.setup;
+            char expected[80] = "eta: theirs is 2.6"; /* their kernel is ours */
+            if (kernel_select(&changed.scheme.kernel, name, 5, NULL)) continue;
+            changed.scheme.eta = 2.64;
+            struct rate_table theirs = table_of(&changed);
+            for (size_t i = 0; i < theirs.n; i++)
+                theirs.h[i] *= 1 + ((double)(i % 2) - 0.5) * (wide ? 2.2e-3 : 1e-3);
+            write_file(&file, &gas, &theirs, 3);
+            const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+            if (strcmp(name, "cubic_spline") != 0)
+                snprintf(expected, sizeof expected, "kernel: theirs is %s, with eta 2.6", name);
+            for (int c = 0; c < 2; c++) {
+                const char *cause = check.columns[c].cause;
+                if (wide ? *cause != '\0' : strncmp(cause, expected, strlen(expected)) != 0)
+                    fail_msg("%s, %s: '%s'", name, names[c], cause);
+            }
+            rate_table_free(&theirs);
+        }
+    rate_table_free(&ours);
+}
+
 /* Differences that no choice of a scheme makes. */
 TEST(plain_differences)
 {
