@@ -52,12 +52,12 @@ size_t case_state_labels(const json_t *list, int least, int most, const char **l
  * count alone. */
 static int worst_of(const json_t *document, bool speaks)
 {
-    static const char *const lists[] = {"gates", "orders"};
+    static const char *const lists[] = {"gates", "orders", NULL};
     int worst = *value_text(document, "suspicion") ? FAILED : rank(value_text(document, "status"));
-    for (int k = 0; k < 2; k++) {
+    for (const char *const *list = lists; *list; list++) {
         size_t i;
         const json_t *gate;
-        json_array_foreach(json_object_get(document, lists[k]), i, gate) {
+        json_array_foreach(json_object_get(document, *list), i, gate) {
             const int now = rank(value_text(gate, "status"));
             if (now > worst && (speaks || now >= FAILED)) worst = now;
         }
@@ -67,13 +67,13 @@ static int worst_of(const json_t *document, bool speaks)
 
 const char *case_state(const json_t *results, const char *case_name)
 {
-    static const char *const lists[] = {"runs", "studies"};
+    static const char *const lists[] = {"runs", "studies", NULL};
     const char *speaker = NULL;
     int worst = 0;
-    for (int k = 0; k < 2; k++) {
+    for (const char *const *list = lists; *list; list++) {
         size_t i;
         const json_t *entry;
-        json_array_foreach(json_object_get(results, lists[k]), i, entry) {
+        json_array_foreach(json_object_get(results, *list), i, entry) {
             if (strcmp(value_text(entry, "case"), case_name) != 0) continue;
             if (!speaker) speaker = value_text(entry, "label");
             const int now = worst_of(entry, !strcmp(value_text(entry, "label"), speaker));

@@ -97,10 +97,12 @@ static json_t *gate_json(const char *name, const json_t *figure, bool least, dou
     char why[GATE_WHY] = "";
     if (order && isnan(low)) {
         status = FINDING_UNDETERMINED;
-        snprintf(why, sizeof why, "an interval needs %d numbers of particles, there are %zu",
-                 ORDER_LEVELS_MIN, json_array_size(json_object_get(figure, "pairwise")) + 1);
-        if (json_is_number(json_object_get(figure, "order")))
-            snprintf(why, sizeof why, "errors that have no order");
+        const size_t levels = json_array_size(json_object_get(figure, "pairwise")) + 1;
+        if (levels < ORDER_LEVELS_MIN)
+            snprintf(why, sizeof why, "an interval needs %d numbers of particles, there are %zu",
+                     ORDER_LEVELS_MIN, levels);
+        else
+            snprintf(why, sizeof why, "an error is 0 or unknown");
     } else if (status == FINDING_UNDETERMINED) {
         snprintf(why, sizeof why, "the order is %.3f, its 95 %% interval %.3f to %.3f", value, low,
                  high);

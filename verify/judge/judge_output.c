@@ -131,14 +131,14 @@ static void add_conclusion(json_t *document, const json_t *findings, size_t snap
     const json_t *finding;
     json_array_foreach(findings, i, finding) {
         const char *status = value_text(finding, "status");
-        const bool gate = i >= snapshots && i < snapshots + gates,
-                   fails = !strcmp(status, finding_words[FINDING_FAIL]);
+        const bool fails = !strcmp(status, finding_words[FINDING_FAIL]);
         good &= !fails;
-        silent += gate && !fails && strcmp(status, finding_words[FINDING_PASS]) != 0;
-        if (gate && fails && used < sizeof failing)
+        if (i < snapshots || i >= snapshots + gates) continue;
+        silent += !fails && strcmp(status, finding_words[FINDING_PASS]) != 0;
+        if (fails && used < sizeof failing)
             used += (size_t)snprintf(failing + used, sizeof failing - used, "%s%s",
                                      failed ? ", " : "", value_text(finding, "message"));
-        failed += gate && fails;
+        failed += fails;
     }
     used = 0;
     if (failed)

@@ -215,10 +215,13 @@ class Walker:
             if op in ("<", ">", "<=", ">=") and {self.code(left), self.code(right)} == {one, other}:
                 self.either.add(self.span(c))
 
-    def boundary_shows(self, cursor, op, left):
-        """Would < for <=, or > for >=, make a difference?"""
+    def boundary_shows(self, cursor, op, left, right):
+        """Would < for <=, or > for >=, make a difference? No number that was computed is exactly 0.1 or 1e-3:
+        such a limit has no binary digits that end soon."""
         handle = left.type.spelling == "hid_t" and op in ("<", ">=")  # none is 0
-        return not (self.compares or handle or self.span(cursor) in self.either)
+        decimal = any(re.match(r"^[0-9.]+(e-?[0-9]+)?$", code) and float(code) * 1024 % 1
+                      for code in (self.code(left), self.code(right)))
+        return not (self.compares or handle or decimal or self.span(cursor) in self.either)
 
     def is_first_letter(self, cursor):
         """text[0] where it is asked whether there is a text."""
@@ -461,7 +464,7 @@ class Walker:
         elif op in ("+", "-") and types == ("pointer", "integer"):
             new, pure = [ARITHMETIC[op]], False
         elif op in COMPARE:
-            new = COMPARE[op] if len(COMPARE[op]) == 1 or self.boundary_shows(cursor, op, left) else COMPARE[op][1:]
+            new = COMPARE[op] if len(COMPARE[op]) == 1 or self.boundary_shows(cursor, op, left, right) else COMPARE[op][1:]
             if op in ("&&", "||"):
                 pure = False
         elif op in BITS:

@@ -149,7 +149,23 @@ TEST(documents)
     json_decref(gates);
     gates = json_array();
     for (size_t silent = 1; silent <= 2; silent++) { /* so many say nothing: then all do */
+        static const char *const says[] = {"pass", "smoke", "undetermined"},
+                                 *const first[] = {"", "0 of 1 gates pass, 1 cannot tell; ",
+                                                   "0 of 1 gates pass, 1 cannot tell; "};
         judged[silent - 1].silent = judged[silent - 1].passes = true;
+        for (size_t k = 0; k < 3; k++) { /* of one gate, which counts alone */
+            json_t *gate =
+                json_pack("[{s:s, s:s, s:f, s:f, s:s, s:s}]", "name", "mass", "relation",
+                          "<=", "value", 0., "bound", 1., "status", says[k], "source", "x");
+            json_t *document = judge_json(judged, 2, gate, false);
+            char headline[1600];
+            snprintf(headline, sizeof headline, "%s%s", first[k], judged[1].verdict);
+            assert_string_equal(json_string_value(at(document, "headline", NULL)), headline);
+            assert_string_equal(json_string_value(at(document, "status", NULL)),
+                                silent == 2 && k == 2 ? "fail" : "pass");
+            json_decref(document);
+            json_decref(gate);
+        }
         json_t *document = judge_json(judged, 2, gates, false);
         const json_t *findings = at(document, "findings", NULL);
         assert_int_equal(json_array_size(findings), 1 + silent);

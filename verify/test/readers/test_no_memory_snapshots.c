@@ -136,8 +136,25 @@ static enum status setups(struct error *error)
     return passed(status, &theirs, error);
 }
 
+static bool no_gradients(void *context, const struct sphproof_cloud *cloud, const double *f,
+                         double *const gradient[])
+{
+    (void)context, (void)f;
+    for (size_t i = 0; i < cloud->n; i++) gradient[0][i] = 0;
+    return true;
+}
+
+static enum status gradients(struct error *error)
+{
+    const struct sphproof_gradient_promise promise = {2, 0.85, 2.4, true, true, true, true};
+    struct sphproof_error theirs;
+    return passed(sphproof_gradients_check(no_gradients, NULL, 1, &promise, NULL, NULL, &theirs),
+                  &theirs, error);
+}
+
 TEST(library)
 {
+    without_memory(gradients, 20, false);
     without_memory(kernels, 2, true);
     without_memory(setups, 8, true);
 }

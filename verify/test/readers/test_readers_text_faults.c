@@ -115,7 +115,7 @@ TEST(spoilt)
                      t.name[column + 1]);
         else
             snprintf(says, sizeof says, "more than %zu numbers", t.columns);
-        refuses(text, text_of(&t, text, row, column, "1 2"), NULL, says);
+        refuses(text, text_of(&t, text, row, column, "1 23"), NULL, says);
     }
     for (int c = 0; c < 2; c++) { /* a line that is too short */
         struct table t = table_of(2, true);

@@ -189,6 +189,8 @@ TEST(every_form)
 
 /* ---- wrong at one place ---- */
 
+#define ZEROS "000000000000000000000000000000000000000000000000000000000000" /* 60 of them */
+
 static const struct {
     enum form form;
     const char *old, *new, *says;
@@ -223,6 +225,9 @@ static const struct {
     {APPENDED, "offset=\"0\"", "offset=\"1000000\"",
      "'Points' has the offset '1000000'; allowed: 0 to"},
     {APPENDED, "offset=\"0\"", "offset=\"-1\"", "'Points' has the offset '-1'; allowed: 0 to"},
+    /* longer than any word, and as long as one may be */
+    {APPENDED, "offset=\"0\"", "offset=\"" ZEROS "0000\"", "'Points' has the offset ''"},
+    {APPENDED, "offset=\"0\"", "offset=\"-" ZEROS "01\"", "'Points' has the offset '-0"},
     {APPENDED, "offset=\"0\"", "offset=\"4\"", "bytes; its points need 216"},
     {APPENDED, "\n _", "\n ", "AppendedData has no '_'"},
 };
