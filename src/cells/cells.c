@@ -208,6 +208,7 @@ struct cells_left_out cells_left_out(struct cells *cells)
     for (int t = 0; t < cells->method.threads; t++) {
         sum.viscosity += cells->lanes[t].left_out.viscosity;
         sum.slope += cells->lanes[t].left_out.slope;
+        sum.conductivity += cells->lanes[t].left_out.conductivity;
         cells->lanes[t].left_out = (struct cells_left_out){0};
     }
     return sum;

@@ -104,9 +104,10 @@ struct cells_fields {
     double *shift[3], *potential[3], *dm, *dp_shift[3], *de_shift;
 };
 
-/* Particles whose velocity gradient or viscosity was left out by method.still. */
+/* Particles whose velocity gradient or viscosity was left out by method.still, and those whose
+ * conductivity was, as all pressures around are nearly the same. */
 struct cells_left_out {
-    uint64_t slope, viscosity;
+    uint64_t slope, viscosity, conductivity;
 };
 
 struct cells;

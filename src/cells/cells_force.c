@@ -148,6 +148,7 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
 struct totals {
     double F[3], de, div_v, signal, pace;
     double gained[8]; /* by shifting: momentum, energy, mass; what is made of a constant */
+    bool conducts;    /* heat is conducted in some pair */
 };
 
 /* Signal speeds of pairs within max(h_i, h_j), the largest of each lane, and how many there are. */
@@ -333,7 +334,7 @@ static bool add_part(struct cells *cells, const struct pairs *pairs, int64_t *in
     (method->formulation == FORMULATION_VANILLA_ICE ? add_vanilla_ice : add_lagrangian)(
         method->box.dim, method->energy, pairs, &pressure, totals, inside);
     if (method->shift) cells_exchange(cells, pairs, totals->gained);
-    if (cells_conduct(method)) totals->de += cells_conduction(cells, pairs);
+    if (cells_conduct(method)) totals->conducts |= cells_conduction(cells, pairs, &totals->de);
     if (method->div_v) totals->div_v += cells_divergence(cells, pairs);
     return viscous;
 }
@@ -424,6 +425,7 @@ static void force_pass(struct cells *cells, const struct cells_fields *fields, s
     }
     if (fields->local) fields->near_pace[i] = totals.pace;
     if (!viscous) lanes->left_out.viscosity++;
+    if (cells_conduct(&cells->method) && !totals.conducts) lanes->left_out.conductivity++;
     for (int a = 0; a < cells->method.box.dim; a++) fields->F[a][i] = totals.F[a];
     fields->de[i] = totals.de;
     if (cells->method.shift) {

@@ -68,6 +68,7 @@ static enum status forces(struct simulation *simulation, double *rate, struct er
     const struct cells_left_out left_out = cells_left_out(workspace->cells);
     simulation->cost.without_viscosity += left_out.viscosity;
     simulation->cost.without_slope += left_out.slope;
+    simulation->cost.without_conductivity += left_out.conductivity;
     for (ptrdiff_t first = 0; simulation->plan.alpha && first < a->n; first += BATCH_MAX)
         state_dalpha(a, first, workspace_batch(a, first), &simulation->scheme);
     sleep_balance(simulation);

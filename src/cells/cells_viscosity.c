@@ -222,7 +222,7 @@ CLONES static bool any_shock(const struct pairs *pairs)
     const double own_P = *pairs_own(pairs, RECORD_PRESSURE);
     int any = 0;
 #pragma omp simd reduction(| : any)
-    for (int k = 0; k < pairs->count; k++) any |= pair_shocked(own_P, P[k]);
+    for (int k = 0; k < pairs->neighbours; k++) any |= pair_shocked(own_P, P[k]);
     return any;
 }
 
@@ -262,11 +262,12 @@ CLONES static double conducted(int dim, double alpha_u, double alpha_s, const st
     return lanes_sum(s, count);
 }
 
-double cells_conduction(const struct cells *cells, const struct pairs *pairs)
+bool cells_conduction(const struct cells *cells, const struct pairs *pairs, double *gained)
 {
     const struct cells_method *method = &cells->method;
-    if (!(method->conductivity > 0) && !any_shock(pairs)) return 0;
-    return conducted(method->box.dim, method->conductivity, method->shock_conductivity, pairs);
+    if (!(method->conductivity > 0) && !any_shock(pairs)) return false;
+    *gained += conducted(method->box.dim, method->conductivity, method->shock_conductivity, pairs);
+    return true;
 }
 
 ALWAYS_INLINE void approaches_in(int dim, const struct pairs *pairs, double *restrict found)

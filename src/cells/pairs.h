@@ -48,8 +48,8 @@ void cells_close(const struct cells *cells, const struct pairs *pairs);
  * energy, mass; then what closed gradients still make of a constant. */
 void cells_exchange(const struct cells *cells, const struct pairs *pairs, double *gained);
 
-/* Heat that is conducted to the particle. */
-double cells_conduction(const struct cells *cells, const struct pairs *pairs);
+/* Adds to gained the heat that is conducted to the particle. False where no pair conducts any. */
+bool cells_conduction(const struct cells *cells, const struct pairs *pairs, double *gained);
 
 /* sum_j V_j v_ij . G, which is div v of CONVENTIONS with the pair gradient. */
 double cells_divergence(const struct cells *cells, const struct pairs *pairs);

@@ -45,9 +45,9 @@ struct simulation_cost {
     /* particles whose moment matrix could not be used (CONVENTIONS eq. 4.7), summed over the
      * evaluations, and the most of one: all their pairs used the standard gradient */
     uint64_t fallen_back, fallen_back_most;
-    /* particles whose velocity gradients were left out and whose viscosity, as they vanish; summed
-     * over the evaluations */
-    uint64_t without_slope, without_viscosity;
+    /* particles whose velocity gradients, viscosity and conductivity were left out, as they vanish;
+     * summed over the evaluations */
+    uint64_t without_slope, without_viscosity, without_conductivity;
 };
 
 /* The state, for reading: n values each, sorted by position where dim = 1; positions wrapped into

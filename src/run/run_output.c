@@ -127,13 +127,14 @@ static json_t *cost_json(const struct run_result *result)
 {
     const struct simulation_cost *cost = &result->cost;
     return json_pack(
-        "{s:o, s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:I}", "wall_s", result_number(cost->wall_s),
+        "{s:o, s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I}", "wall_s", result_number(cost->wall_s),
         "cpu_s", result_number(cost->cpu_s), "steps", (json_int_t)cost->steps, "particle_updates",
         (json_int_t)cost->particle_updates, "pair_interactions",
         (json_int_t)cost->pair_interactions, "skipped_particle_updates",
         (json_int_t)cost->skipped_particle_updates, "without_slope",
         (json_int_t)cost->without_slope, "without_viscosity", (json_int_t)cost->without_viscosity,
-        "peak_rss_bytes", (json_int_t)result->peak_rss);
+        "without_conductivity", (json_int_t)cost->without_conductivity, "peak_rss_bytes",
+        (json_int_t)result->peak_rss);
 }
 
 /* At the end; most: of one evaluation. */

@@ -475,7 +475,7 @@ static void forget(json_t *document)
 {
     static const char *const counts[] = {
         "steps",         "particle_updates",  "pair_interactions", "skipped_particle_updates",
-        "without_slope", "without_viscosity", "peak_rss_bytes"};
+        "without_slope", "without_viscosity", "without_conductivity", "peak_rss_bytes"};
     json_t *cost = json_object_get(document, "cost");
     json_object_set_new(document, "plan", json_array());
     json_object_del(document, "estimate");

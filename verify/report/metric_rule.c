@@ -36,6 +36,7 @@ static const struct metric_rule rules[] = {
     {"", "skipped_particle_updates", OUT},
     {"", "without_slope", OUT},
     {"", "without_viscosity", OUT},
+    {"", "without_conductivity", OUT},
     /* words */
     {"faults", "status", 0, READING_STATUS, 0, 0},
     {"faults", "*", OUT},

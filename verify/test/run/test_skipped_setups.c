@@ -266,16 +266,25 @@ TEST(test_conduction)
     for (int k = 0; k < 6; k++) {
         const int dim = 2 + k % 2;
         struct setup setup = draw_setup(dim, PULSE, 1, false);
-        const double most = draw(0.21, 0.3);
-        for (size_t i = 0; i < setup.n; i++) u[i] = 1 + draw(-most, most);
+        const double hot = draw(2.5, 4);
+        for (size_t i = 0; i < setup.n; i++)
+            u[i] = (draw(0, 1) < 0.03 ? hot : 1) * (1 + draw(-0.05, 0.05));
         setup.scheme = keyed_scheme(dim, "");
         setup.scheme.eta = 2.2;
         run(&setup, false, &plain);
         setup.scheme.shock_conductivity = 1;
         run(&setup, false, &skipping);
         assert_true(memcmp(plain.fields, skipping.fields, sizeof plain.fields) != 0);
+        const double updates = (double)skipping.cost.particle_updates;
+        near_inside((double)skipping.cost.without_conductivity / updates, 0.05, 0.995);
         setup.scheme.alpha_u = 1e-300;
         run(&setup, false, &plain);
         assert_memory_equal(plain.fields, skipping.fields, sizeof plain.fields);
+        assert_int_equal(plain.cost.without_conductivity, 0);
+        /* no pressure is 1.5 times another one */
+        setup.scheme.alpha_u = 0;
+        for (size_t i = 0; i < setup.n; i++) u[i] = 1 + draw(-0.1, 0.1);
+        run(&setup, false, &skipping);
+        assert_true(skipping.cost.without_conductivity >= skipping.cost.particle_updates);
     }
 }
