@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Runs on their way: what they conserve, how they break down, snapshots and checkpoints that change
- * nothing, amplitudes that grow. */
+ * Runs on their way: what they conserve, how they break down, snapshots in time, checkpoints that
+ * change nothing, amplitudes that grow. (That snapshots change nothing: snapshots.py.) */
 #include "test.h"
 
 #include <unistd.h>
@@ -92,49 +92,6 @@ static size_t text_of(const char *path, char *text, size_t most)
     const size_t n = fread(text, 1, most, file);
     fclose(file);
     return n;
-}
-
-/* As many as there are; each is what a run to its time leaves, and the run itself is as without. */
-TEST(snapshots_change_nothing)
-{
-    static char here[1 << 16], there[1 << 16];
-    char path[64], alone[64];
-    struct snapshots snapshots = {.path = path, .every = 0.025};
-    struct run run = keyed_run("sod", "n=60 t_end=0.1 energy=internal");
-    struct error error = {0};
-    snprintf(path, sizeof path, "%s/s.csv", folder);
-    snprintf(alone, sizeof alone, "%s/alone.csv", folder);
-    struct run_result usual = keyed_result(&run);
-    run.asked.snapshots = &snapshots;
-    struct run_result with = keyed_result(&run);
-    assert_int_equal(snapshots.trouble.status, STATUS_OK);
-    assert_true(with.cost.steps == usual.cost.steps && with.energy == usual.energy);
-    for (size_t i = 0; i < usual.snapshot.n; i++)
-        assert_true(with.snapshot.x[0][i] == usual.snapshot.x[0][i] &&
-                    with.snapshot.u[i] == usual.snapshot.u[i]);
-    run_free(&with);
-    run_free(&usual);
-    static const char *const ends[] = {"t_end=0", "t_end=0.025", "t_end=0.05", "t_end=0.075"};
-    for (size_t k = 0; k < 5; k++) {
-        char *file = snapshots_path(&snapshots, k), words[64];
-        const size_t n = text_of(file, here, sizeof here);
-        unlink(file);
-        free(file);
-        assert_true((n > 0) == (k < 4));
-        if (k == 4) break;
-        snprintf(words, sizeof words, "n=60 energy=internal %s", ends[k]);
-        const struct run shorter = keyed_run("sod", words);
-        struct run_result result = keyed_result(&shorter);
-        assert_int_equal(run_write_snapshot(&result, alone, &error), STATUS_OK);
-        run_free(&result);
-        const size_t lines = text_of(alone, there, sizeof there);
-        unlink(alone);
-        assert_true(n > 1000 && lines > 1000);
-        if (k < 2) { /* the steps to the first are those of the run that ends there */
-            assert_int_equal(n, lines);
-            assert_memory_equal(here, there, n);
-        }
-    }
 }
 
 /* Blocks of local steps do not go over the time of a snapshot. */
