@@ -6,7 +6,6 @@
 
 #include "check.h"
 #include "description.h"
-#include "hydro_cloud.h"
 #include "hydro_setup.h"
 #include "worst.h"
 
@@ -15,14 +14,14 @@ enum corruption { NONE, ONE_FORCE, ONE_HEAT, TURNED, OTHER_KERNEL };
 
 struct balance_subject {
     enum corruption corruption;
-    void (*state)(struct hydro_cloud *cloud, int dim, size_t side);
+    void (*state)(struct hydro_state *cloud, int dim, size_t side);
     int dim;
     enum boundary boundary;
     struct scheme scheme;
 };
 
 /* More than half of the particles in a plane, with nothing near it. */
-static void planes(struct hydro_cloud *cloud, int dim, size_t side)
+static void planes(struct hydro_state *cloud, int dim, size_t side)
 {
     hydro_cloud_sheared(cloud, dim, side);
     for (size_t i = 0; i < cloud->n; i++) {
@@ -148,12 +147,12 @@ static void measure(struct check_run *run, const void *subject)
 {
     const struct balance_subject *given = subject;
     const struct balance_subject s = given->corruption ? of_mutant(given) : *given;
-    static struct hydro_cloud cloud;
+    static struct hydro_state cloud;
     struct simulation *simulation;
     struct error error = {0};
-    char where[CLOUD_TEXT];
+    char where[HYDRO_TEXT];
     s.state(&cloud, s.dim, s.dim == 2 ? 9 : 6);
-    struct setup setup = hydro_cloud_setup(&cloud, &s.scheme);
+    struct setup setup = hydro_setup(&cloud, &s.scheme);
     for (int a = 0; a < s.dim; a++) setup.boundary[a] = s.boundary;
     hydro_cloud_describe(&s.scheme, s.dim, where);
     if (simulation_create(&setup, &simulation, &error)) {
@@ -220,13 +219,13 @@ static void measure_specialised(struct check_run *run, const void *subject)
 {
     const struct balance_subject *given = subject;
     const struct balance_subject s = given->corruption ? of_mutant(given) : *given;
-    static struct hydro_cloud cloud;
+    static struct hydro_state cloud;
     struct simulation *simulation[2] = {NULL, NULL};
     struct rates rates[2];
     struct error error = {0};
-    char where[CLOUD_TEXT];
+    char where[HYDRO_TEXT];
     s.state(&cloud, s.dim, s.dim == 2 ? 9 : 6);
-    struct setup setup = hydro_cloud_setup(&cloud, &s.scheme);
+    struct setup setup = hydro_setup(&cloud, &s.scheme);
     hydro_cloud_describe(&s.scheme, s.dim, where);
     enum status status = simulation_create(&setup, &simulation[0], &error);
     setup.generic = true;

@@ -8,13 +8,12 @@
 #include <stdio.h>
 
 #include "check.h"
-#include "hydro_cloud.h"
 #include "hydro_setup.h"
 #include "integrator.h"
 #include "oracle.h"
 #include "worst.h"
 
-typedef void place(struct hydro_cloud *cloud);
+typedef void place(struct hydro_state *cloud);
 
 struct hostile_subject {
     void (*spoil)(struct setup *setup);
@@ -27,14 +26,14 @@ struct hostile_subject {
 
 /* --- places ----------------------------------------------------------------------------------- */
 
-static void in_one_place(struct hydro_cloud *cloud)
+static void in_one_place(struct hydro_state *cloud)
 {
     for (int a = 0; a < cloud->dim; a++) cloud->x[a][5] = cloud->x[a][2];
     cloud->m[5] = cloud->m[2]; /* the lighter one may have no h */
 }
 
 /* Pressed towards the middle of the box; all from `first` on. */
-static void press(struct hydro_cloud *cloud, size_t first, double factor)
+static void press(struct hydro_state *cloud, size_t first, double factor)
 {
     for (int a = 0; a < cloud->dim; a++) {
         const double middle = 0.5 * (cloud->lo[a] + cloud->hi[a]);
@@ -43,25 +42,25 @@ static void press(struct hydro_cloud *cloud, size_t first, double factor)
     }
 }
 
-static void in_one_cell(struct hydro_cloud *cloud)
+static void in_one_cell(struct hydro_state *cloud)
 {
     press(cloud, 0, 1e-3);
 }
 
-static void one_alone(struct hydro_cloud *cloud)
+static void one_alone(struct hydro_state *cloud)
 {
     press(cloud, 0, 1e-3);
     cloud->x[0][3] += 0.1; /* the oracle's box is periodic: half of it is out of reach */
 }
 
-static void contrast(struct hydro_cloud *cloud)
+static void contrast(struct hydro_state *cloud)
 {
     const size_t first = 3 * cloud->n / 4;
     press(cloud, first, pow(1e-6, 1. / cloud->dim));
     for (size_t i = first; i < cloud->n; i++) cloud->u[i] *= 1e-6; /* else it explodes at once */
 }
 
-static void in_a_plane(struct hydro_cloud *cloud)
+static void in_a_plane(struct hydro_state *cloud)
 {
     const double length = cloud->hi[0] - cloud->lo[0];
     for (size_t i = 0; i < cloud->n; i++) {
@@ -70,7 +69,7 @@ static void in_a_plane(struct hydro_cloud *cloud)
     }
 }
 
-static void far_off(struct hydro_cloud *cloud)
+static void far_off(struct hydro_state *cloud)
 {
     for (int a = 0; a < cloud->dim; a++) {
         cloud->lo[a] += 1e8, cloud->hi[a] += 1e8;
@@ -200,16 +199,16 @@ static void judge_run(struct check_run *run, const struct simulation *simulation
 
 static void measure(struct check_run *run, const void *subject)
 {
-    static struct hydro_cloud cloud;
+    static struct hydro_state cloud;
     struct hostile_subject s = *(const struct hostile_subject *)subject;
     struct oracle oracle;
     struct simulation *simulation = NULL;
     struct error error = {0};
-    char where[CLOUD_TEXT + 60], scheme_text[CLOUD_TEXT];
+    char where[HYDRO_TEXT + 60], scheme_text[HYDRO_TEXT];
     const struct scheme scheme = scheme_of(s.dim, s.scheme);
     hydro_cloud_sheared(&cloud, s.dim, s.dim == 2 ? 8 : 6);
     s.place(&cloud);
-    struct setup setup = hydro_cloud_setup(&cloud, &scheme);
+    struct setup setup = hydro_setup(&cloud, &scheme);
     for (int a = 0; a < s.dim; a++) setup.boundary[a] = s.boundary;
     hydro_cloud_describe(&scheme, s.dim, scheme_text);
     snprintf(where, sizeof where, "%s, %s", s.name, scheme_text);

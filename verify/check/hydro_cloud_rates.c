@@ -5,7 +5,6 @@
  * one with every other in 2D, and all of those in 3D. */
 #include "check.h"
 #include "hydro_against.h"
-#include "hydro_cloud.h"
 #include "hydro_setup.h"
 
 /* Boxes of three to four widths in 2D; in 3D hardly more than two. */
@@ -107,11 +106,11 @@ static void measure(struct check_run *run, const void *subject)
 {
     const struct cloud_subject *given = subject;
     const struct cloud_subject s = given->fault.size ? of_mutant(given) : *given;
-    static struct hydro_cloud cloud;
+    static struct hydro_state cloud;
     hydro_cloud_sheared(&cloud, s.dim, side_of(s.dim));
-    char where[CLOUD_TEXT];
+    char where[HYDRO_TEXT];
     hydro_cloud_describe(&s.scheme, s.dim, where);
-    hydro_against_rates(run, hydro_cloud_setup(&cloud, &s.scheme), &s.fault, where);
+    hydro_against_rates(run, hydro_setup(&cloud, &s.scheme), &s.fault, where);
 }
 
 /* --- mutants ---------------------------------------------------------------------------------- */

@@ -3,7 +3,6 @@
  * box, against the oracle: every integrator, with the choices that its steps carry along. */
 #include "check.h"
 #include "hydro_against.h"
-#include "hydro_cloud.h"
 #include "hydro_setup.h"
 #include "integrator.h"
 
@@ -54,7 +53,7 @@ static void measure(struct check_run *run, const void *subject)
 {
     const struct cloud_steps_subject *given = subject;
     struct cloud_steps_subject s = *given;
-    static struct hydro_cloud cloud;
+    static struct hydro_state cloud;
     if (!given->dim) {
         s.dim = 2;
         s.scheme =
@@ -62,9 +61,9 @@ static void measure(struct check_run *run, const void *subject)
     }
     hydro_cloud_sheared(&cloud, s.dim, s.dim == 2 ? 8 : 6);
     for (size_t i = 0; i < cloud.n; i++) cloud.v[0][i] -= 1.1; /* through the end of the box */
-    char where[CLOUD_TEXT];
+    char where[HYDRO_TEXT];
     hydro_cloud_describe(&s.scheme, s.dim, where);
-    hydro_against_steps(run, hydro_cloud_setup(&cloud, &s.scheme), &s.fault, STEPS + 0.3, where);
+    hydro_against_steps(run, hydro_setup(&cloud, &s.scheme), &s.fault, STEPS + 0.3, where);
 }
 
 static void end_taken_for_evaluated(struct setup *setup)

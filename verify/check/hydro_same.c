@@ -210,7 +210,7 @@ static void measure_skip(struct check_run *run, const void *subject)
         struct scheme scheme = hydro_scheme();
         hydro_tube(&state, c == 7 ? 451 : 900);
         if (c & 1)
-            for (size_t i = 0; i < state.n; i++) state.v[i] = 0.37; /* sleeping gas drifts */
+            for (size_t i = 0; i < state.n; i++) state.v[0][i] = 0.37; /* sleeping gas drifts */
         if (c & 2) {
             hydro_set_kernel(&scheme, "quadratic_spline");
             scheme.integrator = hydro_integrator("predicted_midpoint");

@@ -1,16 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * States and schemes that the checks of group hydro run the solver on. */
+ * States and schemes that the checks of groups hydro and clouds run the solver on. */
 #pragma once
 
 #include "simulation.h"
 
-enum { HYDRO_MAX = 2200, HYDRO_TEXT = 160 };
+enum { HYDRO_MAX = 2600, HYDRO_TEXT = 240 };
 
 struct hydro_state {
+    int dim;
     size_t n;
-    double lo, hi, gamma;
-    double x[HYDRO_MAX], v[HYDRO_MAX], m[HYDRO_MAX], u[HYDRO_MAX];
+    double lo[3], hi[3], gamma;
+    double x[3][HYDRO_MAX], v[3][HYDRO_MAX], m[HYDRO_MAX], u[HYDRO_MAX];
 };
+
+/* A setup of this state: the arrays stay the state's; threads 1, no skips. */
+struct setup hydro_setup(const struct hydro_state *state, const struct scheme *scheme);
+/* By name. */
+const struct integrator *hydro_integrator(const char *name);
+/* Sets the kernel and its default width; the name is a built-in one. */
+void hydro_set_kernel(struct scheme *scheme, const char *name);
+
+/* ---- in 1D ---- */
 
 /* Unequal masses and spacings (8:1), random velocities and energies; the order is not that of x,
  * the box neither symmetric nor of length 2, and particles sit close to its ends. */
@@ -27,18 +37,37 @@ void hydro_wave(struct hydro_state *state, size_t n);
 /* A tube 1 0 1 | 0.125 0 0.1 with its mirror image, on [-1, 1]. */
 void hydro_tube(struct hydro_state *state, size_t n);
 
-/* A setup of this state: the arrays stay the state's; threads 1, no skips. */
-struct setup hydro_setup(const struct hydro_state *state, const struct scheme *scheme);
-
 /* cubic_spline standard vanilla_ice mass, constant viscosity, modified leapfrog, h to 1e-14. */
 struct scheme hydro_scheme(void);
-/* Sets the kernel and its default width; the name is a built-in one. */
-void hydro_set_kernel(struct scheme *scheme, const char *name);
 /* Every gradient with every formulation, volume element, energy and viscosity: scheme c of so many;
  * the rest of the scheme stays. Some exclude each other, see scheme_check. */
 size_t hydro_combinations(void);
 void hydro_combine(struct scheme *scheme, size_t c);
-/* By name. */
-const struct integrator *hydro_integrator(const char *name);
 /* "cubic_spline 2 ia lagrangian ...": what tells a scheme from hydro_scheme(). */
 void hydro_describe(const struct scheme *scheme, char text[HYDRO_TEXT]);
+
+/* ---- in 2D and 3D ---- */
+
+/* side^dim particles on a lattice whose spacing varies by a factor of 5/3 and whose points are
+ * displaced at random; unequal masses, random velocities and energies, in random order; the sides
+ * of the box differ, and none begins at 0. */
+void hydro_cloud_disordered(struct hydro_state *state, int dim, size_t side);
+
+/* The same with velocities that are mostly smooth, shear and compression: limiters and projectors
+ * are neither 0 nor 1. */
+void hydro_cloud_sheared(struct hydro_state *state, int dim, size_t side);
+
+/* cubic_spline standard vanilla_ice mass, constant viscosity, mean width, modified leapfrog, h to
+ * 1e-15, with parameters that differ from all defaults. */
+struct scheme hydro_cloud_scheme(int dim);
+
+/* Choices: the gradient, formulation, volume element and width of a pair; those of its viscosity
+ * and energy. Scheme c of so many; the rest of the scheme stays. Some exclude each other
+ * (scheme_check). */
+size_t hydro_cloud_geometries(void);
+void hydro_cloud_geometry(struct scheme *scheme, size_t c);
+size_t hydro_cloud_physics(void);
+void hydro_cloud_physic(struct scheme *scheme, size_t c);
+
+/* What tells a scheme from hydro_cloud_scheme(). */
+void hydro_cloud_describe(const struct scheme *scheme, int dim, char text[HYDRO_TEXT]);

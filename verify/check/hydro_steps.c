@@ -74,14 +74,14 @@ static void prepare(struct hydro_state *state, enum start start)
     else
         hydro_disordered(state, PARTICLES);
     for (size_t i = 0; i < state->n; i++) {
-        state->v[i] = 0.3 * state->v[i] - (state->x[i] < state->lo + 0.1 ? 1.5 : 0.2);
-        if (start == PASSING) state->v[i] *= 0.01, state->u[i] *= 1e-3;
+        state->v[0][i] = 0.3 * state->v[0][i] - (state->x[0][i] < state->lo[0] + 0.1 ? 1.5 : 0.2);
+        if (start == PASSING) state->v[0][i] *= 0.01, state->u[i] *= 1e-3;
     }
     if (start != PASSING) return;
-    state->x[0] = state->lo + 5e-4;
-    state->x[PARTICLES - 1] = state->hi - 5e-4;
-    state->v[0] = -1;
-    state->v[PARTICLES - 1] = 1;
+    state->x[0][0] = state->lo[0] + 5e-4;
+    state->x[0][PARTICLES - 1] = state->hi[0] - 5e-4;
+    state->v[0][0] = -1;
+    state->v[0][PARTICLES - 1] = 1;
 }
 
 static void measure(struct check_run *run, const void *subject)

@@ -26,11 +26,11 @@ enum component { DISPLACEMENT, VELOCITY, HEAT };
 static void set_wave(struct hydro_state *state, const struct stability *lattice, double kappa,
                      enum component component, double amplitude)
 {
-    *state = (struct hydro_state){.n = PARTICLES, .hi = PARTICLES, .gamma = 1.4};
+    *state = (struct hydro_state){.dim = 1, .n = PARTICLES, .hi = {PARTICLES}, .gamma = 1.4};
     for (int i = 0; i < PARTICLES; i++) {
         const double wave = amplitude * cos(kappa * i);
-        state->x[i] = i + 0.5 + (component == DISPLACEMENT ? wave : 0);
-        state->v[i] = component == VELOCITY ? wave : 0;
+        state->x[0][i] = i + 0.5 + (component == DISPLACEMENT ? wave : 0);
+        state->v[0][i] = component == VELOCITY ? wave : 0;
         state->m[i] = 1;
         state->u[i] = lattice->u + (component == HEAT ? amplitude * sin(kappa * i) : 0);
     }

@@ -29,9 +29,9 @@ static struct scheme scheme_of(const char *kernel, double eta)
 /* Pairs at one place, two spacings apart. */
 static void coincident(struct hydro_state *state)
 {
-    *state = (struct hydro_state){.n = PARTICLES, .hi = PARTICLES, .gamma = 1.4};
+    *state = (struct hydro_state){.dim = 1, .n = PARTICLES, .hi = {PARTICLES}, .gamma = 1.4};
     for (int i = 0; i < PARTICLES; i++) {
-        state->x[i] = i - i % 2 + 1;
+        state->x[0][i] = i - i % 2 + 1;
         state->m[i] = 1;
         state->u[i] = 1;
     }
@@ -70,9 +70,9 @@ static double steps_to(double light)
     struct rates rates;
     struct simulation_cost cost;
     struct error error;
-    state = (struct hydro_state){.n = PARTICLES, .hi = PARTICLES, .gamma = 1.4};
+    state = (struct hydro_state){.dim = 1, .n = PARTICLES, .hi = {PARTICLES}, .gamma = 1.4};
     for (int i = 0; i < PARTICLES; i++) {
-        state.x[i] = i + 0.5;
+        state.x[0][i] = i + 0.5;
         state.m[i] = i < PARTICLES / 2 ? 1 : light;
         state.u[i] = i < PARTICLES / 2 || light >= 1 ? 1 : 1e-6;
     }
@@ -105,9 +105,9 @@ static double lost_push(void)
         scheme.integrator = hydro_integrator("predicted_midpoint");
         scheme.cfl = 0.5;
         scheme.h_method = method ? H_PREDICTED : H_NEWTON;
-        state = (struct hydro_state){.n = DENSE + THIN, .hi = 4, .gamma = 5. / 3};
+        state = (struct hydro_state){.dim = 1, .n = DENSE + THIN, .hi = {4}, .gamma = 5. / 3};
         for (int i = 0; i < DENSE + THIN; i++) {
-            state.x[i] = i < DENSE ? 2 * (i + 0.5) / DENSE : 2 + 0.5 * (i - DENSE + 0.5);
+            state.x[0][i] = i < DENSE ? 2 * (i + 0.5) / DENSE : 2 + 0.5 * (i - DENSE + 0.5);
             state.m[i] = 2. / DENSE;
             state.u[i] = i < DENSE ? 0.1 : 1e-4;
         }

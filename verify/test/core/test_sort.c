@@ -94,7 +94,8 @@ TEST(test_shuffled_particles)
         number[i - 1] = number[j], number[j] = t;
     }
     for (size_t i = 0; i < plain.n; i++) {
-        shuffled.x[i] = plain.x[number[i]], shuffled.v[i] = plain.v[number[i]];
+        shuffled.x[0][i] = plain.x[0][number[i]];
+        shuffled.v[0][i] = plain.v[0][number[i]];
         shuffled.m[i] = plain.m[number[i]], shuffled.u[i] = plain.u[number[i]];
     }
     const struct setup setups[] = {hydro_setup(&plain, &scheme), hydro_setup(&shuffled, &scheme)};
