@@ -21,19 +21,20 @@ struct curve {
 /* "kernel=cubic_spline gradient=ia" is "cubic spline, ia". */
 static void short_name(char name[NAME], const char *scheme)
 {
-    size_t used = 0;
-    for (const char *word = scheme; *word && used + 3 < NAME;) {
+    struct buffer text = {0};
+    for (const char *word = scheme; *word;) {
         const size_t length = strcspn(word, " ");
         const char *value = memchr(word, '=', length);
         const char *from = value ? value + 1 : word;
-        if (used && value) name[used++] = ',';
-        if (used) name[used++] = ' ';
-        for (; from < word + length && used + 1 < NAME; from++)
-            name[used++] = (char)(*from == '_' ? ' ' : *from);
+        if (text.size) buffer_add(&text, value ? ", " : " ");
+        buffer_add_bytes(&text, from, (size_t)(word + length - from));
         word += length;
         word += strspn(word, " ");
     }
-    name[used] = '\0';
+    snprintf(name, NAME, "%s", text.size ? text.data : "");
+    for (; *name; name++)
+        if (*name == '_') *name = ' ';
+    buffer_free(&text);
 }
 
 static int by_merit(const void *a, const void *b)

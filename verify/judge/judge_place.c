@@ -29,16 +29,16 @@ static double stored_gamma(const struct snapshot_file *file, double *scatter)
 {
     const double *P = file->column[SNAPSHOT_P], *u = file->column[SNAPSHOT_U],
                  *rho = file->column[SNAPSHOT_RHO];
-    double sum = 0, count = 0;
-    *scatter = 0;
+    double sum = 0, count = 0, least = INFINITY, most = 0;
     if (!P || !u) return (double)NAN;
-    for (size_t i = 0; i < file->gas; i++)
-        if (u[i] > 0 && P[i] > 0) sum += 1 + P[i] / (rho[i] * u[i]), count++;
-    const double gamma = sum / count;
-    for (size_t i = 0; i < file->gas; i++)
-        if (u[i] > 0 && P[i] > 0)
-            *scatter = fmax(*scatter, fabs(1 + P[i] / (rho[i] * u[i]) - gamma));
-    return gamma;
+    for (size_t i = 0; i < file->gas; i++) {
+        const double gamma = 1 + P[i] / (rho[i] * u[i]);
+        if (!(u[i] > 0 && P[i] > 0)) continue;
+        sum += gamma, count++;
+        least = fmin(least, gamma), most = fmax(most, gamma);
+    }
+    *scatter = fmax(most - sum / count, sum / count - least);
+    return sum / count;
 }
 
 static enum status take_gamma(const struct judge_request *request, struct judged *judged,

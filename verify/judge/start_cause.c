@@ -166,7 +166,7 @@ static double exact_density(const struct start_gas *gas, size_t i, double factor
 }
 static double law(const struct start_gas *gas, size_t i, double factor)
 {
-    return factor * (gas->problem->gamma - 1) * gas->snapshot->rho[i] * gas->snapshot->u[i];
+    return factor * start_pressure(gas, i);
 }
 
 static const struct {

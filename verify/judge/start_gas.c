@@ -20,6 +20,11 @@ double start_mass(const struct start_gas *gas, double rho)
     return gas->volume > 0 ? rho * gas->volume : gas->mass;
 }
 
+double start_pressure(const struct start_gas *gas, size_t i)
+{
+    return (gas->problem->gamma - 1) * gas->snapshot->rho[i] * gas->snapshot->u[i];
+}
+
 double start_off(const struct start_gas *gas, enum start_field field, size_t i,
                  const struct problem_state *exact)
 {
@@ -35,6 +40,6 @@ double start_off(const struct start_gas *gas, enum start_field field, size_t i,
     case START_MASS:
         return fabs(s->m[i] / start_mass(gas, exact->rho) - 1);
     default:
-        return start_relative(s->P[i], (gas->problem->gamma - 1) * s->rho[i] * s->u[i]);
+        return start_relative(s->P[i], start_pressure(gas, i));
     }
 }

@@ -31,6 +31,9 @@ double start_relative(double value, double exact);
 /* The mass that a particle should have in gas so dense. */
 double start_mass(const struct start_gas *gas, double rho);
 
+/* What its own density and energy make of its pressure. */
+double start_pressure(const struct start_gas *gas, size_t i);
+
 /* How far the field of particle i is from that state, as judge_start.h has it. */
 double start_off(const struct start_gas *gas, enum start_field field, size_t i,
                  const struct problem_state *exact);

@@ -78,8 +78,10 @@ static enum status compute_kernel(const struct report_piece *piece, json_t **doc
     return status;
 }
 
-static enum status compute_league(json_t **document, struct error *error)
+static enum status compute_league(const struct report_piece *piece, json_t **document,
+                                  struct error *error)
 {
+    (void)piece;
     struct league_row *rows;
     size_t count;
     const enum status status = league_measure(&rows, &count, error);
@@ -168,24 +170,15 @@ static enum status compute_autopsy(const struct report_piece *piece, json_t **do
 
 static enum status compute(const void *context, json_t **document, struct error *error)
 {
+    static enum status (*const computes[])(const struct report_piece *, json_t **,
+                                           struct error *) = {
+        [REPORT_RUN] = compute_run,         [REPORT_CHECKS] = compute_checks,
+        [REPORT_KERNEL] = compute_kernel,   [REPORT_LEAGUE] = compute_league,
+        [REPORT_BENCH] = compute_bench,     [REPORT_SKIPS] = compute_skips,
+        [REPORT_AUTOPSY] = compute_autopsy,
+    };
     const struct report_piece *piece = context;
-    switch (piece->kind) {
-    case REPORT_RUN:
-        return compute_run(piece, document, error);
-    case REPORT_CHECKS:
-        return compute_checks(piece, document, error);
-    case REPORT_KERNEL:
-        return compute_kernel(piece, document, error);
-    case REPORT_LEAGUE:
-        return compute_league(document, error);
-    case REPORT_BENCH:
-        return compute_bench(piece, document, error);
-    case REPORT_SKIPS:
-        return compute_skips(piece, document, error);
-    case REPORT_AUTOPSY:
-        return compute_autopsy(piece, document, error);
-    }
-    return STATUS_OK;
+    return computes[piece->kind](piece, document, error);
 }
 
 /* An estimate of the seconds that a piece takes which is not a run. */

@@ -137,8 +137,7 @@ static enum status take_names(struct text_table *table, const char *line, size_t
                              "%.200s: names of columns: allowed: at most %d, of 1 to %zu letters",
                              table->source->path, TABLE_COLUMNS_MAX, sizeof table->names[0] - 1);
         char *name = table->names[table->columns++];
-        memcpy(name, line + at, size);
-        name[size] = '\0';
+        memcpy(name, line + at, size); /* the rest of it is 0 */
         status_clean(name);
         if (text_real(name, &number))
             return error_set(error, STATUS_BAD_INPUT,

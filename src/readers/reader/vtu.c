@@ -250,7 +250,7 @@ static bool take_text(const struct vtk *vtk, const struct array *array, double *
     for (size_t i = 0; i < n; i++) {
         char word[WORD];
         size_t length = 0;
-        while (at < array->end && isspace((unsigned char)*at)) at++;
+        while (isspace((unsigned char)*at)) at++; /* a '<' ends the array */
         while (at < array->end && !isspace((unsigned char)*at) && length + 1 < sizeof word)
             word[length++] = *at++;
         word[length] = '\0';

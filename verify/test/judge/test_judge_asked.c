@@ -351,6 +351,8 @@ TEST(found_ends)
             gas.v[0][2 * side + 1] += rows[k].v * sqrt(1.4 * gas_there->P / gas_there->rho);
             judges(&request, &judged);
             if (is_noted(&judged, "ends") != rows[k].ended) fail_msg("row %zu, %d", k, side);
+            /* the box of a tube that has ends reaches beyond them */
+            assert_int_equal(judged.run.problem.domain.lo[0] < 1, rows[k].ended);
             if (rows[k].ended)
                 noted(&judged, "ends", "open or walls", "the gas at both is undisturbed");
             judge_free(&judged);

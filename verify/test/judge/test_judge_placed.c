@@ -26,6 +26,7 @@ TEST(gammas)
         {0, 0, 1.25, 0, 1.25, "the file has none, but P = (gamma - 1) rho u of its particles"},
         {0, 0, 1.25, 9e-6, 1.25, "the file has none, but P = (gamma - 1) rho u"},
         {0, 0, 1.25, 3e-5, 1.4, "the file has none: the case's"},
+        {0, 0, 1.25, -3e-5, 1.4, "the file has none: the case's"},
         {0, 0, 0, 0, 1.4, "the file has none: the case's"}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct judge_request request = uniform_gas();
