@@ -33,7 +33,7 @@ COMPARE = {"<": ("<=", ">"), ">": (">=", "<"), "<=": ("<", ">="), ">=": (">", "<
 BITS = {"&": "|", "|": "&", "<<": ">>", ">>": "<<", "%": "*"}
 ASSIGN = {"+=": "-=", "-=": "+=", "*=": "/=", "/=": "*=", "&=": "|=", "|=": "&=", "%=": "+="}
 # A leak is the sanitizers' business, text the messages' own.
-DROPPED_BY_NOBODY = re.compile(r"^(\w*free\w*|fclose|closedir|posix_spawn\w*_destroy|json_decref|H5\w+close|h5\.\w*[cC]lose|\(void\))\b|^\(void\)")
+DROPPED_BY_NOBODY = re.compile(r"^(\w*free\w*|fclose|closedir|close_entry|close_dataset|posix_spawn\w*_destroy|json_decref|H5\w+close|h5\.\w*[cC]lose|\(void\))\b|^\(void\)")
 
 
 def refuse(text, code=4):
