@@ -212,11 +212,11 @@ struct codes {
 
 static void codes_free(struct codes *codes)
 {
-    for (size_t k = 0; k < codes->count; k++) {
+    for (size_t k = 0; codes && k < codes->count; k++) {
         code_free(&codes->code[k]);
         free(codes->externals[k]), free(codes->settings[k]);
     }
-    codes->count = 0;
+    free(codes);
 }
 
 static enum status add_code(struct codes *codes, const char *path, const struct options *options,
@@ -251,14 +251,16 @@ static enum status add_code(struct codes *codes, const char *path, const struct 
     return STATUS_OK;
 }
 
-static enum status take_codes(const struct options *options, struct codes *codes,
+static enum status take_codes(const struct options *options, struct codes **codes,
                               struct error *error)
 {
-    char *paths = strdup(options_value(options, "code")), *rest = paths;
-    enum status status =
-        paths ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory for codes");
+    const char *given = options_value(options, "code");
+    char *paths = strdup(given), *rest = paths;
+    enum status status = STATUS_OK;
+    *codes = calloc(1, sizeof **codes);
+    if (!paths || !*codes) status = error_set(error, STATUS_ENVIRONMENT, "no memory for codes");
     for (char *path; !status && (path = strtok_r(rest, "\n", &rest));)
-        status = add_code(codes, path, options, error);
+        status = add_code(*codes, path, options, error);
     free(paths);
     return status;
 }
@@ -266,7 +268,7 @@ static enum status take_codes(const struct options *options, struct codes *codes
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
     struct report *report = NULL;
-    static struct codes codes;
+    struct codes *codes = NULL;
     if (n) return command_usage(options, error, "no argument is known: '%.40s'", arguments[0]);
     const enum report_mode mode = options_value(options, "nightly") ? REPORT_NIGHTLY : REPORT_QUICK;
     if (check_options(options, error)) return error->status;
@@ -274,10 +276,10 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (!options_value(options, "code"))
         status = report_create(mode, &report, error);
     else if (!(status = take_codes(options, &codes, error)))
-        status = report_create_codes(codes.of, codes.count, &report, error);
+        status = report_create_codes(codes->of, codes->count, &report, error);
     if (!status) status = serialise_out(options, report, error);
     report_destroy(report);
-    codes_free(&codes);
+    codes_free(codes);
     return status;
 }
 
