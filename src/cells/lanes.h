@@ -90,8 +90,8 @@ enum lanes_array {
 };
 
 struct lanes {
-    _Alignas(TEAM_APART) double
-        *block; /* LANES_OWN arrays and those of the longest record, stride each */
+    /* LANES_OWN arrays and those of the longest record, stride each */
+    _Alignas(TEAM_APART) double *block;
     ptrdiff_t stride;
     int64_t pairs;
     struct cells_left_out left_out;

@@ -30,7 +30,7 @@ struct request {
     double tolerance;
     struct snapshot_file snapshot; /* what the particles come from, if they do: no columns */
     char widths[200];              /* what was found of its h */
-    char unknown[200];             /* columns of theirs whose names say nothing */
+    char unknown[200];             /* names of their columns that stand for no quantity */
 };
 
 /* ---- input ---- */
@@ -167,7 +167,7 @@ static enum status take_theirs(struct request *r, const char *path, bool toleran
 
 static enum status take_file(struct request *r, int n, char **arguments, struct error *error)
 {
-    char *rest[KEYS_MAX], unknown[200]; /* as ignored are told */
+    char *rest[KEYS_MAX], unknown[200]; /* file.ignored names them, too */
     int left;
     if (n > KEYS_MAX) return error_set(error, STATUS_BAD_INPUT, "rates: %d keys are too many", n);
     enum status status =
@@ -261,8 +261,8 @@ static void print_table(const struct request *r, const struct rate_table *t, siz
     if (matrix[0]) printf("matrices: %s\n", matrix);
 }
 
-/* The verdict in one sentence: of the first quantity that departs, if there is one of the first
- * whose cause is known. */
+/* The verdict in one sentence. It names the first quantity that departs and whose cause is known,
+ * or else the first one that departs. */
 static void print_verdict(const struct rate_check *check, double tolerance)
 {
     const struct rate_comparison *told = NULL;

@@ -167,25 +167,46 @@ static double near_enough(const struct rate_comparison *c, double tolerance)
     return isinf(c->worst) ? tolerance : fmax(tolerance, 1e-3 * c->worst);
 }
 
+/* Names this cause for what it explains better than what was named before. left: what is left of
+ * each column's difference with the cause that is named, INFINITY before the first one; a column
+ * that has a cause all the same keeps it. Where the eta of theirs is open by a part, a difference
+ * as small as that part is explained, too, if nine tenths of it are. */
+static void propose_better(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
+                           const struct rate_table *changed, const double *m, double tolerance,
+                           double open, double left[RATE_COLUMNS], const char *cause)
+{
+    for (size_t k = 0; k < check->count; k++) {
+        struct rate_comparison *c = &check->columns[k], now = *c;
+        if (c->good || (c->cause[0] && isinf(left[k]))) continue;
+        compare(&now, theirs[c->column], changed, m, c->column);
+        const double near = fmax(near_enough(c, tolerance), fmin(open, 0.1 * c->worst));
+        if (!(now.worst <= near && now.worst < left[k])) continue;
+        left[k] = now.worst;
+        snprintf(c->cause, sizeof c->cause, "%s", cause);
+    }
+}
+
+static void leave_all(double left[RATE_COLUMNS])
+{
+    for (int k = 0; k < RATE_COLUMNS; k++) left[k] = INFINITY;
+}
+
+/* Names this cause for what it explains and has none yet. */
 static void propose(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
                     const struct rate_table *changed, const double *m, double tolerance,
                     const char *cause)
 {
-    for (size_t k = 0; k < check->count; k++) {
-        struct rate_comparison *c = &check->columns[k], now = *c;
-        const int column = c->column;
-        if (c->good || c->cause[0]) continue;
-        compare(&now, theirs[column], changed, m, column);
-        if (now.worst <= near_enough(c, tolerance))
-            snprintf(c->cause, sizeof c->cause, "%s", cause);
-    }
+    double left[RATE_COLUMNS];
+    leave_all(left);
+    propose_better(check, theirs, changed, m, tolerance, 0, left, cause);
 }
 
-/* So much of it, other codes leave h open: they find it from neighbours to 1e-4 or so. */
+/* Other codes find h to 1e-4 or so. The eta of their particles may scatter by this part of itself.
+ */
 static const double eta_known = 2e-3;
 
-/* The eta that their widths and densities have in common, and how far it is open relative to
- * itself; ours where these say nothing. */
+/* The eta that their widths and densities have in common; open: the part of itself by which it
+ * scatters. Ours where they have none in common. */
 static double their_eta(const double *const theirs[RATE_COLUMNS], const struct setup *setup,
                         double *open)
 {
@@ -202,29 +223,12 @@ static double their_eta(const double *const theirs[RATE_COLUMNS], const struct s
     return eta;
 }
 
-/* Of all kernels the one that comes nearest; where their eta is open, so is what a kernel must come
- * to, but it must explain nine tenths. left: of each column what the best one so far leaves. */
-static void propose_kernel(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
-                           const struct rate_table *changed, const double *m, double tolerance,
-                           double open, double left[RATE_COLUMNS], const char *cause)
-{
-    for (size_t k = 0; k < check->count; k++) {
-        struct rate_comparison *c = &check->columns[k], now = *c;
-        if (c->good || (c->cause[0] && isinf(left[k]))) continue;
-        compare(&now, theirs[c->column], changed, m, c->column);
-        const double near = fmax(near_enough(c, tolerance), fmin(open, 0.1 * c->worst));
-        if (!(now.worst <= near && now.worst < left[k])) continue;
-        left[k] = now.worst;
-        snprintf(c->cause, sizeof c->cause, "%s", cause);
-    }
-}
-
-/* Another kernel, with our eta or theirs, or that eta alone. */
+/* Another kernel, the one that explains most, with our eta or theirs; or that eta alone. */
 static void propose_kernels(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
                             const struct setup *setup, double tolerance)
 {
     double open = 0, left[RATE_COLUMNS];
-    for (int k = 0; k < RATE_COLUMNS; k++) left[k] = INFINITY;
+    leave_all(left);
     const double found = their_eta(theirs, setup, &open), ours = setup->scheme.eta;
     const bool other = fabs(found - ours) > 1e-6 * ours;
     for (int k = -1; k < (int)kernel_family.n; k++) {
@@ -242,7 +246,7 @@ static void propose_kernels(struct rate_check *check, const double *const theirs
         else
             snprintf(cause, sizeof cause, "kernel: theirs is %s", name);
         if (!rate_table_make(&table, &changed, NULL))
-            propose_kernel(check, theirs, &table, setup->m, tolerance, open, left, cause);
+            propose_better(check, theirs, &table, setup->m, tolerance, open, left, cause);
         rate_table_free(&table);
     }
 }
