@@ -5,6 +5,7 @@
 #include "sedov.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "initial.h"
 #include "problem.h"
@@ -71,29 +72,33 @@ static double weight_of(const struct prepared *p, const struct initial *initial,
     return q < 1 ? (1 - q * q) * (1 - q * q) : 0;
 }
 
-/* In 3D the front is smeared over some four spacings: where that reaches too far beyond the ends of
- * the box, fronts of the images meet, and gas between them is lost. Measured at 8^3 and 9^3, which
- * broke down at t = 0.055; all of 10^3 to 20^3 come to their end. */
+/* The front is smeared over some four spacings: where that reaches too far beyond the ends of the
+ * box, fronts of the images meet, and gas between them is lost. Measured at 8^3 and 9^3, which
+ * broke down at t = 0.055, and at 7^2 to 9^2, where no shock is seen any more; all of 10^3 to 20^3
+ * and of 10^2 to 24^2 come to their end. */
 static enum status check_room(const struct prepared *p, const struct settings *settings,
                               const struct initial *initial, struct error *error)
 {
     const double smeared = 4, t_end = settings_real(settings, SETTING_t_end);
+    const int dim = p->domain.dim;
     double half = (double)INFINITY, volume = 1;
-    if (p->domain.dim < 3) return STATUS_OK;
-    for (int d = 0; d < p->domain.dim; d++) {
+    for (int d = 0; d < dim; d++) {
         half = fmin(half, 0.5 * domain_length(&p->domain, d));
         volume *= domain_length(&p->domain, d);
     }
     const double room = 1.6 * half, shock = t_end > 0 ? sedov_shock(sedov_of(p), t_end) : 0;
-    const double spacing = cbrt(volume / (double)initial->n);
+    const double size = pow(volume, 1. / dim), spacing = size / pow((double)initial->n, 1. / dim);
     if (shock + smeared * spacing <= room * (1 + 1e-6)) return STATUS_OK;
-    /* R grows as t^(2/5) */
-    const double least = smeared * cbrt(volume) / (room - shock),
-                 longest = t_end * pow(fmax(room - smeared * spacing, 0) / shock, 2.5);
+    /* R grows as t^(2/(d + 2)) */
+    const double least = smeared * size / (room - shock),
+                 longest = t_end * pow(fmax(room - smeared * spacing, 0) / shock, 0.5 * dim + 1);
+    char sooner[40] = "";
+    if (longest > 1e-9 * t_end)
+        snprintf(sooner, sizeof sooner, ", or t_end <= %.3g", 0.999 * longest);
     return error_set(error, STATUS_BAD_INPUT,
                      "n=%zu, t_end=%g: so few particles smear the blast so far that it meets its "
-                     "images in the periodic box; allowed: n >= %.0f^3, or t_end <= %.3g",
-                     initial->n, t_end, ceil(least * (1 - 1e-6)), 0.999 * longest);
+                     "images in the periodic box; allowed: n >= %.0f^%d%s",
+                     initial->n, t_end, ceil(least * (1 - 1e-6)), dim, sooner);
 }
 
 static enum status fill(const struct prepared *p, const struct settings *settings,
