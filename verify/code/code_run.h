@@ -13,9 +13,9 @@
 
 /* Options of commands that run codes. */
 #define CODE_OPTION_HELP                                                                           \
-    "another program computes: what that file describes (`sphproof list code_keys`)"
+    "another program computes, which this file describes (`sphproof list code_keys`)"
 #define CODE_WORK_HELP                                                                             \
-    "with --code: keep each run's folder there: initial state, templates, logs, snapshots"
+    "with --code: keep the folder of each run there (initial state, templates, logs, snapshots)"
 
 /* What run_settings.external points to. It may not move while runs use it. */
 struct code_external {

@@ -329,25 +329,24 @@ static const struct command_option own_options[] = {
     {"n", "N1,N2,...", "numbers of particles, at least four distinct ones (default: the case's)"},
     {"plot", "FILE.svg|.png", "draw the shares of the error, and how each falls (needs gnuplot)"},
     {"rates", "SNAPSHOT",
-     "of another code, and further ones behind it: what its particles' positions make of exact "
-     "fields, beside its error; by the operator that the keys name"},
+     "snapshots of another code: the errors that the operator of the keys makes of exact fields at "
+     "their positions, beside their own errors"},
     {"map", "NAME=THEIRS,...", "text: which column is x, vx, m, rho, u, P, h"},
-    {"time", "T", "of the snapshots; else the files'"},
+    {"time", "T", "time of the snapshots (default: the files')"},
     {NULL, NULL, NULL},
 };
 
 const struct command command_autopsy = {
     .name = "autopsy",
     .synopsis = "CASE [KEY=VALUE ...] [--rates SNAPSHOT ...]",
-    .help = "which part of a scheme its order is lost to, on flows without jumps\n"
-            "Each resolution is run with the time step, half and a quarter of it; then the "
-            "acceleration is\nevaluated where every particle has the exact velocity and energy: at "
-            "regular positions, at those\nof the run at its end, at jittered ones, with and "
-            "without viscosity. The error of the velocity is\nshared among the parts, each with "
-            "its own order, and a sentence names the one that costs the order.\n"
-            "Snapshots of another code, one for each number of particles, are read as `sphproof "
-            "judge` does;\nwhat they show are positions and densities, so time step and viscosity "
-            "have no share.",
+    .help = "which part of a scheme its order is lost to, on flows without jumps\nEach resolution "
+            "is run with the usual time step, half of it and a quarter of it. Then "
+            "the\nacceleration is evaluated for particles with exact velocities and energies at "
+            "regular positions,\nat the final positions of the run and at jittered ones, with and "
+            "without viscosity. The error of\nthe velocity is shared among these parts, each with "
+            "its own order, and a sentence names the part\nthat limits the order. Snapshots of "
+            "another code, one for each number of particles, are read as by\n`sphproof judge`. "
+            "They show positions and densities alone: time step and viscosity get no share.",
     .run = run,
     .options = own_options,
     .examples = "sphproof autopsy yee\n"

@@ -140,17 +140,17 @@ static enum status run(const struct options *options, int n, char **arguments, s
 static const struct command_option own_options[] = {
     {"file", "FILE", "the baseline (default: reports/out/baseline.json)"},
     {"accept", NULL, "make these results the baseline"},
-    {"reason", "TEXT", "why, kept in the file with all reasons before"},
+    {"reason", "TEXT", "why; the file keeps all reasons"},
     {NULL, NULL, NULL},
 };
 
 const struct command command_baseline = {
     .name = "baseline",
     .synopsis = "[RESULTS.json] [--accept --reason TEXT]",
-    .help = "figures as they were accepted: shows old, new, exact; changes only with a reason\n\n"
-            "RESULTS.json: any result document (default: reports/out/results.json). Without "
-            "--accept it\nonly compares; exit status 1 if there is a regression, or if less is "
-            "compared than before.",
+    .help = "accepted figures: compares new ones with them, and replaces them only with a "
+            "reason\n\nRESULTS.json: any result document (default: reports/out/results.json). "
+            "Without --accept it\nonly compares; exit status 1 if there is a regression, or if "
+            "less is compared than before.",
     .run = run,
     .options = own_options,
     .examples = "sphproof baseline\n"

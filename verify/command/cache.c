@@ -28,17 +28,16 @@ static enum status run(const struct options *options, int n, char **arguments, s
 }
 
 static const struct command_option own_options[] = {
-    {"prune", "DAYS", "remove results that nobody has used for so many days"},
+    {"prune", "DAYS", "delete results that nobody has used for so many days"},
     {NULL, NULL, NULL},
 };
 
 const struct command command_cache = {
     .name = "cache",
     .synopsis = "DIR",
-    .help =
-        "how many results a folder keeps, how large they are, and room for new ones\nThe folder is "
-        "that of --cache DIR, or cache in a report's folder. `sphproof report --nightly` removes "
-        "what is a month old.",
+    .help = "number and size of the results in a cache; deletes those that are not used\nDIR is "
+            "the folder of --cache DIR, or cache in the folder of a report. `sphproof report "
+            "--nightly`\ndeletes what is a month old.",
     .run = run,
     .options = own_options,
     .examples = "sphproof cache reports/out/cache\nsphproof cache shared --prune 30",

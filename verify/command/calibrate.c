@@ -180,7 +180,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
 static const struct command_option own_options[] = {
     {"out", "FILE", "the code file that is written (default: NAME.calibrated.ini beside CODE.ini)"},
     {"runs", "N", "runs of each case without a fault (default 4)"},
-    {"jobs", "J", "runs side by side (default 1); results do not depend on it"},
+    {"jobs", "J", "number of runs side by side (default 1); results do not depend on it"},
     SHARING_OPTIONS,
     {NULL, NULL, NULL},
 };
@@ -188,14 +188,12 @@ static const struct command_option own_options[] = {
 const struct command command_calibrate = {
     .name = "calibrate",
     .synopsis = "CODE.ini [CASE ...]",
-    .help = "measure bounds for another code's gates: above what round-off changes, below what "
-            "faults do\n"
-            "Each case (default: all of the file) is run several times, with starts that differ by "
-            "2\nunits in the last place, other seeds, and other numbers of @THREADS@; then with "
-            "each\n[fault NAME] of the code file. The gates that are written into a copy of the "
-            "file lie "
-            "between\nthe two, with a least and a greatest error. A figure that no fault changes "
-            "gets no gate.\nThe exit status is 1 if no gate sees some fault.",
+    .help = "bounds for another code's gates: above the scatter of round-off, below the effect of "
+            "faults\nEach case (default: all of the file) is run several times, with starts that "
+            "differ by 2\nunits in the last place, other seeds, and other numbers of @THREADS@; "
+            "then with each\n[fault NAME] of the code file. The gates that are written into a copy "
+            "of the file lie between\nthe two, with a least and a greatest error. A figure that no "
+            "fault changes gets no gate.\nThe exit status is 1 if no gate sees some fault.",
     .run = run,
     .options = own_options,
     .examples = "sphproof calibrate mine.ini\n"

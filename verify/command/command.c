@@ -221,13 +221,27 @@ static enum status parse(struct line *line, int argc, char **argv, struct error 
     return status;
 }
 
+/* The help of an option, broken between words into lines that end before this column. */
+enum { OPTION_COLUMN = 29, LINE_END = 100 };
+
 static void print_options(const struct command_option *list)
 {
     for (; list && list->name; list++) {
         char left[64];
         snprintf(left, sizeof left, "--%s%s%s", list->name, list->argument ? " " : "",
                  list->argument ? list->argument : "");
-        printf("  %-26s %s\n", left, list->help);
+        printf("  %-26s", left);
+        const int used = 2 + (int)strlen(left);
+        int column = used > OPTION_COLUMN - 1 ? used : OPTION_COLUMN - 1;
+        for (const char *word = list->help; *word; word += strspn(word, " ")) {
+            const int length = (int)strcspn(word, " ");
+            const bool breaks = column + 1 + length > LINE_END;
+            if (breaks) column = OPTION_COLUMN - 1;
+            printf("%s%*s%.*s", breaks ? "\n" : "", breaks ? OPTION_COLUMN : 1, "", length, word);
+            column += 1 + length;
+            word += length;
+        }
+        printf("\n");
     }
 }
 

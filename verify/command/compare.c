@@ -475,8 +475,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
 
 static const struct command_option own_options[] = {
     {"draws", "N",
-     "runs of each side (default 5): other seeds of a random start, else n within 2.5 %, or\n"
-     "a lattice of one more, one less ... along each side; both sides draw alike"},
+     "runs of each side (default 5): other seeds of a random start, else other n within 2.5 %, or "
+     "lattices with one more, one less ... along each side; both sides draw alike"},
     {"allow-far", NULL, "take also a snapshot that is far from the solution"},
     {"html", "F.html", "write a page: verdict, table, both over the exact solution or as maps"},
     {NULL, NULL, NULL},
@@ -485,13 +485,13 @@ static const struct command_option own_options[] = {
 const struct command command_compare = {
     .name = "compare",
     .synopsis = "\"CASE [KEY=VALUE ...]\"|SNAPSHOT \"CASE [KEY=VALUE ...]\"|SNAPSHOT",
-    .help = "two schemes, or snapshots, of one case side by side, with scatter and one verdict\n"
-            "Each side is the words of a run in quotes, or a snapshot of any code as for `sphproof "
-            "judge`.\nRuns are drawn several times, both sides alike; errors are compared draw by "
-            "draw, and what\nis within their scatter is no difference. Of a snapshot there is one "
-            "draw: against runs it is\ntaken to scatter as they do, against another snapshot "
-            "nothing can be told of chance.\nExit status 0 whoever is better; 1: a snapshot is far "
-            "from the solution; 3: a run broke down.",
+    .help = "two schemes, or snapshots, of one case side by side, with scatter and one "
+            "verdict\nEach side is the words of a run in quotes, or a snapshot of any code as for "
+            "`sphproof judge`.\nRuns are drawn several times, both sides alike; errors are "
+            "compared draw by draw, and what\nis within their scatter is no difference. A snapshot "
+            "is a single draw: beside runs\nit is assumed to scatter as they do, beside another "
+            "snapshot chance cannot be estimated.\nExit status 0 whoever is better; 1: a snapshot "
+            "is far from the solution; 3: a run broke down.",
     .run = run,
     .options = own_options,
     .examples = "sphproof compare \"sod n=400\" \"sod n=400 kernel=wendland_c4 gradient=ia\"\n"

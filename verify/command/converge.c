@@ -324,11 +324,12 @@ static enum status run(const struct options *options, int n, char **arguments, s
 
 static const struct command_option own_options[] = {
     {"n", "N1,N2,...", "numbers of particles, at least four distinct ones (default: the case's)"},
-    {"vary", "KEY[=A,B][,...]", "repeat for every member of a family, or for these values"},
+    {"vary", "KEY[=A,B][,...]",
+     "repeat the ladder for every member of a family, or for these values"},
     {"replicates", "R",
-     "runs of each level: with other seeds where the start is random (default there: 3), else "
-     "with n within 2.5 % (default: 9, of smooth solutions 1)"},
-    {"jobs", "J", "runs side by side (default 1); results do not depend on it"},
+     "runs of each level: with other seeds if the start is random (default 3), else with other n "
+     "within 2.5 % (default 9, for smooth solutions 1)"},
+    {"jobs", "J", "number of runs side by side (default 1); results do not depend on it"},
     {"code", "CODE.ini", CODE_OPTION_HELP},
     {"work", "DIR", CODE_WORK_HELP},
     SHARING_OPTIONS,
@@ -338,10 +339,10 @@ static const struct command_option own_options[] = {
 const struct command command_converge = {
     .name = "converge",
     .synopsis = "CASE [KEY=VALUE ...]",
-    .help = "a ladder of resolutions: orders with 95 % intervals, and the case's gates\n"
-            "A gate passes if the order lies inside it, half of the interval is at most 0.15, and "
-            "the\nerror at the finest level is below its bound; some gates ask for that alone.\n"
-            "Exit status 1: a gate failed.",
+    .help = "a ladder of resolutions: orders with 95 % intervals, and the case's gates\nA gate "
+            "passes if the order lies inside it, half of the order's interval is at most 0.15, "
+            "and\nthe error at the finest level is below its bound; some gates have a bound "
+            "alone.\nExit status 1: a gate failed.",
     .run = run,
     .options = own_options,
     .examples = "sphproof converge sod\n"

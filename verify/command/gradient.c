@@ -441,10 +441,12 @@ static const struct command_option own_options[] = {
     {"dim", "D", "1, 2 or 3"},
     {"eta", "E", "support radius h = eta volume^(1/dim) at each point"},
     {"h", "H", "the same support radius h for all points"},
-    {"box", "LO:HI[,LO:HI ...]", "the cloud is periodic: the box, for all directions or for each"},
+    {"box", "LO:HI[,LO:HI ...]",
+     "the cloud is periodic, with this box in all directions or in each"},
     {"check", "COLUMN=dx[,dy,dz] ...",
-     "judge the gradient of COLUMN that these columns hold; may be given again for other columns"},
-    {"tolerance", "T", "of --check, relative to max(|gradient|, 1e-4 max|f|/h) (default 1e-9)"},
+     "compare these columns with the gradient of COLUMN; may be repeated"},
+    {"tolerance", "T",
+     "tolerance of --check, relative to max(|gradient|, 1e-4 max|f|/h) (default 1e-9)"},
     {NULL, NULL, NULL},
 };
 

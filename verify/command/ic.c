@@ -94,16 +94,18 @@ static enum status write_ic(const struct options *options, int n, char **argumen
 static const struct command_option own_options[] = {
     {"format", "FORMAT", "one of `sphproof list formats`"},
     {"out", "FILE", "the file"},
-    {"equal-masses", NULL, "particles of equal masses, for codes that know no others"},
-    {"as-3d", "LAYERS", "a case in 2D as so many periodic layers in 3D, for codes in 3D"},
+    {"equal-masses", NULL, "particles of equal masses, for codes that only know one mass"},
+    {"as-3d", "LAYERS",
+     "a case in 2D as so many periodic layers in 3D, for codes that only know 3D"},
     {NULL, NULL, NULL},
 };
 
 const struct command command_ic = {
     .name = "ic",
     .synopsis = "CASE [KEY=VALUE ...]",
-    .help = "the initial state of a case for another code: the particles that `run` starts from\n"
-            "What the format cannot say is printed, with the code's own name for it: set it there.",
+    .help = "the initial state of a case for another code: the particles that `run` starts "
+            "from\nSettings that the format cannot hold are printed with the code's own names: set "
+            "them there.",
     .run = write_ic,
     .options = own_options,
     .examples = "sphproof ic gresho n=64^2 --format swift --out gresho.hdf5\n"

@@ -303,27 +303,33 @@ static enum status run(const struct options *options, int n, char **arguments, s
 }
 
 static const struct command_option own_options[] = {
-    {"case", "CASE", "what it should be: a case, or a case file; else what the file says"},
-    {"left", "\"RHO V P\"", "instead, or on top: gas left of x0 at t = 0"},
+    {"case", "CASE", "case or case file to compare with (default: what the file says)"},
+    {"left", "\"RHO V P\"", "gas left of x0 at t = 0, in place of a case or of its states"},
     {"right", "\"RHO V P\"", "gas right of it"},
-    {"gamma", "G", "ratio of specific heats; else the file's, or the case's"},
-    {"x0", "X", "where the gases met, as the file counts x; else the middle of its box"},
-    {"time", "T", "else the file's"},
-    {"box", "LO:HI[,LO:HI...]", "ends of the box along x, y, z; else the file's, or found"},
-    {"boundary", "WORD", "periodic, open or reflecting: what is at the ends along x; else found"},
-    {"window", "A:B|R", "where errors are measured: along x, or a disc; else as a run does"},
+    {"gamma", "G", "ratio of specific heats (default: the file's, or the case's)"},
+    {"x0", "X",
+     "position of the first contact, in the file's coordinates (default: the middle of its box)"},
+    {"time", "T", "time of the snapshot (default: the file's)"},
+    {"box", "LO:HI[,LO:HI...]", "ends of the box along x, y, z (default: the file's, or found)"},
+    {"boundary", "WORD", "periodic, open or reflecting ends along x (default: found)"},
+    {"window", "A:B|R",
+     "where errors are measured: from A to B along x, or in a disc of radius R (default: as for "
+     "`run`)"},
     {"map", "NAME=THEIRS,...", "text: which column is x, vx, m, rho, u, P, h"},
-    {"kernel", "K", "the code's kernel, in place of finding it"},
-    {"h-is", "MEANING", "support, half, sigma, 2sigma, or support radius over h"},
+    {"kernel", "K", "the code's kernel (default: found)"},
+    {"h-is", "MEANING",
+     "meaning of h in the file: support, half, sigma, 2sigma, or a number, the support radius over "
+     "h (default: found)"},
     {"gate", "NAME=BOUND,...",
-     "exit 1 beyond, of all that is printed: density_l1=2e-3, disc_error=0.03 (a value's error), "
-     "energy=1e-3 (what has changed), order.density>=0.9"},
+     "exit 1 if a figure that is printed exceeds its bound: density_l1=2e-3, disc_error=0.03 "
+     "(error of a value), energy=1e-3 (its change), order.density>=0.9"},
     {"gates", "case", "the case's own bounds, for this many particles, and conservation"},
     {"allow-far", NULL,
      "do not exit 1 because a snapshot is far from the solution, or of another gas"},
-    {"junit", "F.xml", "what was found, for a CI server"},
+    {"junit", "F.xml", "write a JUnit file for a CI server"},
     {"html", "F.html", "write a page: verdict, gates, orders, assumptions, errors, profiles"},
-    {"plot", "FILE.svg|.png", "draw it as `sphproof run --plot` does; of several the finest"},
+    {"plot", "FILE.svg|.png",
+     "draw the snapshot as `sphproof run --plot` does; of several the finest"},
     {NULL, NULL, NULL},
 };
 

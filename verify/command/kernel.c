@@ -294,25 +294,26 @@ static enum status run(const struct options *options, int n, char **arguments, s
 static const struct command_option own_options[] = {
     {"dim", "D", "dimension: 1, 2 or 3"},
     {"h", "H", "support radius (default 1)"},
-    {"at", "Q1,Q2,...", "also W, dW/dr and dW/dh at these q = r/h"},
+    {"at", "Q1,Q2,...", "also print W, dW/dr and dW/dh at these q = r/h"},
     {"sinc_n", "N", "exponent of the kernel sinc, 3 to 12 (default 5)"},
     {"plot", "F.svg|F.png", "plot W, W', W'' and the transform"},
-    {"precision", "double|single", "of a kernel that computes in float: bounds at 1e-6"},
-    {"samples", "N", "random places, one in each of N equal intervals (default 1048576)"},
-    {"seed", "S", "of them (default 1)"},
-    {"limit", "SECONDS", "time that a plug-in has in all (default 300)"},
+    {"precision", "double|single",
+     "single: for a kernel that computes in single precision, with bounds of 1e-6"},
+    {"samples", "N", "number of random q, one in each of N equal intervals (default 1048576)"},
+    {"seed", "S", "seed of these random numbers (default 1)"},
+    {"limit", "SECONDS", "time limit for a plug-in in all (default 300)"},
     {NULL, NULL, NULL},
 };
 
 const struct command command_kernel = {
     .name = "kernel",
     .synopsis = "NAME|F.so --dim D",
-    .help = "the certificate of a kernel: everything that makes it a right one, measured\n"
-            "F.so is a kernel of your own: the header src/include/sphproof/plugin.h says how to "
-            "write it.\n"
-            "It runs in a process of its own: one that crashes, never returns or ends the process "
-            "is a kernel\nthat fails. The certificate says how narrow a fault it could have missed."
-            "\nExit status 1 if a property does not hold, 2 if F.so cannot be used at all.",
+    .help =
+        "the certificate of a kernel: all properties that a kernel must have, measured\nF.so is a "
+        "kernel of your own: the header src/include/sphproof/plugin.h says how to write it.\nIt "
+        "runs in a process of its own: one that crashes, never returns or ends the process is a "
+        "kernel\nthat fails. The certificate says how narrow a fault it could have missed.\nExit "
+        "status 1 if a property does not hold, 2 if F.so cannot be used at all.",
     .run = run,
     .options = own_options,
     .examples = "sphproof kernel cubic_spline --dim 3\n"

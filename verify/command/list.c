@@ -269,7 +269,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
 
 static const struct command_option own_options[] = {
     {"markdown", NULL, "the keys as a table for a README"},
-    {"where", NULL, "where the installed cases and the schema of results are"},
+    {"where", NULL, "print the folders of the installed cases and of the schema of results"},
     {NULL, NULL, NULL},
 };
 

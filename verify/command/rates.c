@@ -426,8 +426,9 @@ static enum status run(const struct options *options, int n, char **arguments, s
 
 static const struct command_option own_options[] = {
     {"csv", "F.csv", "write h,rho,P,ax[,ay[,az]],du of every particle, in their order"},
-    {"check", "THEIRS", "judge what another code computed: any of these columns"},
-    {"tolerance", "T", "of --check, relative; a and du to their largest (default 1e-9)"},
+    {"check", "THEIRS", "compare with what another code computed: any of these columns"},
+    {"tolerance", "T",
+     "tolerance of --check, relative; for a and du relative to their largest value (default 1e-9)"},
     {NULL, NULL, NULL},
 };
 

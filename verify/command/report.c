@@ -23,17 +23,17 @@
 enum { PATH_LENGTH = 4096 };
 
 static const struct command_option report_options[] = {
-    {"quick", NULL, "what fits into two minutes on two cores (the default)"},
-    {"nightly", NULL, "one resolution more everywhere, and the slow checks"},
+    {"quick", NULL, "a report that takes two minutes on two cores (the default)"},
+    {"nightly", NULL, "one more resolution for every case, and the slow checks"},
     {"out", "DIR", "folder for the report (default: reports/out), made if needed"},
-    {"jobs", "J", "so many computations side by side (default: one for each core)"},
+    {"jobs", "J", "number of computations side by side (default: one for each core)"},
     SHARING_OPTIONS_OF_CACHE,
-    {"history", "FILE", "one line a night is added there (default: DIR/history.jsonl)"},
+    {"history", "FILE", "file that gets one line each night (default: DIR/history.jsonl)"},
     {"code", "CODE.ini ...",
-     "in place of our own: what the codes that these files describe make of their cases"},
+     "report on the codes that these files describe, in place of our own solver"},
     {"work", "DIR", CODE_WORK_HELP},
-    {"resume", NULL, "go on after an interruption: what was finished is in DIR/cache"},
-    {"force", NULL, "compute everything, also what DIR/cache has from this build"},
+    {"resume", NULL, "continue after an interruption with the results in DIR/cache"},
+    {"force", NULL, "compute everything, also results that DIR/cache has"},
     {NULL, NULL, NULL},
 };
 
@@ -286,13 +286,12 @@ static enum status run(const struct options *options, int n, char **arguments, s
 const struct command command_report = {
     .name = "report",
     .synopsis = "[--quick|--nightly] [--out DIR] [--jobs J] [--shard I/N] [--resume|--force]",
-    .help = "everything on one page: cases, convergence, kernels, checks\n\n"
-            "Writes index.html (self-contained), results.json, junit.xml, summary.md and the data\n"
-            "and script of each plot. Exit status 1 if anything on the page is not well.\n"
-            "Each finished computation is kept at once: after an interruption, or in a night in "
-            "which\nnothing has changed, only what is missing is computed.\n"
-            "What verify/test/faults.py and verify/mutants/score write, DIR/faults.json and\n"
-            "DIR/score.json, is shown if it is there.",
+    .help = "everything on one page: cases, convergence, kernels, checks\n\nWrites index.html "
+            "(self-contained), results.json, junit.xml, summary.md and the data\nand script of "
+            "each plot. Exit status 1 if anything on the page failed.\nEach result is kept as soon "
+            "as it is computed: after an interruption, or in a night in\nwhich nothing has "
+            "changed, only missing results are computed.\nDIR/faults.json and DIR/score.json, "
+            "which verify/test/faults.py and\nverify/mutants/score write, are shown if they exist.",
     .run = run,
     .options = report_options,
     .examples =

@@ -187,9 +187,9 @@ static enum status run(const struct options *options, int n, char **arguments, s
 
 static const struct command_option own_options[] = {
     {"gamma", "G", "ratio of specific heats, above 1 (default 1.4)"},
-    {"sample", "X0:X1:N", "also the solution at N equidistant places, both ends included"},
-    {"time", "T", "of the samples; 0: the initial states (default 1)"},
-    {"x0", "X", "place of the diaphragm (default 0)"},
+    {"sample", "X0:X1:N", "also print the solution at N equidistant positions, both ends included"},
+    {"time", "T", "time of the samples; 0: the initial states (default 1)"},
+    {"x0", "X", "position of the diaphragm (default 0)"},
     {NULL, NULL, NULL},
 };
 

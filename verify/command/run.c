@@ -535,22 +535,23 @@ static enum status run_case(const struct options *options, int n, char **argumen
 
 static const struct command_option own_options[] = {
     {"snapshot", "FILE",
-     "write the particles at the end: x,vx,m,rho,u,P,h (x,y,vx,vy ...), one line each;\n"
-     "F.hdf5 or F.h5: HDF5 in GADGET's layout; F.vtu: XML of VTK, for ParaView"},
+     "write the particles at the end: x,vx,m,rho,u,P,h (x,y,vx,vy ...), one line each; F.hdf5 or "
+     "F.h5: HDF5 in GADGET's layout; F.vtu: XML of VTK, for ParaView"},
     {"snapshot-every", "TIME",
-     "also F_0000.csv at the start, F_0001.csv after TIME of the simulation, and so on, of\n"
-     "F.vtu with a collection F.pvd; with\n"
-     "--plot P.png P_0000.png ...; --plot P.gif or P.mp4: a movie (needs ffmpeg)"},
-    {"checkpoint", "FILE", "keep the run's state there, to go on from it to the last bit"},
-    {"every", "SECONDS", "so often (default 60)"},
-    {"resume", NULL, "go on from the checkpoint; from the start where there is none"},
+     "write also F_0000.csv at the start, F_0001.csv after this simulation time, and so on, and "
+     "for F.vtu a collection F.pvd; --plot P.png then draws P_0000.png ..., and --plot P.gif or "
+     "P.mp4 makes a movie (needs ffmpeg)"},
+    {"checkpoint", "FILE",
+     "save the run's state there, from which --resume continues to the last bit"},
+    {"every", "SECONDS", "time between two checkpoints (default 60)"},
+    {"resume", NULL, "continue from the checkpoint; begin at the start if there is none"},
     {"plot", "FILE.svg|.png|.gif|.mp4",
-     "draw profiles over the exact solution and the error; in 2D and 3D maps, with FILE.dat\n"
-     "and FILE.gp beside them: edit, and `gnuplot FILE.gp` draws FILE.svg again (needs gnuplot)"},
+     "draw profiles over the exact solution and the error, in 2D and 3D maps; FILE.dat and FILE.gp "
+     "are written too, from which `gnuplot FILE.gp` draws FILE.svg again (needs gnuplot)"},
     {"code", "CODE.ini", CODE_OPTION_HELP},
     {"work", "DIR", CODE_WORK_HELP},
     {"explain", NULL,
-     "print the plan: what would run and why, memory and time it would take; run nothing"},
+     "run nothing; print the plan, its reasons, and the memory and time that the run would take"},
     {NULL, NULL, NULL},
 };
 

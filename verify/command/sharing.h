@@ -11,25 +11,25 @@
 
 /* --jobs is the command's own: its fallbacks differ. */
 #define SHARING_OPTIONS                                                                            \
-    {"cache", "DIR", "keep each computation there, and do not repeat what is there already"},      \
+    {"cache", "DIR", "keep results there, and do not repeat computations that it has"},            \
         SHARING_OPTIONS_OF_CACHE
 /* of a command that has a folder for its cache */
 #define SHARING_OPTIONS_OF_CACHE                                                                   \
     {"shard", "I/N",                                                                               \
-     "only the Ith of N even shares, into the cache; the last, plain call finds "                  \
-     "all"},                                                                                       \
+     "compute only the Ith of N equal shares, into the cache; a call without --shard then "        \
+     "collects all of them"},                                                                      \
         {"only-build", "ID",                                                                       \
-         "refuse a share whose results that build of the program would not find"},                 \
+         "refuse to compute unless results of this program are those of that build"},              \
         {"engine", "local|slurm",                                                                  \
-         "who computes: this machine (default), or a cluster: an array of shares by sbatch"},      \
+         "who computes: this machine (default), or a cluster by an array job of sbatch"},          \
         {"engine-options", COMMAND_OPTIONS,                                                        \
-         "handed to sbatch, as \"--partition=main --time=2:00:00\""},                              \
-        {"engine-tasks", "N", "tasks of the array (default: ten minutes' work each, or more)"},    \
+         "passed to sbatch, for example \"--partition=main --time=2:00:00\""},                     \
+        {"engine-tasks", "N",                                                                      \
+         "number of tasks in the array (default: each gets ten minutes of work or more)"},         \
     {                                                                                              \
         "list", NULL,                                                                              \
-            "compute nothing: one line a computation, tabs between estimated seconds, share, "     \
-            "kept "                                                                                \
-            "or -, name"                                                                           \
+            "compute nothing; print a line for each computation: estimated seconds, share, kept "  \
+            "or -, name, with tabs between"                                                        \
     }
 
 struct sharing {

@@ -120,7 +120,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
 static const struct command_option own_options[] = {
     {"quick", NULL, "under a minute (default)"},
     {"nightly", NULL, "more cells, a million steps"},
-    {"jobs", "J", "cells side by side (default: --threads)"},
+    {"jobs", "J", "number of cells side by side (default: --threads)"},
     SHARING_OPTIONS,
     {NULL, NULL, NULL},
 };
