@@ -26,23 +26,23 @@
 
 /* NAME, fallback, allowed, meaning. */
 #define CODE_KEY_LIST(KEY)                                                                         \
-    KEY(title, "the file's name", "a text", "what the code is called")                             \
+    KEY(title, "the file's name", "a text", "name of the code")                                    \
     KEY(ic, "csv", "a format of `sphproof ic`, or a command that has @IC@",                        \
-        "the format of initial states, or what makes them")                                        \
+        "format of initial states, or the command that writes them")                               \
     KEY(parameters, "", "files, separated by blanks",                                              \
         "templates, filled in for each run; a name loses .in at its end; @PARAMETERS@ is the "     \
         "first")                                                                                   \
     KEY(command, "", "a program and its arguments",                                                \
-        "what computes a run, in a folder of the run's own")                                       \
+        "command that computes a run, in a folder of its own")                                     \
     KEY(snapshot, "", "a path of which parts may be * ? or [abc]",                                 \
-        "what the run leaves; the longest, last name is judged")                                   \
-    KEY(timeout, "600", "seconds, above 0", "wall time after which a run is ended")                \
+        "snapshots that the run writes, of which the longest, last name is judged")                \
+    KEY(timeout, "600", "seconds, above 0", "limit of a run's wall time")                          \
     KEY(memory, "none", "a number with MB or GB, or none",                                         \
-        "what all processes of a run may have in memory at once")                                  \
+        "limit of memory for all processes of a run together")                                     \
     KEY(depends, "", "files, separated by blanks",                                                 \
-        "what decides results beside command and templates: a change of them makes runs new")      \
+        "other files on which results depend: a change of them makes kept runs invalid")           \
     KEY(elements, "particles", "particles cells",                                                  \
-        "what the gas is made of: cells of a grid exchange mass, so a snapshot need not have the " \
+        "elements of the gas: cells of a grid exchange mass, so a snapshot need not have the "     \
         "particles of the initial state")                                                          \
     KEY(as_3d, "no", "no, or a number of layers",                                                  \
         "cases in 2D are given to the code as so many periodic layers in 3D, and judged in 2D")    \
@@ -64,7 +64,7 @@ extern const struct code_key_text code_keys[CODE_KEYS];
 #define CODE_WORD_LIST(WORD)                                                                       \
     WORD(IC, "the file of the initial state")                                                      \
     WORD(CASE, "the name of the case")                                                             \
-    WORD(OUT, "how names of snapshots begin")                                                      \
+    WORD(OUT, "first part of the names of snapshots")                                              \
     WORD(PARAMETERS, "the first template, filled in")                                              \
     WORD(T_END, "the time at which the run ends")                                                  \
     WORD(N, "the number of particles")                                                             \
