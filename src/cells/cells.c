@@ -90,7 +90,7 @@ static void lay_out_force(struct lanes_layout *force, const struct cells_method 
     if (viscosity->noise) add_field(force, RECORD_PROJECTOR, symmetric);
 }
 
-/* Which values each pass needs of a neighbour. */
+/* Chooses the neighbour values that each pass needs. */
 static void lay_out(struct cells *cells)
 {
     const struct cells_method *method = &cells->method;
@@ -116,8 +116,9 @@ static void lay_out(struct cells *cells)
     add_field(&cells->shift, RECORD_ACCELERATION, dim);
 }
 
-/* Have forces half loops? Only force, energy and signal speed have a place for reactions; and where
- * pairs are few and cost little, reactions cost as much as is saved (measured at 20 to 30). */
+/* True if each pair force is computed once for both particles. Reactions carry only force, energy
+ * and signal speed; and where pairs are few and cheap, they cost as much as they save (measured
+ * with 20 to 30 neighbours). */
 static bool method_halves(const struct cells_method *method)
 {
     const struct viscosity_descriptor *viscosity = &viscosity_of[method->viscosity];
@@ -244,8 +245,8 @@ static bool reserve_images(struct cells_images *images, size_t points)
     return true;
 }
 
-/* Images along one axis of all points so far, those of earlier walls included: in a corner an image
- * has images of its own. */
+/* Adds the wall images along one axis of all points so far, including the images of earlier walls,
+ * so that corners get theirs. */
 static bool mirror(struct cells *cells, size_t n, int axis, double reach)
 {
     struct cells_images *images = &cells->images;
@@ -268,7 +269,7 @@ static bool mirror(struct cells *cells, size_t n, int axis, double reach)
     return true;
 }
 
-/* All points: the particles, then their images in the walls. */
+/* Lists all points: the particles, then their wall images. */
 static bool find_images(struct cells *cells, const struct cells_fields *fields,
                         const double *radius)
 {
@@ -313,7 +314,8 @@ enum status cells_arrange(struct cells *cells, const struct cells_fields *fields
     return STATUS_OK;
 }
 
-/* From slot a to slot b, the nearest image where images matter. */
+/* x: vector from slot a to slot b, to the nearest periodic image if wrapped. Returns its squared
+ * length. */
 ALWAYS_INLINE double separate(int dim, bool wrapped, const struct cells *cells, size_t a, size_t b,
                               double x[3])
 {
@@ -335,7 +337,7 @@ static double condition_of(const struct cells *cells, const struct cells_fields 
     for (int a = 0; a < dim; a++)
         for (int b = 0; b < dim; b++) C[a * dim + b] = fields->matrix[symmetric_at(dim, a, b)][i];
     if (!(fields->condition[i] <= cells->method.worst_condition)) return fields->condition[i];
-    return matrix_condition(dim, C); /* that of the matrix, too */
+    return matrix_condition(dim, C); /* the matrix and its inverse have the same condition number */
 }
 
 double cells_distance2(const struct cells *cells, size_t a, size_t b)
@@ -344,8 +346,8 @@ double cells_distance2(const struct cells *cells, size_t a, size_t b)
     return separate(cells->method.box.dim, cells->lists[a].wrapped, cells, a, b, x);
 }
 
-/* Neighbours that are described together: the vectors (x, y, z) from the particle to them; their
- * length over h; and cot |cot| of the angle by which C turns them, which needs no root. */
+/* A batch of neighbours: vectors (x, y, z) from the particle, their length over h, and cot |cot| of
+ * the angle by which C turns them, which needs no square root. */
 enum { AT_ONCE = 64 };
 
 struct directions {
@@ -385,7 +387,7 @@ ALWAYS_INLINE void describe_neighbours(int dim, const struct cells *cells, size_
                                        struct grid_reader *reader, struct description *of)
 {
     const struct grid_list *list = &cells->lists[slot];
-    const int32_t *slots = /* an inactive particle has no list */
+    const int32_t *slots = /* inactive particles have no list */
         list->kept ? grid_neighbours(cells->grid, reader, cells->lists, slot) : NULL;
     struct directions at;
     double least = HUGE_VAL;
@@ -424,7 +426,7 @@ static struct description describe(const struct cells *cells, const struct cells
 void cells_describe(const struct cells *cells, const struct cells_fields *fields,
                     description_visit *visit, void *context)
 {
-    enum { DESCRIBED = 1024 }; /* that threads share before they are visited */
+    enum { DESCRIBED = 1024 }; /* particles in one parallel batch */
     struct description of[DESCRIBED];
     for (size_t first = 0; first < cells->points; first += DESCRIBED) {
         const size_t left = cells->points - first, count = left < DESCRIBED ? left : DESCRIBED;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Density in 2D and 3D: sum_j Z_j w(r_ij/h_i) and its derivative in h, sum_j Z_j (d w + q w'),
- * without the factors C/h^d and -C/h^(d+1); with j = i. */
+ * without the factors C/h^d and -C/h^(d+1); j = i is included. */
 #include <math.h>
 
 #include "lanes.h"
@@ -23,7 +23,7 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
     lanes_sentinel(cells, layout);
 }
 
-/* The sums over lanes that are gathered, at another width each time. */
+/* The sums over the gathered lanes at a given smoothing length. */
 static void sum_at(const struct cells *cells, const struct lanes *lanes, int count, double m,
                    double U, double h_inverse, double sums[4])
 {
@@ -70,9 +70,10 @@ void cells_density(struct cells *cells, const struct cells_fields *fields)
     lanes_all(cells, fields, density_pass);
 }
 
-/* --- widths ----------------------------------------------------------------------------------- */
+/* --- smoothing lengths ------------------------------------------------------------------------ */
 
-/* One particle's width. With the number element the sum of ones takes the place of m/m_i. */
+/* Solves for the smoothing length of one particle. With the number element the sum of ones replaces
+ * the sum of m/m_i. */
 static enum cells_outcome solve(const struct cells *cells, const struct lanes *lanes, int count,
                                 size_t i, double m, double U, double sums[4])
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Pair forces in 2D and 3D. The gradient of a pair is a vector here: grad_i W(h_i) = -s_i x with a
- * number s_i (standard) or with the matrix C_i w(q_i) (ia) in place of it, x = r_j - r_i. Forces
- * are along G = s x, the negative gradient, so that the terms of pair.h are taken with G = 1:
+ * Pair forces in 2D and 3D. The pair gradient is a vector: grad_i W(h_i) = -s_i x, where s_i is a
+ * number (standard) or the matrix C_i w(q_i) (ia) and x = r_j - r_i. Forces are along G = s x, the
+ * negative gradient, so the terms of pair.h are evaluated with G = 1:
  *   dp_i/dt = sum_j a_i G_i + a_j G_j + 2 K G,   dU_i/dt = -sum_j v_ij . (a_i G_i + K G). */
 #include <math.h>
 
@@ -16,22 +16,22 @@ static void fill_sentinel(struct cells *cells)
     const struct lanes_layout *layout = &cells->force;
     const int *at = layout->offset;
     double *record = lanes_sentinel(cells, layout);
-    /* far beyond its own width, too; a density keeps quotients finite, and its matrix is as good as
-     * any */
+    /* The sentinel is also outside its own kernel support. A density of 1 keeps quotients finite;
+     * any matrix would do. */
     record[at[RECORD_H_INVERSE]] = 16 / (record[0] > 0 ? record[0] : 1);
     if (at[RECORD_DENSITY]) record[at[RECORD_DENSITY]] = 1;
     if (at[RECORD_MATRIX]) record[at[RECORD_MATRIX]] = 1;
 }
 
-/* Values of an inactive particle, extrapolated from its last two evaluations. */
+/* Extrapolates values of an inactive particle from its last two evaluations. */
 ALWAYS_INLINE void extrapolate(int count, double ratio, double *const *now, double *const *before,
                                size_t i, double *values)
 {
     for (int k = 0; k < count; k++) values[k] = now[k][i] + ratio * (now[k][i] - before[k][i]);
 }
 
-/* The matrix by a quarter of its trace at most; one that is not to be used, or was not, as it is.
- */
+/* Extrapolates the matrix, changing it by at most a quarter of its trace. If the current or the
+ * previous matrix is unusable (trace 0), the current one is kept. */
 ALWAYS_INLINE void extrapolate_matrix(int dim, double ratio, const struct cells_fields *fields,
                                       size_t i, double *C)
 {
@@ -49,7 +49,7 @@ ALWAYS_INLINE void extrapolate_matrix(int dim, double ratio, const struct cells_
     extrapolate(count, both ? ratio : 0, fields->matrix, fields->matrix_before, i, C);
 }
 
-/* Matrices of a particle, or of its image. */
+/* Fills in the matrices of a particle or of its wall image. */
 ALWAYS_INLINE void fill_matrices(int dim, int mirrored, const struct cells *cells,
                                  const struct cells_fields *fields, size_t i, double *record)
 {
@@ -113,7 +113,7 @@ ALWAYS_INLINE void fill_record(int dim, const struct cells *cells,
     fill_matrices(dim, mirrored, cells, fields, i, record);
 }
 
-/* By slot, what of local steps the force pass asks of neighbours. */
+/* Sets, for each slot, the role and pace that the force pass needs with local steps. */
 static void find_kinds(struct cells *cells, const struct cells_fields *fields)
 {
     for (size_t s = 0; fields->local && s < cells->points; s++) {
@@ -147,11 +147,11 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
 
 struct totals {
     double F[3], de, div_v, signal, pace;
-    double gained[8]; /* by shifting: momentum, energy, mass; what is made of a constant */
-    bool conducts;    /* heat is conducted in some pair */
+    double gained[8]; /* by shifting: momentum, energy, mass; gradient of a constant */
+    bool conducts;    /* some pair conducts heat */
 };
 
-/* Signal speeds of pairs within max(h_i, h_j), the largest of each lane, and how many there are. */
+/* For each lane: the largest signal speed and the number of pairs within max(h_i, h_j). */
 struct signals {
     double top[GRID_LANES], inside[GRID_LANES];
 };
@@ -178,9 +178,9 @@ static double largest_signal(const struct signals *signals, double own_c, int64_
     return most;
 }
 
-/* a_i and a_j of the pressure, for G = 1, of the neighbour in lane n. With the number element 1
- * stands in place of the mass in f_ij = 1 - (m_j/Z_j)(1 - f_i), too: h follows the sum that it adds
- * up. */
+/* Arrays from which the pressure terms a_i and a_j (with G = 1) of each neighbour follow. With the
+ * number element, 1 also replaces the mass in f_ij = 1 - (m_j/Z_j)(1 - f_i), because h follows from
+ * a sum of ones. */
 struct pressure {
     struct pair_side own;
     const double *V, *P, *m, *b, *grad_h, *Z;
@@ -207,8 +207,8 @@ static struct pressure find_pressure(const struct cells_method *method, const st
         .m = method->number ? Z : pairs_theirs(pairs, RECORD_WEIGHT)};
 }
 
-/* Force, energy and signal of all neighbours in the lanes; vanilla_ice has one gradient for both
- * sides of a pair. */
+/* Adds force, energy rate and signal speed of all neighbours in the lanes. With vanilla_ice both
+ * particles of a pair have the same gradient. */
 ALWAYS_INLINE void add_body(enum formulation formulation, int dim, enum energy energy,
                             const struct pairs *pairs, const struct pressure *pressure,
                             struct totals *totals, int64_t *inside)
@@ -296,7 +296,7 @@ static double find_pace(const struct cells *cells, const int32_t *slots, int cou
     return most;
 }
 
-/* Gives the neighbours their part of what has been worked out. */
+/* Adds the reactions to the neighbours. */
 ALWAYS_INLINE void react_body(int dim, int values, const struct pairs *pairs, double *restrict of)
 {
     const ptrdiff_t stride = pairs->lanes->stride;
@@ -322,7 +322,8 @@ static void react(const struct cells_method *method, const struct pairs *pairs, 
         react_body(3, values, pairs, of);
 }
 
-/* What the neighbours in the lanes do to a particle. Returns whether there was viscosity. */
+/* Adds the forces of the neighbours in the lanes to a particle. Returns whether viscosity was
+ * computed. */
 static bool add_part(struct cells *cells, const struct pairs *pairs, int64_t *inside,
                      struct totals *totals)
 {
@@ -339,7 +340,8 @@ static bool add_part(struct cells *cells, const struct pairs *pairs, int64_t *in
     return viscous;
 }
 
-/* A particle on a coarser level has these pairs for the span of theirs. */
+/* A particle on a coarser time-step level receives the forces of these pairs multiplied by the
+ * pairs' time step. */
 static void receive(const struct cells *cells, const struct cells_fields *fields, size_t i,
                     const struct totals *totals)
 {
@@ -360,8 +362,8 @@ static void add_received(const struct cells_method *method, const double *receiv
     for (int a = dim + 2; a < values; a++) totals->gained[a - dim - 2] += received[a];
 }
 
-/* What shifting gives a particle, and the next evaluation's potential: what the closed gradients
- * still make of a constant is added to it. G is minus the gradient. */
+/* Adds the exchange of shifting, and updates the potential for the next evaluation: the remaining
+ * gradient of a constant is added to it. G is minus the gradient. */
 static void add_gained(const struct cells_method *method, const struct cells_fields *fields,
                        size_t i, const double *gained)
 {
@@ -372,7 +374,7 @@ static void add_gained(const struct cells_method *method, const struct cells_fie
     for (int a = 0; method->closed && a < dim; a++) fields->potential[a][i] -= gained[dim + 2 + a];
 }
 
-/* What slots have received from the chunk before theirs. */
+/* Adds the reactions that slots have received from the previous chunk. */
 static void add_spilled(const struct cells *cells, const struct cells_fields *fields)
 {
     const struct reactions *reactions = &cells->reactions;
@@ -413,7 +415,7 @@ static void force_pass(struct cells *cells, const struct cells_fields *fields, s
     if (halves)
         add_received(&cells->method, reactions_received(&cells->reactions, &lanes->chunk, slot),
                      &totals);
-    if (fields->local && halves) /* of all neighbours */
+    if (fields->local && halves) /* over all neighbours, not only those of the half loop */
         totals.pace =
             find_pace(cells, grid_neighbours(cells->grid, &lanes->reader, cells->lists, slot),
                       cells->lists[slot].count);
@@ -443,7 +445,7 @@ uint64_t cells_forces(struct cells *cells, const struct cells_fields *fields)
 {
     fill_records(cells, fields);
     for (int t = 0; t < cells->method.threads; t++) cells->lanes[t].pairs = 0;
-    /* with local steps particles have forces with some of their neighbours alone */
+    /* with local steps a particle may interact with only some of its neighbours */
     if (cells->halves && !(fields->local && cells->parts)) {
         reactions_all(cells, fields, force_pass);
         add_spilled(cells, fields);

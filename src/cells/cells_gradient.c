@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Pair gradients in 2D and 3D, the one part of the pair force that knows the kernel: standard, by a
- * matrix with the gradient's weight, or of both what the particles' shares say, at the widths that
- * the scheme asks for. */
+ * Pair gradients in 2D and 3D, the only part of the pair force that evaluates the kernel: standard,
+ * by a matrix with the gradient's weight, or a blend of both with each particle's weight; at the
+ * smoothing lengths that the scheme prescribes. */
 #include <math.h>
 
 #include "pairs.h"
 #include "specialise.h"
 
-/* q at the particle's own width and at the neighbour's, or at a width of both. */
+/* q with h_i and with h_j; if the pair has one common h, q is for this h and q_j holds 1/h. */
 CLONES static void widths(enum pair_width width, int count, const double *restrict r,
                           double h_inverse, const double *restrict theirs, double *restrict q,
                           double *restrict q_j)
@@ -33,8 +33,8 @@ ALWAYS_INLINE double power(double x, int n)
     return y;
 }
 
-/* s = C h^-(d+1) w'(q)/r (negative) from w'(q), in place; h_inverse of the particle where theirs is
- * NULL. */
+/* Replaces w'(q) by s = C h^-(d+1) w'(q)/r (negative). theirs: 1/h of each pair; NULL: h_inverse
+ * for all. */
 CLONES static void standard_sizes(int dim, int count, double constant, double h_inverse,
                                   const double *restrict theirs, const double *restrict r_inverse,
                                   double *restrict dw)
@@ -47,8 +47,8 @@ CLONES static void standard_sizes(int dim, int count, double constant, double h_
     }
 }
 
-/* The mean of both widths' gradients in one walk, from w'(q_i) and w'(q_j): all that vanilla_ice
- * needs. */
+/* The mean of the gradients at h_i and h_j in one loop, from w'(q_i) and w'(q_j); vanilla_ice needs
+ * nothing else. */
 ALWAYS_INLINE void standard_means_body(int dim, int count, double constant, double h_inverse,
                                        const double *restrict theirs, const struct lanes *lanes)
 {
@@ -76,7 +76,7 @@ CLONES static void standard_means(int dim, int count, double constant, double h_
         standard_means_body(3, count, constant, h_inverse, theirs, lanes);
 }
 
-/* The weight of a matrix from w'(q), in place of w(q). */
+/* Replaces w(q) by the matrix weight, computed from w'(q). */
 ALWAYS_INLINE void weigh_body(enum gradient gradient, int count, const double *restrict q,
                               const double *restrict dw, double *restrict w)
 {
@@ -106,15 +106,16 @@ CLONES static void along(int count, const double *restrict s, const double *rest
     for (int k = 0; k < count; k++) G[k] = s[k] * x[k];
 }
 
-/* What matrices make of pairs: lanes, and the matrices of the particle and of its neighbours. */
+/* Arguments of matrix_along: lanes, and the matrices of the particle (own) and of its neighbours
+ * (theirs). */
 struct by_matrices {
     const double *x, *w, *w_j, *own, *theirs;
     double *G, *G_i, *G_j;
     ptrdiff_t stride;
 };
 
-/* Along one axis: the mean of G_i = -C_i x w and G_j = -C_j x w_j, and each of them if both are
- * wanted. Axes are written out where this is called: loops in loops would not be vectorised. */
+/* Along one axis: the mean of G_i = -C_i x w and G_j = -C_j x w_j; G_i and G_j themselves if
+ * `both`. The caller writes out the axes: nested loops would not be vectorised. */
 ALWAYS_INLINE void matrix_along(int dim, bool both, int a, ptrdiff_t n, const struct by_matrices *m)
 {
     const double *restrict x = m->x, *restrict C = m->theirs, *restrict w = m->w,
@@ -137,7 +138,7 @@ ALWAYS_INLINE void matrix_along(int dim, bool both, int a, ptrdiff_t n, const st
     G_j[a * stride + n] = 2 * other;
 }
 
-/* Negative gradients by matrices along all axes. */
+/* Negative matrix gradients along all axes. */
 ALWAYS_INLINE void matrix_body(int dim, bool both, int count, const struct lanes *lanes,
                                const double *own, const double *theirs)
 {
@@ -171,7 +172,7 @@ CLONES static void by_matrix(int dim, bool both, int count, const struct lanes *
         matrix_body(3, false, count, lanes, own, theirs);
 }
 
-/* How many of them are positive. */
+/* Number of positive values. */
 CLONES static int positive(int count, const double *restrict values)
 {
     int found = 0;
@@ -187,8 +188,8 @@ CLONES static void mean(int count, const double *restrict a, const double *restr
     for (int k = 0; k < count; k++) m[k] = 0.5 * (a[k] + b[k]);
 }
 
-/* What part of a pair's gradient is the standard one: all of it where either matrix is not to be
- * used, else the mean of the particles' shares (NULL: none have). */
+/* Weight of the standard gradient for each pair: 1 if either matrix is unusable, otherwise the mean
+ * of the particles' weights (NULL: 0). */
 CLONES static void standard_shares(int count, double own, const double *restrict theirs,
                                    double own_share, const double *restrict shares,
                                    double *restrict part)
@@ -200,7 +201,7 @@ CLONES static void standard_shares(int count, double own, const double *restrict
     }
 }
 
-/* That part of G becomes s x. */
+/* G = (1 - part) G + part s x. */
 CLONES static void blend(int count, const double *restrict part, const double *restrict s,
                          const double *restrict x, double *restrict G)
 {
@@ -208,7 +209,7 @@ CLONES static void blend(int count, const double *restrict part, const double *r
     for (int k = 0; k < count; k++) G[k] = (1 - part[k]) * G[k] + part[k] * (s[k] * x[k]);
 }
 
-/* w(q) or w'(q) at both widths. */
+/* w(q) or w'(q) at h_i and h_j. */
 static void pair_shapes(const struct cells *cells, const struct pairs *pairs, bool by_w,
                         double *shape, double *shape_j)
 {
@@ -228,7 +229,7 @@ static void pair_shapes(const struct cells *cells, const struct pairs *pairs, bo
     for (int k = 0; k < pairs->count; k++) shape_j[k] = shape[k];
 }
 
-/* The standard pair gradient's s at both widths, into the lanes of w. */
+/* Writes s of the standard gradient at h_i and h_j to LANE_W and LANE_W_J. */
 static void standard_pair(const struct cells *cells, const struct pairs *pairs)
 {
     const struct cells_method *method = &cells->method;
@@ -251,7 +252,7 @@ static void standard_pair(const struct cells *cells, const struct pairs *pairs)
     standard_sizes(dim, count, C, h_inverse, theirs, r_inverse, s_j);
 }
 
-/* All of them for gradient=standard. */
+/* All pair gradients with gradient=standard. */
 static void standard_gradients(const struct cells *cells, const struct pairs *pairs)
 {
     const struct cells_method *method = &cells->method;
@@ -278,7 +279,7 @@ static void standard_gradients(const struct cells *cells, const struct pairs *pa
     }
 }
 
-/* The weights of the matrices at both widths, into the lanes of w. */
+/* Writes the matrix weights at h_i and h_j to LANE_W and LANE_W_J. */
 static void matrix_weights(const struct cells *cells, const struct pairs *pairs)
 {
     const struct lanes *lanes = pairs->lanes;
@@ -314,7 +315,7 @@ void cells_pair_gradients(const struct cells *cells, const struct pairs *pairs)
     const bool blended = gradient_of[method->gradient].share;
     const double own_share = blended ? *pairs_own(pairs, RECORD_STEEP) : 0,
                  *shares = blended ? pairs_theirs(pairs, RECORD_STEEP) : NULL;
-    /* the first entry of a matrix is positive, or 0 where it is not to be used */
+    /* the first entry is positive in a usable matrix, 0 in an unusable one */
     const bool all_sound = own[0] > 0 && positive(count, theirs) == count,
                any_steep = blended && (own_share > 0 || positive(count, shares) > 0);
     if (all_sound && !any_steep) return;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The moment matrix T_i = sum_j V_j x x^T W and its inverse (Garcia-Senz, Cabezon & Escartin 2012),
- * with the weight that the gradient has in place of W, and the linear_exact velocity gradient
- * (grad v)_i = sum_j V_j (v_j - v_i) (x) C_i x W (Price 2004). C/h^d cancels between matrix and
- * gradient, so both are written with w(q) alone. x = r_j - r_i. */
+ * with the gradient's weight in place of W, and the linear_exact velocity gradient (grad v)_i =
+ * sum_j V_j (v_j - v_i) (x) C_i x W (Price 2004). C/h^d cancels between matrix and gradient, so
+ * both are written with w(q). x = r_j - r_i. */
 #include <math.h>
 
 #include "moments.h"
@@ -38,7 +38,7 @@ CLONES static void scale(int count, const double *restrict r, double h_inverse, 
     for (int k = 0; k < count; k++) q[k] = r[k] * h_inverse;
 }
 
-/* V times the gradient's weight into LANE_W_J, from w'(q) in LANE_W and w(q) in LANE_SPARE;
+/* Writes V times the gradient's weight to LANE_W_J, from w'(q) in LANE_W and w(q) in LANE_SPARE;
  * -w'(q)/q is 0 where points coincide. */
 ALWAYS_INLINE void weigh_body(enum gradient gradient, int count, double h,
                               const struct lanes *lanes, const double *restrict V)
@@ -84,7 +84,7 @@ static void velocity_gradient(struct cells *cells, const struct cells_fields *fi
     const double *own = cells->records + (ptrdiff_t)slot * layout->size +
                         layout->offset[RECORD_VELOCITY],
                  *v = lane_of(lanes, layout, RECORD_VELOCITY),
-                 /* the direction of `projected` is that of the smallest slope, too */
+                 /* `projected` needs the direction of arbitrarily small slopes */
         limit =
             viscosity_of[cells->method.viscosity].noise ? 0 : cells->method.still * fields->c[i];
     double L[CELLS_SQUARE] = {0};
@@ -99,8 +99,7 @@ static void velocity_gradient(struct cells *cells, const struct cells_fields *fi
     }
 }
 
-/* The standard gradient's share where h changes, grad h by linear_exact; all of it where there is
- * none. */
+/* Weight of the standard gradient, from grad h by linear_exact; 1 if the matrix is unusable. */
 static double find_steep(const struct cells *cells, size_t slot, int count,
                          const struct lanes *lanes, const double *weight,
                          const double inverse[CELLS_SQUARE], bool sound)
@@ -114,7 +113,7 @@ static double find_steep(const struct cells *cells, size_t slot, int count,
                       lane_of(lanes, layout, RECORD_H), own, slope));
 }
 
-/* No shift where there is no matrix. */
+/* Without a usable matrix the shift is 0. */
 static void find_shift(const struct cells *cells, const struct cells_fields *fields, size_t i,
                        int count, const struct lanes *lanes, const double *weight,
                        const double inverse[CELLS_SQUARE], bool sound)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Particle shifting in 2D and 3D, pair by pair: with shifting=closed gradients are changed before
- * forces are found; the exchange comes after them. */
+ * Particle shifting in 2D and 3D, pair by pair. With shifting=closed the gradients are changed
+ * before the forces; the exchange follows after them. */
 #include "shifting.h"
 
 #include "pairs.h"
@@ -9,8 +9,8 @@ ALWAYS_INLINE void close_body(int dim, const struct pairs *pairs)
 {
     const struct lanes *lanes = pairs->lanes;
     const ptrdiff_t stride = lanes->stride;
-    const double *restrict x = lane(lanes, LANE_DX),
-                           *restrict potential = pairs_theirs(pairs, RECORD_POTENTIAL);
+    const double *restrict x = lane(lanes, LANE_DX), *restrict potential =
+                                                         pairs_theirs(pairs, RECORD_POTENTIAL);
     const double *own = pairs_own(pairs, RECORD_POTENTIAL);
     double *restrict G = lane(lanes, LANE_GX);
 #pragma omp simd

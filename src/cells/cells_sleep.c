@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Decides pair by pair which particles wake and which fall asleep in 2D and 3D, by what the pairs
- * of a step's sums make of the rates of particles that are awake. */
+ * Decides which particles wake and which fall asleep in 2D and 3D, pair by pair, from the
+ * disturbances of the awake particles. */
 #include <math.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@ static const int32_t *list_of(struct cells *cells, size_t slot, struct lanes *la
     return grid_neighbours(cells->grid, &lanes->reader, cells->lists, slot);
 }
 
-/* Speed at which a particle and its neighbour at a slot move against each other, squared. */
+/* Squared relative speed of particle i and neighbour j (mirrored: see lanes_source). */
 static double passing2(const struct cells *cells, const struct cells_fields *fields, size_t i,
                        size_t j, int mirrored)
 {
@@ -31,13 +31,13 @@ static double square_of_limit(const struct cells_fields *fields, const struct ce
     return quiet->tolerance * c * quiet->tolerance * c;
 }
 
-/* Within one step no more than this part of a disturbance passes through a neighbour, by its
+/* Largest part of a disturbance that passes through a neighbour within one step, through its
  * density and then its force. */
 static const double carried = 1e-5;
-/* Times the term of pressure: how much of a neighbour's disturbance arrives at most. */
+/* Upper bound of the disturbance that arrives from a neighbour, in units of the pressure term. */
 static const double terms = 4;
 
-/* The disturbance of the particle at a slot that its neighbours have to expect. */
+/* The disturbance that the neighbours of the particle at a slot have to expect from it. */
 static double expected_at(struct cells *cells, const struct cells_fields *fields, size_t slot,
                           struct lanes *lanes)
 {
@@ -53,8 +53,7 @@ static double expected_at(struct cells *cells, const struct cells_fields *fields
     return largest(disturbance[cells->order[slot]], carried * around);
 }
 
-/* What arrives at a particle of a disturbance 1 of its neighbour `from`, the other way round as
- * well: of particles at two slots. */
+/* Part of the disturbance of particle `from`, at slot or other, that arrives at particle `to`. */
 static double part_of(const struct cells *cells, const struct cells_fields *fields, size_t slot,
                       size_t other, size_t to, size_t from)
 {
@@ -64,7 +63,8 @@ static double part_of(const struct cells *cells, const struct cells_fields *fiel
     return terms * fields->V[from] * h * fabs(slope);
 }
 
-/* Most particles have no neighbour that sleeps: nothing arrives from them, -1. */
+/* For an awake particle with a sleeping neighbour: the disturbance that its neighbours have to
+ * expect. For others, which are most: -1. */
 static void expect_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
                         struct lanes *lanes)
 {
@@ -80,8 +80,8 @@ static void expect_pass(struct cells *cells, const struct cells_fields *fields, 
     }
 }
 
-/* The array has, for particles that are awake, what their sleeping neighbours have to expect, and
- * for sleepers what arrives, added up in the order of the slots by one thread. */
+/* `arriving` holds, for awake particles, what their sleeping neighbours have to expect, and for
+ * sleeping particles the sum that arrives, added by one thread in the order of the slots. */
 void cells_wake(struct cells *cells, const struct cells_fields *fields,
                 const struct cells_quiet *quiet, unsigned char *asleep)
 {
@@ -91,7 +91,7 @@ void cells_wake(struct cells *cells, const struct cells_fields *fields,
     grid_find_rim(cells->grid, asleep);
     lanes_all(cells, fields, expect_pass);
     for (size_t slot = 0; slot < cells->points; slot++) {
-        if (!cells->lists[slot].kept) continue; /* it sleeps, or is an image */
+        if (!cells->lists[slot].kept) continue; /* asleep, or a wall image */
         const size_t i = cells->order[slot];
         const double expected = quiet->arriving[i];
         if (expected < 0) continue;
@@ -111,8 +111,8 @@ void cells_wake(struct cells *cells, const struct cells_fields *fields,
     }
 }
 
-/* Is the particle at a slot calm, does it move with all its neighbours, and does no more arrive
- * from those that are not calm? */
+/* True if the particle at a slot is calm, moves with all its neighbours, and receives no more than
+ * `calm` from neighbours that are not calm. */
 static bool calm_around(struct cells *cells, const struct cells_fields *fields, size_t slot,
                         struct lanes *lanes)
 {

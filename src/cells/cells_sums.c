@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The sums of a simulation in 2D and 3D: its particles' fields handed to cells. */
+ * The sums of a simulation in 2D and 3D: passes the fields of its particles to cells. */
 #include <math.h>
 
 #include "specialise.h"

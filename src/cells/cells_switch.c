@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a switch of alpha reads of a particle's flow (CONVENTIONS eqs. 6.6 and 6.7; the formula is
- * in the viscosity's file). The change of div v along the flow comes from the gradient of the
- * acceleration, d(div v)/dt = div a - tr(L L), so that it belongs to the state of the rates and
- * needs no step before it. */
+ * Inputs of the viscosity switch for one particle (CONVENTIONS eqs. 6.6 and 6.7; the formula is in
+ * the viscosity's file). The derivative of div v along the flow comes from the gradient of the
+ * acceleration, d(div v)/dt = div a - tr(L L), so it belongs to the same time as the rates and
+ * needs no previous step. */
 #include <math.h>
 
 #include "moments.h"
@@ -42,8 +42,8 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
     }
 }
 
-/* v_sig of eq. 6.6: the largest cbar - min(0, v_ij . e_ij) of pairs within max(h_i, h_j), the
- * particle itself among them. */
+/* v_sig of eq. 6.6: the largest cbar - min(0, v_ij . e_ij) over pairs within max(h_i, h_j),
+ * including j = i. */
 CLONES static double signal_of(int dim, int count, const struct lanes *lanes, double own_h_inverse,
                                double own_c, const double *own_v, const double *restrict v,
                                const double *restrict h_inverse, const double *restrict c)
@@ -112,7 +112,7 @@ static void switch_pass(struct cells *cells, const struct cells_fields *fields, 
 
 void cells_switch(struct cells *cells, const struct cells_fields *fields)
 {
-    for (size_t i = 0; i < fields->n; i++) { /* particles that sleep keep these values */
+    for (size_t i = 0; i < fields->n; i++) { /* sleeping particles keep these values */
         fields->alpha_local[i] = cells->method.alpha_min;
         fields->decay[i] = 0;
     }

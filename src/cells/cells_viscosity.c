@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What dissipates in 2D and 3D: artificial viscosity and conductivity of the pairs of one particle.
- * Closing speeds, slopes and gradients are there. */
+ * Dissipation in 2D and 3D: artificial viscosity and conductivity of the pairs of one particle.
+ * Closing speeds, slopes and gradients have been computed before. */
 #include <math.h>
 
 #include "pairs.h"
 #include "specialise.h"
 
-/* What find_slopes reads, at the particle and at its neighbours; P NULL: noise is not wanted. */
+/* Inputs of find_slopes, for the particle (own) and its neighbours; P is NULL without noise. */
 struct slopes {
     const double *x, *own_L, *L, *own_P, *P, *own_v, *v;
     ptrdiff_t stride;
@@ -16,8 +16,8 @@ struct slope_terms {
     double own, theirs, noise;
 };
 
-/* What one axis adds for the neighbour in lane k. Axes are written out where this is called: loops
- * in loops would not be vectorised. */
+/* Contribution of one axis for the neighbour in lane k. The caller writes out the axes: nested
+ * loops would not be vectorised. */
 ALWAYS_INLINE struct slope_terms slope_along(int dim, bool projected, int a, ptrdiff_t k,
                                              const struct slopes *s)
 {
@@ -36,8 +36,8 @@ ALWAYS_INLINE struct slope_terms slope_along(int dim, bool projected, int a, ptr
     return (struct slope_terms){xa * u, xa * u_j, (xa - 0.5 * e) * moving};
 }
 
-/* x . L x/r^2 of the particle and of its neighbours and, where it is wanted, how fast noise
- * closes, x/r . (1 - P_ij) (v_ij + (L_i + L_j) x/2). */
+/* x . L x/r^2 with L of the particle and of each neighbour, and, if projected, the closing speed of
+ * noise, x/r . (1 - P_ij) (v_ij + (L_i + L_j) x/2). */
 ALWAYS_INLINE void slopes_body(int dim, bool projected, const struct pairs *pairs)
 {
     const struct lanes *lanes = pairs->lanes;
@@ -84,7 +84,7 @@ CLONES static void find_slopes(int dim, bool projected, const struct pairs *pair
         slopes_body(3, false, pairs);
 }
 
-/* minus v_ij . G of the neighbour in lane k, which heats where it is positive: v_ij . Gbar. */
+/* -v_ij . G of the neighbour in lane k; viscosity heats where this is positive. */
 ALWAYS_INLINE double approach(int dim, ptrdiff_t stride, ptrdiff_t k, const double *own_v,
                               const double *restrict v, const double *restrict G)
 {
@@ -93,8 +93,8 @@ ALWAYS_INLINE double approach(int dim, ptrdiff_t stride, ptrdiff_t k, const doub
     return sum;
 }
 
-/* K, what viscosity adds to a_i and a_j alike, for G = 1. With slopes viscosity that would cool is
- * left out: with a matrix a pair may approach against its gradient. */
+/* K, the viscous term added to both a_i and a_j, for G = 1. With slopes, viscosity that would cool
+ * is set to 0: with a matrix a pair may approach against its gradient. */
 ALWAYS_INLINE void viscous_body(enum viscosity viscosity, bool signal_form, int dim,
                                 const struct cells_method *method, const struct pairs *pairs)
 {
@@ -171,7 +171,8 @@ VISCOUS(viscous_mu_3, false, 3)
 VISCOUS(viscous_signal_2, true, 2)
 VISCOUS(viscous_signal_3, true, 3)
 
-/* Does no pair move against the other, and has none a slope? */
+/* True if no pair has a relative velocity and no particle has a velocity gradient, so that
+ * viscosity vanishes. */
 static bool all_still(const struct cells_method *method, const struct pairs *pairs)
 {
     const struct lanes *lanes = pairs->lanes;
@@ -180,7 +181,7 @@ static bool all_still(const struct cells_method *method, const struct pairs *pai
                  *v = pairs_theirs(pairs, RECORD_VELOCITY),
                  limit = method->still * *pairs_own(pairs, RECORD_SOUND);
     static const double none[CELLS_SQUARE];
-    /* one neighbour tells it of most gas that moves */
+    /* in moving gas the first neighbour usually settles it */
     if (!(count > 0 && fabs(*v - *own_v) < limit) || viscosity_of[method->viscosity].none)
         return false;
     if (viscosity_of[method->viscosity].midpoint) {
@@ -215,7 +216,7 @@ bool cells_viscosity(const struct cells *cells, const struct pairs *pairs)
     return true;
 }
 
-/* Is there a pair whose pressures differ by enough for the conductivity of shocks? */
+/* True if the pressures of some pair differ enough for the conductivity of shocks. */
 CLONES static bool any_shock(const struct pairs *pairs)
 {
     const double *restrict P = pairs_theirs(pairs, RECORD_PRESSURE);
@@ -226,7 +227,7 @@ CLONES static bool any_shock(const struct pairs *pairs)
     return any;
 }
 
-/* Conductivity (CONVENTIONS eq. 6.8), into heat: what the particle gains its neighbours lose. */
+/* Heat by conductivity (CONVENTIONS eq. 6.8); the neighbours lose what the particle gains. */
 CLONES static double conducted(int dim, double alpha_u, double alpha_s, const struct pairs *pairs)
 {
     const struct lanes *lanes = pairs->lanes;
@@ -242,7 +243,7 @@ CLONES static double conducted(int dim, double alpha_u, double alpha_s, const st
                  own_P = *pairs_own(pairs, RECORD_PRESSURE),
                  own_rho = *pairs_own(pairs, RECORD_DENSITY),
                  own_u = *pairs_own(pairs, RECORD_HEAT);
-    /* forces have been added: K is spare, while reactions wait to be given */
+    /* K is free: forces have been added. The reactions have not been applied yet. */
     double *restrict s = lane(lanes, LANE_K);
     double *restrict reaction = lane(lanes, LANE_REACTION + dim);
     for (int k = 0; k < count; k++) s[k] = 0;

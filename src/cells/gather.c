@@ -18,10 +18,10 @@ static void plain(const double *records, int size, const int32_t *slots, int cou
 
 #if SPHPROOF_CLONES && defined __x86_64__
 
-/* Records of up to this many groups have loops of their own, whose inner one is unrolled. */
+/* Records of up to this many groups have specialised loops with an unrolled inner loop. */
 enum { GROUPS_MAX = 12 };
 
-/* Four records at once, by transposing squares of four values. */
+/* Four records at once, by transposing 4 x 4 blocks of values. */
 __attribute__((target("avx2"), always_inline)) static inline void
 squares(const double *records, int size, const int32_t *slots, int count, double *restrict out,
         ptrdiff_t stride)
@@ -43,7 +43,7 @@ squares(const double *records, int size, const int32_t *slots, int count, double
     }
 }
 
-/* Eight records at once: halves of a register are records 4 apart. */
+/* Eight records at once: the two halves of a register hold records k and k + 4. */
 __attribute__((target("avx512f"), always_inline)) static inline void
 pairs_of_squares(const double *records, int size, const int32_t *slots, int count,
                  double *restrict out, ptrdiff_t stride)

@@ -27,7 +27,7 @@ static bool reserve_points(struct grid *grid, size_t n)
     grid->cell_of = pages_allocate(capacity * sizeof *grid->cell_of);
     grid->order = pages_allocate(capacity * sizeof *grid->order);
     grid->position = pages_allocate(capacity * sizeof *grid->position);
-    /* copied in whole vectors, also those of the last cell */
+    /* read in whole vectors, beyond the last point as well */
     bool floats = (grid->radius2 = calloc(capacity + COPIED, sizeof(float)));
     for (int a = 0; a < 3; a++)
         floats &= (grid->place[a] = calloc(capacity + COPIED, sizeof(float))) != NULL;
@@ -72,10 +72,10 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* A cell as large as the widest radius is searched with its next neighbours only, where that is
- * little more than three quarters of the points need: if cells were slightly smaller than the
- * radius of a few points, all around these would look through 5^d cells in place of 3^d. Where few
- * points are much wider, cells follow the others. */
+/* The cell size: the widest radius, if little less than that is needed by at least a quarter of the
+ * points. If cells were slightly smaller than the radius of a few points, all points near these
+ * would search 5^d cells instead of 3^d. If only few points have a much wider radius, the size
+ * follows the others. */
 static double usual_radius(size_t n, const double *radius)
 {
     double sample[SAMPLE], widest = 0;
@@ -86,7 +86,7 @@ static double usual_radius(size_t n, const double *radius)
         sample[k] = radius[k * n / count];
         wide += widest <= 1.2 * sample[k];
     }
-    if (wide >= count - count * 3 / 4) return widest; /* mostly: nothing is sorted */
+    if (wide >= count - count * 3 / 4) return widest; /* the usual case, without sorting */
     qsort(sample, count, sizeof *sample, compare_doubles);
     return sample[count * 3 / 4];
 }
@@ -123,7 +123,7 @@ static enum status find_extent(struct grid *grid, size_t n, const double *const 
     return STATUS_OK;
 }
 
-/* Cells at least as large as the usual radius, and not many more of them than points. */
+/* Chooses cells at least as large as the usual radius, and limits their number in relation to n. */
 static enum status lay_cells(struct grid *grid, size_t n, const double *radius, struct error *error)
 {
     const int dim = grid->box.dim;
@@ -178,18 +178,17 @@ static enum status lay_cells(struct grid *grid, size_t n, const double *radius, 
     return STATUS_OK;
 }
 
-/* Into the box: round-off may end at the upper edge, which is the lower one. */
+/* Wraps x into the box; round-off may give the upper edge, which is the lower one. */
 static double wrapped(double x, double lo, double side)
 {
-    if (x >= lo && x < lo + side) return x; /* nearly all particles: no division, no call */
+    if (x >= lo && x < lo + side) return x; /* the usual case: no division, no call */
     const double y = x - side * floor((x - lo) / side);
     return y < lo + side ? y : lo;
 }
 
-/* How far off a distance may come out in single precision, in units: places are at most half a
- * cell, and moved by whole cells. Counts where cells are many radii large, as those of points that
- * are together in a small part of a periodic box: lists then hold more than they need, never less.
- */
+/* Round-off of a distance in single precision, in units: positions are at most half a cell, shifted
+ * by whole cells. It matters if cells are many radii large, as for points in a small part of a
+ * periodic box: lists then hold more points than necessary, never fewer. */
 static double rounding_of(const struct grid *grid)
 {
     double largest = 0;
@@ -197,7 +196,7 @@ static double rounding_of(const struct grid *grid)
     return 4e-7 * largest / grid->unit;
 }
 
-/* A counting sort: stable, so that points of a cell keep their order. */
+/* A counting sort; stable, so that points of a cell keep their order. */
 static void sort_points(struct grid *grid, size_t n, const double *const x[])
 {
     const int dim = grid->box.dim;
@@ -220,8 +219,8 @@ static void sort_points(struct grid *grid, size_t n, const double *const x[])
     grid->start[0] = 0;
 }
 
-/* Positions and radii of the points by slot, and the widest radius of each cell. Single precision
- * is enough for the search where it starts at the middle of a cell. */
+/* Sets the positions and radii of the points by slot, and the widest radius of each cell. Single
+ * precision is enough for the search because its origin is the middle of a cell. */
 static void place_in_cells(struct grid *grid, const double *const x[], const double *radius)
 {
     const int dim = grid->box.dim;
@@ -253,7 +252,7 @@ static void place_in_cells(struct grid *grid, const double *const x[], const dou
     }
 }
 
-/* The sentinel: far from everything, at any image. */
+/* Places the sentinel far from all points and their images. */
 static void place_sentinel(struct grid *grid, size_t n, const double *radius)
 {
     double far = 0;
@@ -263,8 +262,8 @@ static void place_sentinel(struct grid *grid, size_t n, const double *radius)
     grid->position[n][0] = 64 * far;
 }
 
-/* A cell's reach: the largest radius among its own points and those of the cells whose points reach
- * as far as this one. */
+/* Sets the reach of each cell: the largest radius among its own points and the points whose radius
+ * extends into this cell. */
 static void find_reaches(struct grid *grid)
 {
     float least = INFINITY, most = 0;
@@ -302,7 +301,7 @@ static void find_reaches(struct grid *grid)
             }
 }
 
-/* Whole cells, of about PART points. */
+/* Cuts the slots into parts of whole cells with about PART points. */
 static void cut_parts(struct grid *grid)
 {
     size_t parts = 0;
@@ -368,7 +367,7 @@ static bool any_asleep(const struct grid *grid, size_t cell, const unsigned char
     return false;
 }
 
-/* Is one of the cells that the points of the cell look through marked? */
+/* True if one of the cells that are searched for this cell's points is marked. */
 static bool looks_at_mark(const struct grid *grid, size_t cell)
 {
     ptrdiff_t c[3];
@@ -438,12 +437,12 @@ const struct grid_run *grid_runs(const struct grid *grid, size_t *count)
 
 double grid_bytes(int dim, double n, double neighbours)
 {
-    /* cell_of, order; position; radius2 and place; list */
+    /* cell_of, order; position; radius2 and place; lists */
     const double point =
         2 * sizeof(uint32_t) + 3 * sizeof(double) + 4 * sizeof(float) + sizeof(struct grid_list);
-    /* 2D: lists end in half a vector of fillings; 3D: a mark for each point within the radius of a
-     * cell as wide, 20.6 of its volumes, of which a ball has 4 pi/3; and for each cell one for
-     * those of 3 x 3 x 3 */
+    /* 2D: lists end with half a vector of sentinels on average. 3D: a bit for each point within the
+     * radius of a cell as wide, whose volume is 20.6 radii cubed (a ball has 4 pi/3), and for each
+     * cell a bit for each point in its 3 x 3 x 3 cells. */
     const double list = dim == 2 ? (neighbours + 0.5 * GRID_LANES) * sizeof(int32_t)
                                  : (neighbours * 20.6 / 4.19 + COPIED + 27) / 8;
     return n * (point + list);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Inside of a grid: shared by its cells (grid.c), its lists (grid_lists.c) and
- * the loops that tell who is near (grid_near.c). */
+ * Private to the grid: shared by its cells (grid.c), its lists (grid_lists.c) and the distance
+ * loops (grid_near.c). */
 #ifndef SPHPROOF_GRID_INSIDE_H
 #define SPHPROOF_GRID_INSIDE_H
 
@@ -10,87 +10,89 @@
 #include "team.h"
 
 enum {
-    TILE = 8,             /* columns of a tile, each way */
-    PART = 256,           /* slots of a part at most, but for a cell that holds more */
-    SAMPLE = 1000,        /* radii that choose the size of the cells */
-    CHUNK = 1 << 18,      /* words of lists that a thread asks for at once */
-    CHUNK_NEXT = 1 << 19, /* words of each chunk after the first: a large page */
-    CELLS_A_POINT = 2,    /* at most */
-    COPIED = 16,          /* points that are copied at once; arrays of slots are that much longer */
-    AHEAD = 256,          /* words of lists that are fetched before they are written */
-    BEYOND = 16           /* entries that a vector may write after the end of a list */
+    TILE = 8,             /* columns of a tile, in y and in z */
+    PART = 256,           /* maximum slots of a part, unless one cell has more */
+    SAMPLE = 1000,        /* radii sampled for the cell size */
+    CHUNK = 1 << 18,      /* words of a thread's first chunk of lists */
+    CHUNK_NEXT = 1 << 19, /* words of each further chunk: a large page */
+    CELLS_A_POINT = 2,    /* maximum */
+    COPIED = 16,          /* points copied at once; arrays by slot are that much longer */
+    AHEAD = 256,          /* distance of prefetching, in words of lists */
+    BEYOND = 16           /* entries that may be written after the end of a list */
 };
 
-/* Memory for lists, in chunks that never move. */
+/* Memory of lists, in chunks that never move. */
 struct grid_pool {
     _Alignas(TEAM_APART) int32_t **chunks;
     size_t *sizes;
-    size_t count, used_chunks, used; /* chunks there are; in use; words used of the last one */
+    size_t count, used_chunks, used; /* chunks allocated; in use; words used of the last one */
 };
 
-/* What one thread needs for the cell that it works on: candidates of its points. */
+/* Work arrays of one thread: candidates for the lists of one cell's points. */
 struct candidates {
-    _Alignas(TEAM_APART) size_t capacity, most; /* most: points around a cell in this search */
-    size_t seen; /* points of the cells around, that it has candidates of */
+    _Alignas(TEAM_APART) size_t capacity,
+        most;    /* most: largest number of points around a cell in this search */
+    size_t seen; /* points of the surrounding cells */
     float *x[3], *radius2;
     uint8_t *near;
     uint16_t *marks;
-    int32_t *slots; /* 2D: of the points of the cells around */
+    int32_t *slots; /* 2D: of the points of the surrounding cells */
 };
 
-/* What the points of a cell lie in, and the largest of their radii squared. */
+/* Bounding box of a cell's points, and their largest squared radius. */
 struct surroundings {
     float lo[3], hi[3], radius2;
 };
 
 struct grid;
 
-/* 3D: appends the points of a cell, moved by what lies between it and the cell that looks, to the
- * count candidates that there are, if they may be near; marks them, the first one as number at.
- * Returns how many candidates there are then. */
+/* 3D: appends those points of a cell to the `count` candidates that may be near the box `around`,
+ * shifted by `moved`, the offset of the cell from the one that searches. Sets their bits in
+ * to->marks, where the cell's first point has number `at`. Returns the new number of candidates. */
 typedef size_t take_loop(const struct grid *grid, size_t cell, const float moved[3],
                          const struct surroundings *around, struct candidates *to, size_t count,
                          size_t at);
 
-/* Marks the candidates that are near a point. Returns how many. */
+/* Marks the candidates near a point. Returns their number. */
 typedef int32_t find_loop(int dim, const struct candidates *candidates, size_t count,
                           const float at[3], float radius2, uint16_t *marks);
 
-/* The slots of the marked candidates; the list has room for all and BEYOND. Returns how many. */
+/* Writes the slots of the marked candidates to list, which has space for all and BEYOND. Returns
+ * their number. */
 typedef int32_t read_loop(const int32_t *candidates, const uint16_t *marks, size_t count,
                           int32_t *list);
 
 struct grid {
     struct grid_box box;
-    int threads, team; /* there are; at work */
+    int threads, team; /* maximum; in use */
     size_t n, capacity;
-    double lo[3], side[3], size[3], cell_inverse[3]; /* side: period or extent */
-    double unit; /* what single precision is used in: the usual radius */
+    double lo[3], side[3], size[3], cell_inverse[3]; /* side: period, or extent of the points */
+    double unit; /* unit of length of all floats: the usual radius */
     ptrdiff_t cells[3];
     size_t cell_count, cell_capacity, column_capacity;
-    uint32_t *column;     /* y + cells[1] z -> rank of the column of cells along x */
-    uint32_t *column_at;  /* and back */
-    uint32_t *start;      /* first slot of each cell, and the end */
-    uint32_t *cell_of;    /* of each point */
-    float *widest;        /* largest radius of the cell's points; in units, as all floats here */
-    float *reach;         /* how far its points and those of others reach across it */
-    ptrdiff_t within[3];  /* cells that every reach covers; -1: not all the same */
-    unsigned char *marks; /* two of each cell, for the rim */
-    unsigned char *listed, *seen; /* of each cell in a search: has it a listed point; is it near a
-                                     cell that has? */
+    uint32_t *column;             /* y + cells[1] z -> rank of the column of cells along x */
+    uint32_t *column_at;          /* inverse of column */
+    uint32_t *start;              /* first slot of each cell, and the end */
+    uint32_t *cell_of;            /* of each point */
+    float *widest;                /* largest radius of each cell's points */
+    float *reach;                 /* largest radius that matters for each cell (find_reaches) */
+    ptrdiff_t within[3];          /* cells covered by the reach; -1: differs between cells */
+    unsigned char *marks;         /* four arrays by cell: sleeping, rim, listed, seen */
+    unsigned char *listed, *seen; /* by cell: it has a listed point; a listed cell searches it */
     struct grid_run *runs;
     size_t run_count, run_capacity;
-    uint16_t **reached; /* 3D, of each cell with lists: marks of the points of the cells around
-                           that its own may be near; NULL: of none is it known that they are not */
+    uint16_t **reached; /* 3D, for each cell with lists: marks of the points of the surrounding
+                           cells that are candidates; NULL: all are */
     uint32_t *order;
     double (*position)[3];
-    float *place[3], *radius2; /* of each slot: from the middle of its cell; radius squared */
+    float *place[3],
+        *radius2; /* by slot: position relative to the middle of the cell; squared radius */
     struct grid_list *lists;
     uint32_t *part_begin, *part_cell;
     size_t parts;
     int longest;
-    size_t candidates_most;     /* of a cell */
-    size_t active;              /* points that may have lists */
+    size_t candidates_most;     /* largest number around a cell */
+    size_t active;              /* number of points that may have lists */
     const unsigned char *flags; /* of the last search */
     struct grid_pool *pools;
     struct candidates *candidates;
@@ -110,7 +112,7 @@ static inline size_t grid_cell_at(const struct grid *grid, const ptrdiff_t c[3])
            (size_t)c[0];
 }
 
-/* The coordinates of a cell from its number. */
+/* Coordinates of a cell from its number. */
 static inline void grid_cell_coordinates(const struct grid *grid, size_t cell, ptrdiff_t c[3])
 {
     const uint32_t column = grid->column_at[cell / (size_t)grid->cells[0]];
@@ -119,7 +121,7 @@ static inline void grid_cell_coordinates(const struct grid *grid, size_t cell, p
     c[2] = (ptrdiff_t)column / grid->cells[1];
 }
 
-/* Cells on either side along an axis that a radius, in units, covers. */
+/* Number of cells on either side along an axis that a radius, in units, covers. */
 static inline ptrdiff_t grid_cells_within(const struct grid *grid, int axis, double radius)
 {
     if (!(grid->size[axis] > 0)) return 0;
@@ -127,8 +129,9 @@ static inline ptrdiff_t grid_cells_within(const struct grid *grid, int axis, dou
     return k < (double)grid->cells[axis] ? (ptrdiff_t)k : grid->cells[axis];
 }
 
-/* The cells that the points of a cell look through on one axis: from, count; across: the edge of a
- * periodic box lies between; all: the axis has fewer cells, so that images must be compared. */
+/* The cells along one axis that are searched for the points of a cell: `count` cells from `from`;
+ * across: the range crosses the edge of a periodic box; all: the axis has fewer cells than the
+ * range, so that each pair needs its nearest image. */
 struct look {
     ptrdiff_t from, count;
     bool across, all;
@@ -159,19 +162,19 @@ static inline ptrdiff_t grid_folded(const struct grid *grid, int axis, ptrdiff_t
 
 /* --- grid_near.c ------------------------------------------------------------------------------ */
 
-/* The fastest loops that this processor runs. */
+/* The fastest loops that this processor supports. */
 take_loop *grid_take_choose(void);
 find_loop *grid_find_choose(void);
 read_loop *grid_read_choose(void);
 
-/* What a find_loop does in a box hardly wider than the radii: of all images the nearest one; side:
- * period in units, HUGE_VALF where there is none. */
+/* As a find_loop, for a box hardly wider than the radii: takes the nearest image of each candidate.
+ * side: periods in units, HUGE_VALF if not periodic. */
 int32_t grid_find_images(int dim, const struct candidates *candidates, size_t count,
                          const float at[3], float radius2, const float side[3], uint16_t *marks);
 
 /* --- grid_lists.c ----------------------------------------------------------------------------- */
 
-/* Lists of all active points, from the cells. STATUS_ENVIRONMENT: no memory. */
+/* Makes the lists of all active points. STATUS_ENVIRONMENT: no memory. */
 enum status grid_make_lists(struct grid *grid, struct error *error);
 
 #endif

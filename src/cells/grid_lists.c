@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The neighbour lists of a grid: the points of the cells around are copied next to each other, in
- * single precision and relative to the cell, and tested together. */
+ * The neighbour lists of a grid: the points of the surrounding cells are copied next to each other,
+ * in single precision and relative to the cell, and tested together. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +16,7 @@ static int32_t *pool_take(struct grid_pool *pool, size_t most)
         while (pool->used_chunks < pool->count && pool->sizes[pool->used_chunks] < most)
             pool->used_chunks++;
         if (pool->used_chunks == pool->count) {
-            /* the first one is small: most runs need no more */
+            /* the first chunk is small: most runs need no more */
             const size_t usual = pool->count > 0 ? CHUNK_NEXT : CHUNK,
                          size = most > usual ? most : usual;
             int32_t **chunks = realloc(pool->chunks, (pool->count + 1) * sizeof *chunks);
@@ -35,7 +35,7 @@ static int32_t *pool_take(struct grid_pool *pool, size_t most)
     return pool->chunks[pool->used_chunks - 1] + pool->used;
 }
 
-/* Room for n more after count, which are kept, and their marks. */
+/* Ensures capacity for n more candidates and their marks; keeps the first `count`. */
 static bool reserve_candidates(struct candidates *candidates, size_t count, size_t n)
 {
     if (count + n <= candidates->capacity) return true;
@@ -59,7 +59,7 @@ static bool reserve_candidates(struct candidates *candidates, size_t count, size
     return true;
 }
 
-/* All points of a cell, in whole vectors, whose rest the next cell overwrites. */
+/* Appends all points of a cell, in whole vectors; the next cell overwrites the excess. */
 CLONES static size_t take_all(const struct grid *grid, size_t cell, const float moved[3],
                               struct candidates *to, size_t count)
 {
@@ -77,8 +77,7 @@ CLONES static size_t take_all(const struct grid *grid, size_t cell, const float 
     return count + n;
 }
 
-/* Fills the last group of 16 with candidates that no particle is near. Returns their number with
- * the filling. */
+/* Fills the last group of 16 with candidates that are near no point. Returns the total number. */
 static size_t fill_up(const struct candidates *candidates, size_t count)
 {
     const size_t whole = (count + COPIED - 1) / COPIED * COPIED;
@@ -92,11 +91,11 @@ static size_t fill_up(const struct candidates *candidates, size_t count)
 
 struct region {
     struct look along[3];
-    bool across, all; /* images matter; a pair's image must be found for each pair */
-    bool few;         /* of the cells, those without listed points do not matter */
+    bool across, all; /* the region crosses a periodic edge; each pair needs its nearest image */
+    bool few;         /* skip cells without listed points */
 };
 
-/* The cells that the points of the cell at c look through. */
+/* The cells to be searched for the points of the cell at c. */
 static struct region find_region(const struct grid *grid, const ptrdiff_t c[3], size_t cell)
 {
     struct region region = {.few = grid->flags && !grid->listed[cell]};
@@ -108,10 +107,10 @@ static struct region find_region(const struct grid *grid, const ptrdiff_t c[3], 
     return region;
 }
 
-/* Gathers the candidates of the cell at c: the points of the cells around, or, unless `around` is
- * NULL, those that may be near it, marked by a bit for each point in the order of find_slots; own:
- * the first of the cell's own among them. Returns how many, in whole 16s the last of which never
- * match; SIZE_MAX: no memory. */
+/* Gathers the candidates of the cell at c: all points of the surrounding cells, or, unless `around`
+ * is NULL, those that may be near it, with a mark for each point in the order of find_slots. own:
+ * index of the cell's own first point among them. Returns their number, a multiple of 16 with
+ * fillings; SIZE_MAX: no memory. */
 static size_t find_candidates(const struct grid *grid, const ptrdiff_t c[3],
                               const struct region *region, const struct surroundings *around,
                               struct candidates *candidates, size_t *own)
@@ -143,7 +142,7 @@ static size_t find_candidates(const struct grid *grid, const ptrdiff_t c[3],
     return fill_up(candidates, count);
 }
 
-/* n numbers from first on, in whole vectors. */
+/* Writes n consecutive numbers from first on, in whole vectors. */
 CLONES static void count_up(size_t n, int32_t first, int32_t *restrict to)
 {
     for (size_t from = 0; from < n; from += COPIED)
@@ -151,7 +150,7 @@ CLONES static void count_up(size_t n, int32_t first, int32_t *restrict to)
         for (int k = 0; k < COPIED; k++) to[from + (size_t)k] = first + (int32_t)from + k;
 }
 
-/* Of a cell that is not empty. */
+/* For a cell that is not empty. */
 static struct surroundings find_surroundings(const struct grid *grid, size_t cell)
 {
     const uint32_t begin = grid->start[cell];
@@ -168,11 +167,12 @@ static struct surroundings find_surroundings(const struct grid *grid, size_t cel
     return around;
 }
 
-/* Their slots, in the same order; the list has room for COPIED more. Returns how many. */
+/* The slots of the candidates, in the same order; slots has space for COPIED more. Returns their
+ * number. */
 static size_t find_slots(const struct grid *grid, const struct region *region, int32_t *slots)
 {
     const struct look *l = region->along;
-    /* cells of a row are numbered one after the other, and so are their points */
+    /* cells of a row, and so their slots, are numbered consecutively */
     const bool runs = !region->few && l[0].from >= 0 && l[0].from + l[0].count <= grid->cells[0];
     const ptrdiff_t cells = runs ? l[0].count : 1;
     size_t count = 0;
@@ -192,7 +192,7 @@ static size_t find_slots(const struct grid *grid, const struct region *region, i
     return count;
 }
 
-/* beside: a listed point may be near. */
+/* True if the slot gets a list. beside: a listed point may be near. */
 static bool is_listed(const struct grid *grid, uint32_t slot, bool beside)
 {
     const uint32_t point = grid->order[slot];
@@ -201,8 +201,8 @@ static bool is_listed(const struct grid *grid, uint32_t slot, bool beside)
     return flag == GRID_LISTED || (beside && flag == GRID_BESIDE);
 }
 
-/* Marks the cells with listed points, and those that they look through. Points beyond the active
- * ones are images: of which, the caller knows, and so they count. */
+/* Marks the cells with listed points, and the cells that are searched for these. Points beyond the
+ * active ones are images, which count as listed because only the caller knows their particles. */
 static void mark_cells(struct grid *grid)
 {
     unsigned char *listed = grid->listed = grid->marks + 2 * grid->cell_capacity;
@@ -229,7 +229,7 @@ static void mark_cells(struct grid *grid)
     }
 }
 
-/* The slots of cells that are seen. */
+/* Collects the slots of `seen` cells in runs. */
 static bool find_runs(struct grid *grid)
 {
     const unsigned char *seen = grid->seen;
@@ -256,13 +256,13 @@ static bool find_runs(struct grid *grid)
     return true;
 }
 
-/* Memory of lists to come: it is far away, and a vector waits until it may be written. */
+/* Prefetches the memory of the next lists, so that vector stores do not wait for it. */
 static void fetch(const int32_t *words, size_t count)
 {
     for (size_t k = 0; k < count; k += 16) __builtin_prefetch(words + k, 1);
 }
 
-/* The slots of the marked candidates, then sentinels up to whole vectors. */
+/* Writes the slots of the marked candidates, then sentinels up to whole vectors. */
 static void read_list(const struct grid *grid, const int32_t *candidates, const uint16_t *marks,
                       size_t count, int32_t *list)
 {
@@ -270,7 +270,7 @@ static void read_list(const struct grid *grid, const int32_t *candidates, const 
     for (int k = 0; k < GRID_LANES; k++) list[end + k] = (int32_t)grid->n;
 }
 
-/* The lists of a cell's points. Returns the longest one, -1: no memory. */
+/* Makes the lists of a cell's points. Returns the longest length, or -1: no memory. */
 static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidates *candidates,
                        struct grid_pool *pool)
 {
@@ -286,7 +286,7 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
     }
     if (!any) return 0;
     float side[3];
-    size_t own = SIZE_MAX; /* not among the candidates */
+    size_t own = SIZE_MAX; /* own points are not candidates */
     for (int a = 0; a < 3; a++)
         side[a] = grid_wraps(grid, a) ? (float)(grid->side[a] / grid->unit) : HUGE_VALF;
     const bool drops = marked && !region.all;
@@ -401,7 +401,7 @@ void grid_reader_free(struct grid_reader *reader)
     *reader = (struct grid_reader){0};
 }
 
-/* The candidates of the cell of a slot. Mostly it is the next one along x. */
+/* Loads the candidates of a slot's cell, which is usually the next one along x. */
 static void enter_cell(const struct grid *grid, struct grid_reader *reader, size_t slot)
 {
     size_t cell = reader->cell + 1;

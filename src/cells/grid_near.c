@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Which points are near which: the loops over candidates, plain ones and those of processors with
- * AVX-512, which find the same. */
+ * The distance loops over candidates: plain ones, and equivalent ones for processors with AVX-512.
+ */
 #include <math.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@
 #include <immintrin.h>
 #endif
 
-/* Which candidates are near the point at x? `near` gets 0 or 1; count in whole 16s. */
+/* near[k] = 1 if candidate k is near the point at `at`, otherwise 0; count a multiple of 16. */
 #define NEAR(name, dim)                                                                            \
     CLONES static void name(size_t count, const float at[3], float radius2,                        \
                             const float *restrict x, const float *restrict y,                      \
@@ -30,14 +30,14 @@
 NEAR(near_2, 2)
 NEAR(near_3, 3)
 
-/* The difference of two positions that is nearest to 0. */
+/* The periodic image of a difference of positions that is nearest to 0. */
 ALWAYS_INLINE float nearest(float d, float side)
 {
     const float half = 0.5f * side;
     return d > half ? d - side : d < -half ? d + side : d;
 }
 
-/* Bytes of 0 and 1 as bits. Returns how many are 1. */
+/* Packs bytes of 0 and 1 into bits. Returns the number of ones. */
 static int32_t pack(const uint8_t *near, size_t count, uint16_t *marks)
 {
     const uint64_t to_top = 0x0102040810204080u, sum = 0x0101010101010101u;
@@ -52,7 +52,7 @@ static int32_t pack(const uint8_t *near, size_t count, uint16_t *marks)
     return (int32_t)found;
 }
 
-/* Marks of 16 points from the one numbered `at` on; those before it stay. */
+/* Writes the marks of 16 points from number `at` on; keeps the marks before it. */
 ALWAYS_INLINE void put_marks(uint16_t *marks, size_t at, uint32_t near)
 {
     const uint32_t before = marks[at / 16] & ((1u << at % 16) - 1), wide = near << at % 16 | before;
@@ -60,15 +60,15 @@ ALWAYS_INLINE void put_marks(uint16_t *marks, size_t at, uint32_t near)
     marks[at / 16 + 1] = (uint16_t)(wide >> 16);
 }
 
-/* How far outside of lo .. hi is x? */
+/* Distance of x from the interval lo .. hi. */
 ALWAYS_INLINE float outside(float x, float lo, float hi)
 {
     const float above = x - hi, below = lo - x, d = above > below ? above : below;
     return d > 0 ? d : 0;
 }
 
-/* Rounding keeps order: no distance to a point between lo and hi comes out less than that to the
- * box. */
+/* Rounding is monotonic: the distance to a point inside the box never rounds to less than the
+ * distance to the box. */
 CLONES static size_t take_plainly(const struct grid *grid, size_t cell, const float moved[3],
                                   const struct surroundings *around, struct candidates *to,
                                   size_t count, size_t at)
@@ -144,7 +144,7 @@ static int32_t find_plainly(int dim, const struct candidates *candidates, size_t
     return pack(candidates->near, count, marks);
 }
 
-/* Four marks at once: loops that end are what costs. */
+/* 64 marks at once, because the end of each inner loop is expensive. */
 static int32_t read_plainly(const int32_t *candidates, const uint16_t *marks, size_t count,
                             int32_t *list)
 {
@@ -186,7 +186,7 @@ find_in_vectors(int dim, const struct candidates *candidates, size_t count, cons
     return found;
 }
 
-/* Lanes that stay are moved together in a register. */
+/* As take_plainly; a compress instruction packs the lanes that are kept. */
 __attribute__((target("avx512f,popcnt"))) static size_t
 take_in_vectors(const struct grid *grid, size_t cell, const float moved[3],
                 const struct surroundings *around, struct candidates *to, size_t count, size_t at)
@@ -217,7 +217,7 @@ take_in_vectors(const struct grid *grid, size_t cell, const float moved[3],
     return count;
 }
 
-/* The same with slots. */
+/* As read_plainly. */
 __attribute__((target("avx512f,popcnt"))) static int32_t
 read_by_compressing(const int32_t *candidates, const uint16_t *marks, size_t count, int32_t *list)
 {

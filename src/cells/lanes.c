@@ -18,7 +18,7 @@ int lanes_longest_record(const struct cells *cells)
 
 bool lanes_reserve(struct cells *cells)
 {
-    /* an odd number of cache lines, so that arrays do not fall on the same cache sets */
+    /* an odd number of cache lines, so that arrays do not fall into the same cache sets */
     const ptrdiff_t stride = 8 * ((grid_longest(cells->grid) / 8 + 1) | 1);
     for (int t = 0; t < cells->method.threads; t++) {
         struct lanes *lanes = &cells->lanes[t];
@@ -31,7 +31,7 @@ bool lanes_reserve(struct cells *cells)
         }
         if (lanes->block && stride <= lanes->stride) continue;
         free(lanes->block);
-        /* half as much again, so that steps need not ask for more */
+        /* half as much again, so that later steps need not reallocate */
         lanes->stride = 8 * ((3 * stride / 16) | 1);
         lanes->block = aligned_alloc(64, (size_t)(LANES_OWN + lanes_longest_record(cells)) *
                                              (size_t)lanes->stride * sizeof(double));
@@ -44,15 +44,15 @@ bool lanes_reserve(struct cells *cells)
     return true;
 }
 
-/* What geometry is found from, and where to. */
+/* Inputs and outputs of the geometry loops. */
 struct geometry {
-    const double *at, *side;     /* of the particle; periods, HUGE_VAL: open */
-    const double *x, *own_v, *v; /* axes a stride apart, as all that is found */
+    const double *at, *side;     /* the particle's position; periods, HUGE_VAL: open */
+    const double *x, *own_v, *v; /* axes are `stride` apart, in the results as well */
     double *d, *r, *r_inverse, *closing;
     ptrdiff_t stride;
 };
 
-/* 1/r is 0 where points coincide: a pair without a direction. */
+/* Sets 1/r = 0 where points coincide, as such a pair has no direction. */
 ALWAYS_INLINE void geometry_body(int dim, bool wrapped, enum lanes_geometry geometry, int count,
                                  const struct geometry *g)
 {
@@ -157,7 +157,7 @@ struct lanes_list lanes_partners(const struct cells *cells, size_t slot, struct 
     const unsigned char *kinds = cells->kinds;
     const bool active = kinds[slot] == CELLS_ACTIVE;
     int kept = 0;
-    if (cells->pair_level >= 0) /* pairs that leave this level for a finer one */
+    if (cells->pair_level >= 0) /* keep the pairs that move from this level to a finer one */
         for (int32_t k = 0; k < count; k++) {
             const unsigned own = kinds[slot], theirs = kinds[slots[k]];
             const unsigned before = (own & 15) > (theirs & 15) ? own & 15 : theirs & 15,
@@ -165,7 +165,7 @@ struct lanes_list lanes_partners(const struct cells *cells, size_t slot, struct 
             lanes->slots[kept] = slots[k];
             kept += before == (unsigned)cells->pair_level && after > before;
         }
-    else /* the active have forces with all but those on finer levels, others with the active */
+    else /* active particles interact with all but finer levels, others with active ones */
         for (int32_t k = 0; k < count; k++) {
             const unsigned char kind = kinds[slots[k]];
             lanes->slots[kept] = slots[k];
@@ -175,7 +175,7 @@ struct lanes_list lanes_partners(const struct cells *cells, size_t slot, struct 
     return (struct lanes_list){lanes->slots, kept, 0};
 }
 
-/* Bytes of lanes that the first-level cache holds beside records. */
+/* Bytes of lanes that fit into the first-level cache beside the records. */
 enum { LANES_BYTES = 24 << 10 };
 
 int lanes_gather_part(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
@@ -240,8 +240,8 @@ CLONES static bool agree(int axes, int count, ptrdiff_t stride, const double *re
     return true;
 }
 
-/* Stamped functions are static, and the public ones call them: clang 14 gives the dispatched symbol
- * a name of its own, so that another file would not find it. */
+/* CLONES functions are static, and public functions call them: clang 14 renames the dispatched
+ * symbol, so that other files would not find it. */
 double lanes_sum(const double *values, int count)
 {
     return sum(values, count);

@@ -6,7 +6,7 @@
 
 enum { MAX = 3 };
 
-/* NaN if one of them is. */
+/* Largest magnitude; NaN if a value is NaN. */
 static double largest(int n, const double *a, int stride)
 {
     double m = 0;
@@ -29,7 +29,7 @@ static void swap(double *a, double *b)
     *b = t;
 }
 
-/* Gauss-Jordan in place: a becomes its inverse. False at a zero pivot. */
+/* Replaces a by its inverse (Gauss-Jordan). False: zero pivot. */
 static bool eliminate(int dim, double *a)
 {
     int row[MAX], column[MAX];
@@ -60,8 +60,8 @@ static bool eliminate(int dim, double *a)
     return true;
 }
 
-/* By cofactors, where the determinant shows that nothing cancels: the usual case, five times
- * faster. False, and inverse untouched, elsewhere. */
+/* Inverts by cofactors if the determinant shows that nothing cancels: the usual case, five times
+ * faster. Otherwise returns false and leaves inverse unchanged. */
 static bool invert_plainly(int dim, const double *a, double *inverse)
 {
     double b[MAX * MAX], c[MAX * MAX], determinant;

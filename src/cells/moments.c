@@ -6,7 +6,7 @@
 #include "matrix.h"
 #include "specialise.h"
 
-/* All entries of sum weight x x^T in one walk. */
+/* All entries of sum weight x x^T in one loop. */
 ALWAYS_INLINE void squares_body(int dim, int count, ptrdiff_t stride, const double *restrict weight,
                                 const double *restrict x, double *restrict sums)
 {

@@ -11,7 +11,7 @@
 
 enum { BLOCK = NEIGHBOURS_BLOCK, FAN = 8, IMAGES_MAX = 8 };
 
-/* The lowest bits of x, stride apart. */
+/* Spreads the lowest bits of x to a distance of stride. */
 static uint64_t spread(uint64_t x, int stride)
 {
     if (stride == 2) {
@@ -30,7 +30,7 @@ static uint64_t spread(uint64_t x, int stride)
     return x;
 }
 
-/* Position along the Hilbert curve of a cell with coordinates c, bits each: Skilling's
+/* Index along the Hilbert curve of a cell with coordinates c of `bits` bits each: Skilling's
  * AxesToTranspose without branches, then the bits interleaved. */
 ALWAYS_INLINE uint64_t hilbert_key(int dim, int bits, uint64_t c[])
 {
@@ -55,7 +55,7 @@ struct entry {
     uint32_t index;
 };
 
-/* Stable radix sort by key; the result is in entries, other is as large. */
+/* Stable radix sort of entries by key; other: work array of the same size. */
 static void sort(struct entry *entries, struct entry *other, size_t n)
 {
     for (int shift = 0; shift < 64; shift += 8) {
@@ -71,7 +71,7 @@ static void sort(struct entry *entries, struct entry *other, size_t n)
 static double wrapped(double x, double lo, double length)
 {
     const double y = x - length * floor((x - lo) / length);
-    return y < lo + length ? y : lo; /* round-off may end at the upper edge */
+    return y < lo + length ? y : lo; /* round-off may give the upper edge */
 }
 
 static double coordinate(const struct points *points, int axis, size_t i)
@@ -99,7 +99,7 @@ static bool order_points(struct neighbours *nb, const struct points *points)
     const double scale = cells / extent <= 1e300 ? (cells - 1) / extent : 0;
     for (size_t i = 0; i < points->n; i++) {
         uint64_t c[3] = {0};
-        for (int a = 0; scale > 0 && a < dim; a++) /* 0: too narrow or too wide for any order */
+        for (int a = 0; scale > 0 && a < dim; a++) /* 0: extent too small or too large to sort */
             c[a] = (uint64_t)((coordinate(points, a, i) - lo[a]) * scale);
         entries[i] = (struct entry){hilbert_key(dim, bits, c), (uint32_t)i};
     }
@@ -112,7 +112,7 @@ static bool order_points(struct neighbours *nb, const struct points *points)
     return true;
 }
 
-/* Level 0 encloses blocks of points, each further level eight boxes of the one below. */
+/* Level 0 has the boxes of blocks of points, each further level the boxes of eight boxes below. */
 static bool build_boxes(struct neighbours *nb)
 {
     const size_t dim = (size_t)nb->dim;

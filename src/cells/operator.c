@@ -84,7 +84,7 @@ static bool ordinary(const struct cloud *cloud, size_t fields, const double *con
     return all;
 }
 
-/* One component of the gradients of a field, found in other units, in those of the caller. */
+/* Converts one component of a field's gradients back to the caller's units. */
 static void give_back(size_t n, int e, double *gradient, struct operator_point *point)
 {
     for (size_t i = 0; i < n; i++) {
@@ -96,7 +96,7 @@ static void give_back(size_t n, int e, double *gradient, struct operator_point *
     }
 }
 
-/* The exponents of the units: of length, of volume, then of the fields. */
+/* e: exponents of the units of length, of volume, then of the fields. */
 static enum status apply_in_units(const struct operator_settings *settings,
                                   const struct cloud *cloud, size_t fields, const int *e,
                                   double **scaled, double *const *gradient,

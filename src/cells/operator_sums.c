@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The gradients of a block of points at a time: its candidates are gathered once, and every point
- * selects its neighbours among them. */
+ * Gradients by blocks of points: the candidates of a block are gathered once, and each of its
+ * points selects its neighbours among them. */
 #include "operator_sums.h"
 
 #include <float.h>
@@ -10,14 +10,14 @@
 #include "matrix.h"
 #include "specialise.h"
 
-/* Sums run in LANES partial sums whatever the instruction set, so that bits do not depend on it. */
+/* Sums use LANES partial sums on every instruction set, so that results are identical. */
 enum { LANES = 8 };
 typedef double lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(8), may_alias));
 
 #define LANES_SUM(s) (((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7])))
 
-/* One thread's arrays for the neighbours of one point, filled up to a multiple of LANES with
- * neighbours of no weight. Lengths are in units of h. */
+/* Work arrays of one thread for the neighbours of one point, filled up to a multiple of LANES with
+ * neighbours of weight 0. Lengths are in units of h. */
 struct work {
     struct candidates candidates;
     size_t capacity;
@@ -52,13 +52,13 @@ static void work_free(struct work *work)
     free(work->memory), free(work->list), free(work->j);
 }
 
-/* How far outside of an interval a coordinate lies. */
+/* Distance of a coordinate from an interval. */
 ALWAYS_INLINE double gap(double lo, double hi, double at)
 {
     return largest(largest(lo - at, at - hi), 0);
 }
 
-/* Squares of the distances from a point to the boxes of candidate blocks. */
+/* Squared distances from a point to the boxes of candidate blocks. */
 ALWAYS_INLINE void box_distances(int dim, const struct candidates *c, const double *at,
                                  double *restrict distance2)
 {
@@ -73,8 +73,8 @@ ALWAYS_INLINE void box_distances(int dim, const struct candidates *c, const doub
     }
 }
 
-/* Fills list and distance2 with the candidates within reach of a point, block by block; returns
- * their number. No branches: the append costs the same, in or out. */
+/* Fills list and distance2 with the candidates whose squared distance is at most limit, block by
+ * block. Returns their number. Appends without branches. */
 ALWAYS_INLINE size_t list_neighbours(int dim, struct work *work, const double *at, double limit)
 {
     const struct candidates *c = &work->candidates;
@@ -107,11 +107,11 @@ ALWAYS_INLINE size_t list_neighbours(int dim, struct work *work, const double *a
 }
 
 struct selection {
-    size_t n; /* neighbours with the filling */
+    size_t n; /* neighbours with fillings */
     uint32_t inside;
 };
 
-/* Fills j, x, q, v with the neighbours of a point. inside: those with r < h. */
+/* Fills j, x, q, v with the neighbours of a point. inside: number with r < h. */
 ALWAYS_INLINE struct selection select_neighbours(int dim, const struct operator_task *task,
                                                  struct work *work, const double *at, double h,
                                                  uint32_t self)
@@ -119,7 +119,7 @@ ALWAYS_INLINE struct selection select_neighbours(int dim, const struct operator_
     const struct candidates *c = &work->candidates;
     const double *restrict distance2 = work->distance2;
     const uint32_t *restrict list = work->list;
-    /* finite, so that the fillings stay outside */
+    /* finite, so that fillings are excluded */
     size_t n = list_neighbours(dim, work, at, fmin(h * h * (1 + 1e-12), DBL_MAX));
     const double inverse = 1 / h;
     const double *restrict volume = task->volume;
@@ -182,7 +182,7 @@ ALWAYS_INLINE void position_vectors(int dim, size_t n, struct work *work)
     }
 }
 
-/* p = -V (x/q) dw/dq; one division a pair, the slope replaces dw */
+/* p = -V (x/q) dw/dq; one division for each pair; the slope replaces dw */
 ALWAYS_INLINE void gradient_vectors(int dim, size_t n, struct work *work)
 {
     const double *restrict v = work->v, *restrict q = work->q;
@@ -220,7 +220,7 @@ ALWAYS_INLINE void field_values(size_t n, const struct work *work, const double 
     for (size_t m = 0; m < n; m++) values[m] = f[j[m]] - origin;
 }
 
-/* One point; s: its sorted position. Returns the number of its neighbours. */
+/* Gradients at one point; s: its sorted index. Returns the number of its neighbours. */
 ALWAYS_INLINE uint32_t point_gradient(int dim, const struct operator_task *task, struct work *work,
                                       size_t s)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Inside of the gradient operators: the sums over the neighbours of every point (operator_sums.c),
- * for a cloud that has been sorted and is in ordinary units (operator.c). */
+ * Private to the gradient operators: the sums over the neighbours of every point (operator_sums.c),
+ * for a sorted cloud in ordinary units (operator.c). */
 #ifndef SPHPROOF_OPERATOR_SUMS_H
 #define SPHPROOF_OPERATOR_SUMS_H
 
@@ -18,7 +18,7 @@ struct operator_task {
     struct operator_point *point;
 };
 
-/* Fills the gradients, and the points where they are wanted; pairs: their number, or NULL. */
+/* Fills task->gradient, and task->point unless NULL; pairs: receives their number, or NULL. */
 enum status operator_sums(const struct operator_task *task, uint64_t *pairs, struct error *error);
 
 #endif

@@ -13,9 +13,9 @@
 #include <immintrin.h>
 #endif
 
-/* Slots of a chunk: small systems are cut into so many that threads have some to share, large ones
- * so that a chunk's records and reactions stay in the second-level cache. In 3D there are fewer, as
- * thin slabs have many neighbours beyond the next one. */
+/* Size of a chunk, in slots: in small systems small enough that each thread gets some chunks, in
+ * large ones so that a chunk's records and reactions stay in the second-level cache. In 3D chunks
+ * are fewer, because thin slabs have many neighbours beyond the next chunk. */
 enum { CHUNKS_2D = 32, CHUNKS_3D = 8, CHUNK_LEAST = 512, CHUNK_MOST = 8192 };
 
 double reactions_bytes(int values)
@@ -42,7 +42,7 @@ void reactions_free(struct reactions *reactions)
     free(reactions->of[0]);
 }
 
-/* Whole parts of the grid. */
+/* Cuts the slots into chunks of whole parts of the grid. */
 static void cut_chunks(struct cells *cells)
 {
     struct reactions *reactions = &cells->reactions;
@@ -97,8 +97,8 @@ void reactions_all(struct cells *cells, const struct cells_fields *fields, lanes
         work(cells, fields, c, &cells->lanes[team_thread()], pass);
 }
 
-/* The entries of a list that a slot works out: those that get a reaction, and the others. Both have
- * room for whole vectors beyond their ends. */
+/* The entries of a list whose pairs a slot computes: those that receive a reaction, and the others.
+ * Both arrays have space for whole vectors beyond their ends. */
 struct split {
     size_t slot, before, beyond;
     int32_t *reacting, *alone;
@@ -123,7 +123,8 @@ static void split_plainly(struct split *split, const unsigned char *reach, const
 
 #if SPHPROOF_CLONES && defined __x86_64__
 
-/* The same. all: every slot has sums; otherwise `reach` is read three bytes beyond a slot's own. */
+/* As split_plainly. all: every slot has sums; otherwise `reach` is read up to three bytes beyond a
+ * slot's own. */
 __attribute__((target("avx512f,popcnt"), always_inline)) static inline void
 split_vectors(bool all, struct split *split, const unsigned char *reach, const int32_t *slots,
               int count)

@@ -68,7 +68,7 @@
             name##_pair_w_##dim, name##_pair_dw_##dim                                              \
     }
 
-/* In 1D only operators on clouds use them. */
+/* In 1D only the operators on clouds use these loops. */
 #define LOOPS(name)                                                                                \
     {                                                                                              \
         {name##_w_1, name##_dw_1, NULL, NULL, NULL, NULL}, LOOPS_OF(name, 2), LOOPS_OF(name, 3)    \

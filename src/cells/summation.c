@@ -14,7 +14,7 @@ enum { REACHES_MAX = 200 };
 struct work {
     struct candidates candidates;
     size_t capacity;
-    double *r, *m, *q, *value; /* one allocation, of r */
+    double *r, *m, *q, *value; /* r owns the memory of all four */
 };
 
 struct task {
@@ -36,7 +36,7 @@ static bool work_reserve(struct work *work)
     return true;
 }
 
-/* Distances and masses of the points within reach of the one at sorted position s. */
+/* Selects the distances and masses of the points within reach of the one at sorted index s. */
 static size_t select_near(const struct task *task, struct work *work, size_t s, double reach)
 {
     const struct candidates *c = &work->candidates;
@@ -46,14 +46,14 @@ static size_t select_near(const struct task *task, struct work *work, size_t s, 
         double r2 = 0;
         for (int a = 0; a < nb->dim; a++)
             r2 += (c->x[a][k] - nb->x[a][s]) * (c->x[a][k] - nb->x[a][s]);
-        if (!(r2 < reach * reach)) continue; /* so are the fillings */
+        if (!(r2 < reach * reach)) continue; /* also skips fillings */
         work->r[n] = sqrt(r2);
         work->m[n++] = task->of->m[nb->order[c->j[k]]];
     }
     return n;
 }
 
-/* Sums of the n points that have been selected, at width h. */
+/* Sums over the n selected points, at smoothing length h. */
 static void sum_near(const struct task *task, struct work *work, size_t n, double h,
                      struct density_sums *sums)
 {
@@ -68,7 +68,7 @@ static void sum_near(const struct task *task, struct work *work, size_t n, doubl
     sums->m_dh[0] = task->neighbours->dim * sum + slope;
 }
 
-/* h of one point; *found stays false where its root lies beyond reach. */
+/* Solves for h of one point; *found stays false if the root exceeds reach. */
 static enum status solve_point(const struct task *task, struct work *work, size_t s, double reach,
                                bool *found, struct error *error)
 {
@@ -101,7 +101,7 @@ static enum status solve_point(const struct task *task, struct work *work, size_
     return STATUS_OK;
 }
 
-/* A first guess of how far the roots of a block lie: its box holds NEIGHBOURS_BLOCK points. */
+/* A first guess of the largest root of a block, whose box holds NEIGHBOURS_BLOCK points. */
 static double first_reach(const struct task *task, size_t block)
 {
     const struct neighbours *nb = task->neighbours;
@@ -160,7 +160,7 @@ static enum status check(const struct summation *of, struct error *error)
         total += of->m[i];
         if (of->m[i] > heaviest) heaviest = of->m[i], where = i;
     }
-    /* as h grows the sum approaches C w(0) of all mass */
+    /* for large h the sum approaches C w(0) times the total mass */
     if (of->points.n > 0 && !of->points.periodic &&
         !(pow(least, dim) * total > heaviest * pow(of->eta, dim)))
         return error_set(error, STATUS_BROKE_DOWN,
@@ -216,7 +216,7 @@ static void extents(const struct points *points, double extent[3])
     }
 }
 
-/* h and rho found in other units, in those of the caller. */
+/* Converts h and rho back to the caller's units. */
 static enum status give_back(const struct summation *of, int length, int weight, double *h,
                              double *rho, struct error *error)
 {

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Clouds whose lengths, weights or fields are so large or so small that products of them leave the
- * range of double (a gradient has V h^-(d+1) in it: lengths of 1e80 suffice in 3D) are computed in
- * other units. These are powers of two, so that no digit changes: the answer is the same, bit for
- * bit, but for its exponent. */
+ * Converts units for clouds whose lengths, weights or fields are so large or small that products
+ * leave the range of double (a gradient contains V h^-(d+1): lengths of 1e80 suffice in 3D). The
+ * units are powers of two, so that no digit changes: results differ only in their exponent. */
 #ifndef SPHPROOF_UNITS_H
 #define SPHPROOF_UNITS_H
 
@@ -11,15 +10,16 @@
 
 #include "neighbours.h"
 
-/* Are all of n values 0 or between 2^-UNITS_ORDINARY and 2^UNITS_ORDINARY in size? Then no product
- * of a weight, a field and the fourth power of a length leaves the range. */
+/* True if all of n values are 0 or between 2^-UNITS_ORDINARY and 2^UNITS_ORDINARY in magnitude.
+ * Then no product of a weight, a field and the fourth power of a length leaves the range. */
 enum { UNITS_ORDINARY = 128 };
 bool units_ordinary(size_t n, const double *values);
 
-/* e of the unit 2^e in which the largest of n values lies between 1/2 and 1; 0 where all are 0. */
+/* Exponent e of the unit 2^e in which the largest of n values is between 1/2 and 1; 0 if all are 0.
+ */
 int units_exponent(size_t n, const double *values);
 
-/* A copy of n values in units of 2^e, malloced; NULL: no memory. */
+/* A copy of n values in units of 2^e; the caller frees it. NULL: no memory. */
 double *units_copy(size_t n, const double *values, int e);
 
 /* Points in units of 2^e; false: no memory. Release with units_points_free. */

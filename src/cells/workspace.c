@@ -23,7 +23,7 @@ struct cells_method workspace_method(const struct simulation *simulation)
 
 enum { ARRAYS_MAX = 12 + 2 * (CELLS_SYMMETRIC + CELLS_SQUARE) };
 
-/* The arrays that a workspace has for the scheme. */
+/* Lists the arrays that a workspace needs for the scheme. Returns their number. */
 static size_t list_arrays(const struct simulation *simulation, struct workspace *workspace,
                           double **of[ARRAYS_MAX])
 {
@@ -50,7 +50,7 @@ static size_t list_arrays(const struct simulation *simulation, struct workspace 
     return count;
 }
 
-/* A run of n doubles each, behind each other. */
+/* Allocates the arrays, n doubles each, in one block. */
 static bool allocate_arrays(struct simulation *simulation, size_t n)
 {
     struct workspace *workspace = workspace_of(simulation);
@@ -69,8 +69,8 @@ static bool allocate_arrays(struct simulation *simulation, size_t n)
     return true;
 }
 
-/* What the sums read and write of the particles. Their arrays stay where they are: there are no
- * ghosts to grow. */
+/* Connects the fields of the sums to the particles' arrays, which never move: there are no ghosts.
+ */
 static void connect_fields(struct simulation *simulation)
 {
     struct workspace *workspace = workspace_of(simulation);
@@ -119,7 +119,7 @@ enum status workspace_create(struct simulation *simulation, ptrdiff_t n, struct 
     struct workspace *workspace = simulation->workspace = calloc(1, sizeof *workspace);
     if (!workspace || !allocate_arrays(simulation, (size_t)n))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", n);
-    /* loops in whole vectors read a little beyond the ends */
+    /* loops in whole vectors read beyond the ends */
     return particles_create(&simulation->particles, simulation->plan.dim, n, 8, error);
 }
 
@@ -129,10 +129,10 @@ double workspace_bytes(const struct simulation *simulation, double n)
     double **of[ARRAYS_MAX];
     const struct cells_method method = workspace_method(simulation);
     const double arrays = (double)list_arrays(simulation, &workspace, of);
-    /* the first search reaches further; lists hold all pairs within the wider of two widths */
+    /* the first search has a margin; lists hold all pairs within the larger h */
     const double neighbours =
         width_neighbours(method.box.dim, simulation->scheme.eta * workspace_margin);
-    /* outcome; parts and woken; where particles may sleep, asleep and three arrays */
+    /* outcome; parts and woken; with sleep: asleep and three arrays */
     const double sleepers = simulation->plan.sleep ? 3 * sizeof(double) + 1 : 0,
                  local = simulation->plan.local ? 2 : 0;
     return n * (arrays * sizeof(double) + 1 + local + sleepers) +
@@ -174,7 +174,7 @@ void workspace_end(struct simulation *simulation)
     workspace->cells = NULL;
 }
 
-/* Neighbours are found anew in every evaluation. */
+/* Neighbour lists are not saved: every evaluation finds them anew. */
 void workspace_serialise(struct simulation *simulation, struct serialiser *serialiser)
 {
     struct workspace *workspace = workspace_of(simulation);

@@ -1,30 +1,31 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Inside of the sums in 2D and 3D: what a simulation has beside its particles, and what is found
- * with it: memory (workspace.c), neighbours and widths (workspace_widths.c), who sleeps
- * (workspace_sleep.c). The sums themselves and their table are in cells_sums.c. */
+ * Private to the sums in 2D and 3D: the data of a simulation beside its particles. Memory
+ * (workspace.c), neighbours and smoothing lengths (workspace_widths.c), sleep (workspace_sleep.c).
+ * The sums themselves and their table are in cells_sums.c. */
 #ifndef SPHPROOF_WORKSPACE_H
 #define SPHPROOF_WORKSPACE_H
 
 #include "cells.h"
 #include "solver.h"
 
-/* How far beyond a first guess the search for a root may go without a second search. */
+/* Search radius over first guess of h: larger roots need a second search. */
 static const double workspace_margin = 1.1;
 
 struct workspace {
     struct cells *cells;
     struct cells_fields fields;
-    double *block; /* what the workspace's own arrays live in */
+    double *block; /* memory of the arrays that the workspace owns */
     double *radius, *balsara, *balsara_before;
     double *sum_m, *sum_m_dh, *sum_Z, *sum_Z_dh;
-    size_t arrays, stride; /* that lie in block, and from one to the next */
+    size_t arrays, stride; /* number of arrays in block, and distance between them */
     unsigned char *outcome;
-    double *disturbance, *arriving; /* where particles may sleep: struct cells_quiet */
-    unsigned char *parts;  /* local steps: of each particle, in the evaluation of a level; */
-    unsigned char *woken;  /* and the level that it wakes to, 0: none */
+    double *disturbance, *arriving; /* if particles may sleep: see struct cells_quiet */
+    unsigned char *parts; /* local steps: role of each particle in the evaluation of a level */
+    unsigned char
+        *woken; /* local steps: the level to which each particle wakes; 0: does not wake */
     unsigned char *asleep; /* of each particle; NULL: no particle ever sleeps */
-    double *kept;          /* 1/h of particles that sleep; likewise */
-    uint64_t sorted_at;    /* steps */
+    double *kept;          /* 1/h of sleeping particles; may be NULL likewise */
+    uint64_t sorted_at;    /* number of steps at the last sort */
     bool sorted;
 };
 
@@ -33,16 +34,16 @@ static inline struct workspace *workspace_of(const struct simulation *simulation
     return simulation->workspace;
 }
 
-/* Particles of the batch that begins with the first one. */
+/* Number of particles in the batch that begins with particle `first`. */
 static inline int workspace_batch(const struct particles *particles, ptrdiff_t first)
 {
     return (int)(particles->n - first < BATCH_MAX ? particles->n - first : BATCH_MAX);
 }
 
-/* What the simulation asks of its cells; threads and box as they are known by now. */
+/* The settings of the simulation's cells; threads and box must be known. */
 struct cells_method workspace_method(const struct simulation *simulation);
 
-/* Forgets that particles may sleep. */
+/* Frees the arrays of sleep. */
 void workspace_forget_sleep(struct workspace *workspace);
 
 /* Members of struct sums. */

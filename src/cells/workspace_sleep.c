@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Sleep in 2D and 3D: a particle at rest among neighbours at rest is not evaluated until one of
- * them wakes it. */
+ * Sleep in 2D and 3D: a particle at rest among neighbours at rest is not evaluated until a
+ * neighbour wakes it. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "workspace.h"
 
-/* Finds the disturbance of each particle. Only particles that move with their neighbours may sleep:
- * in a shear flow on a lattice forces vanish as well, but neighbours change. */
+/* Computes the disturbance of each particle. Only particles that move with their neighbours may
+ * sleep: in a shear flow on a lattice the forces vanish as well, but neighbours change. */
 static struct cells_quiet find_quiet(struct simulation *simulation)
 {
     struct workspace *workspace = workspace_of(simulation);
@@ -49,7 +49,7 @@ enum status workspace_begin_sleep(struct simulation *simulation, struct error *e
     struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
     const size_t n = (size_t)a->n;
-    /* integrators advance all particles: the rates of sleeping ones are 0 */
+    /* integrators advance all particles; the rates of sleeping ones are 0 */
     sleep->spans = malloc(sizeof *sleep->spans);
     if (!sleep->spans) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     sleep->spans[0] = (struct span){0, a->n};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Neighbours and smoothing lengths of a simulation in 2D and 3D: searches that reach far enough,
- * the order in memory, Newton's or predicted widths, and the equation of state that follows. */
+ * Neighbours and smoothing lengths of a simulation in 2D and 3D: searches with sufficient radii,
+ * the order in memory, smoothing lengths by Newton's method or predicted, and the equation of
+ * state. */
 #include <math.h>
 #include <string.h>
 
@@ -11,8 +12,8 @@
 #include "workspace.h"
 
 enum {
-    SORT_EVERY = 32, /* steps: particles that move on apart in memory slow the gathering down */
-    TRIES_MAX = 64   /* searches of one evaluation, each 1.5 times as far */
+    SORT_EVERY = 32, /* steps: gathering slows down as neighbours drift apart in memory */
+    TRIES_MAX = 64   /* searches in one evaluation, each with 1.5 times the radius */
 };
 
 enum status workspace_arrange(struct simulation *simulation, struct error *error)
@@ -27,7 +28,7 @@ enum status workspace_arrange(struct simulation *simulation, struct error *error
         cells_team(workspace->cells, simulation->team.size);
         return STATUS_OK;
     }
-    /* the box is known by now */
+    /* the box is known only now */
     const struct cells_method method = workspace_method(simulation);
     workspace->cells = cells_create(&method, (size_t)a->n);
     return workspace->cells
@@ -35,7 +36,7 @@ enum status workspace_arrange(struct simulation *simulation, struct error *error
                : error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", a->n);
 }
 
-/* Beyond half of the narrowest periodic side pairs have no single nearest image. */
+/* Half of the shortest periodic side; for a larger radius the nearest image is not unique. */
 static double half_box(const struct simulation *simulation)
 {
     double half = HUGE_VAL;
@@ -45,7 +46,7 @@ static double half_box(const struct simulation *simulation)
     return half;
 }
 
-/* Which particles take part in the evaluation of a level; NULL: all. */
+/* The role of each particle in the evaluation of a level; NULL: all are active. */
 static const unsigned char *find_parts(const struct simulation *simulation)
 {
     const struct workspace *workspace = workspace_of(simulation);
@@ -62,7 +63,7 @@ static const unsigned char *find_parts(const struct simulation *simulation)
     return all ? NULL : workspace->parts;
 }
 
-/* Finds neighbours within the radii. What is too wide for the box is bad input at the start and a
+/* Finds neighbours within the radii. A radius too large for the box is bad input at the start and a
  * breakdown later. */
 static enum status search_for(struct simulation *simulation, const unsigned char *parts,
                               struct error *error)
@@ -94,7 +95,7 @@ static void permute(struct particles *particles, double *array)
     for (size_t i = 0; i < n; i++) array[i] = particles->spare[particles->order[i]];
 }
 
-/* Particles that are near each other in space become so in memory, now and then. */
+/* Sorts the particles every SORT_EVERY steps so that neighbours are close in memory. */
 static void sort_memory(struct simulation *simulation)
 {
     struct workspace *workspace = workspace_of(simulation);
@@ -103,9 +104,9 @@ static void sort_memory(struct simulation *simulation)
     const uint32_t *order = grid_order(cells_grid(workspace->cells));
     const size_t slots = cells_points(workspace->cells);
     ptrdiff_t place = 0;
-    for (size_t slot = 0; slot < slots; slot++) /* images own no storage */
+    for (size_t slot = 0; slot < slots; slot++) /* skips images */
         if (order[slot] < (size_t)a->n) a->order[place++] = order[slot];
-    /* inactive particles keep the values of the last sums over them */
+    /* inactive particles keep the values of their last sums */
     for (size_t k = 0; k < workspace->arrays; k++)
         permute(a, workspace->block + k * workspace->stride);
     if (workspace->asleep) {
@@ -139,7 +140,7 @@ static void number_to_mass(const struct simulation *simulation, ptrdiff_t first,
     }
 }
 
-/* The equation of state of a batch. Inactive particles keep what was predicted. */
+/* The equation of state of a batch. Inactive particles keep their predicted values. */
 static void close_batch(const struct simulation *simulation, ptrdiff_t first, int len,
                         const struct gas *gas, const struct density_sums *sums)
 {
@@ -188,13 +189,14 @@ static void close_all(struct simulation *simulation, bool predicted)
         }
         if (number) number_to_mass(simulation, first, len, &sums);
         close_batch(simulation, first, len, &gas, &sums);
-        /* b = Z P/y^2 with Z = 1, not m */
+        /* b = Z P/y^2 with Z = 1 instead of m */
         for (int i = 0; number && simulation->plan.grad_h && i < len; i++)
             a->b[first + i] *= a->m[first + i];
     }
 }
 
-/* Looks for the roots of all particles that are open, searching further where one lies beyond. */
+/* Solves for h of all particles with outcome CELLS_OPEN; enlarges the search radius where h exceeds
+ * it. */
 static enum status find_roots(struct simulation *simulation, struct error *error)
 {
     struct workspace *workspace = workspace_of(simulation);
@@ -215,7 +217,7 @@ static enum status find_roots(struct simulation *simulation, struct error *error
             wider = true;
             workspace->outcome[i] = CELLS_OPEN;
             a->h[i] = workspace->radius[i];
-            /* half of the box is searched before more of it is refused */
+            /* tries half the box before a larger radius, which is refused */
             workspace->radius[i] = workspace->radius[i] < half
                                        ? least(1.5 * workspace->radius[i], half)
                                        : 1.5 * workspace->radius[i];
@@ -251,7 +253,7 @@ static void find_radii(const struct simulation *simulation)
     for (ptrdiff_t i = 0; i < a->n; i++) workspace_of(simulation)->radius[i] = 1 / a->h_inverse[i];
 }
 
-/* Corrects the pairs that leave a level as particles wake, and ends these particles' steps. */
+/* Corrects the pairs that change level as particles wake, and ends the steps of these particles. */
 static enum status wake(struct simulation *simulation, struct error *error)
 {
     struct workspace *workspace = workspace_of(simulation);
@@ -271,7 +273,7 @@ static enum status wake(struct simulation *simulation, struct error *error)
     return search(simulation, error);
 }
 
-/* Neighbours of active particles that are too coarse wake. */
+/* Wakes neighbours of active particles whose level is too coarse. */
 static enum status wake_neighbours(struct simulation *simulation, struct error *error)
 {
     struct workspace *workspace = workspace_of(simulation);
@@ -299,7 +301,7 @@ static enum status predicted_widths(struct simulation *simulation, double ratio,
     for (ptrdiff_t first = 0; !local && first < a->n; first += BATCH_MAX)
         width_predict(a, first, workspace_batch(a, first), ratio);
     for (ptrdiff_t i = 0; workspace->asleep && i < a->n; i++) {
-        if (local) workspace->asleep[i] = 0; /* no particle sleeps where most have long steps */
+        if (local) workspace->asleep[i] = 0; /* no particle sleeps during local steps */
         if (workspace->asleep[i]) a->h_inverse[i] = workspace->kept[i];
     }
     find_radii(simulation);

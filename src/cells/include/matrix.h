@@ -5,16 +5,15 @@
 
 #include <stdbool.h>
 
-/* The inverse of a: by cofactors where that is safe, else by elimination with complete pivoting on
- * rows and columns scaled to a largest element of 1, so that axes of very different extent cost no
- * accuracy. False, and inverse untouched, where
- * a is singular in double precision (scaled condition number beyond 1/(16 epsilon)) or not finite.
- */
+/* Computes the inverse of a: by cofactors where that is safe, otherwise by elimination with
+ * complete pivoting on rows and columns scaled to a largest element of 1, so that axes of very
+ * different extent cost no accuracy. Returns false, and leaves inverse unchanged, if a is singular
+ * in double precision (scaled condition number above 1/(16 epsilon)) or not finite. */
 bool matrix_invert(int dim, const double *a, double *inverse);
 
 /* Condition number of a in the 2-norm: largest over smallest singular value, by one-sided Jacobi
- * rotations (accurate for small singular values too). INFINITY where a is singular, NAN where it is
- * not finite. */
+ * rotations, which are accurate for small singular values too. INFINITY if a is singular, NAN if it
+ * is not finite. */
 double matrix_condition(int dim, const double *a);
 
 #endif

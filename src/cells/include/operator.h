@@ -20,7 +20,7 @@
 #include "kernel.h"
 #include "neighbours.h"
 
-/* VECTOR(symbol, tag), a list as those of families.h: for the enum and for tables of loops. */
+/* VECTOR(symbol, tag): a list like those of families.h, for the enum and for tables of loops. */
 #define VECTOR_LIST(VECTOR, ...)                                                                   \
     VECTOR(VECTOR_GRADIENT, gradient, __VA_ARGS__)     /* grad_i W = -(x/|x|) dW/dr */             \
     VECTOR(VECTOR_POSITION, position, __VA_ARGS__)     /* x W */                                   \
@@ -31,10 +31,10 @@ enum { PAIR_VECTORS = 0 VECTOR_LIST(FAMILY_COUNTED, ) };
 struct operator_form {
     struct member member;
     enum pair_vector pair_vector;
-    bool difference; /* f_j - f_i; normalised vectors sum to 0, there it only saves digits */
+    bool difference; /* f_j - f_i; with normalised vectors, which sum to 0, it only saves digits */
     bool corrected;  /* A is the inverse matrix */
-    /* what it promises, for the checks: polynomials of degree below this are exact everywhere; in
-     * the interior of a lattice with its cells as volumes */
+    /* properties for the checks: polynomials of lower degree are exact everywhere; in the interior
+     * of a lattice with its cells as volumes */
     int exact, exact_on_lattice;
 };
 
@@ -48,15 +48,15 @@ enum operator_state {
     OPERATOR_OVERFLOW,           /* a gradient is not a finite number */
     OPERATOR_UNDERFLOW,          /* a gradient is too small for a normal number: digits are lost */
 };
-#define OPERATOR_CONDITION_MAX 1e6 /* beyond, a gradient keeps fewer than ten digits */
+#define OPERATOR_CONDITION_MAX 1e6 /* above it, fewer than ten digits remain */
 
 struct operator_point {
-    uint32_t neighbours; /* points with |x| < h, itself (and periodic images) included */
+    uint32_t neighbours; /* points with |x| < h, including itself and periodic images */
     enum operator_state state;
     double condition; /* 2-norm, of sum V p (x) x; uncorrected operators: of T = sum V W x (x) x */
 };
 
-struct cloud { /* arrays of n, the caller's */
+struct cloud { /* arrays of n; the caller owns them */
     struct points points;
     const double *volume; /* > 0 */
     const double *h;      /* support radius, > 0 */
@@ -65,15 +65,15 @@ struct cloud { /* arrays of n, the caller's */
 struct operator_settings {
     const struct operator_form *form;
     const struct kernel *kernel;
-    bool generic; /* kernel through its function pointers: the oracle of the specialised loops */
+    bool generic; /* call the kernel's function pointers: the oracle of the specialised loops */
     int threads;  /* >= 1; the result does not depend on it */
 };
 
-/* Gradients of `fields` fields at once: f[k][i] at point i, component a goes to
- * gradient[k * dim + a][i]. Any units will do (units.h). A point whose matrix has no inverse gets
- * NaN if the operator needs one. point: n, or NULL if it is not wanted (which is cheaper); pairs:
- * number of pairs summed, or NULL. STATUS_BAD_INPUT: h, volume or a coordinate out of range (the
- * message names the point); STATUS_ENVIRONMENT: no memory. */
+/* Gradients of `fields` fields at once: component a of the gradient of f[k] at point i goes to
+ * gradient[k * dim + a][i]. Any units are allowed (units.h). A point without the inverse matrix
+ * that the operator needs gets NaN. point: array of n, or NULL, which is faster; pairs: receives
+ * the number of pairs summed, or NULL. STATUS_BAD_INPUT: h, volume or a coordinate out of range
+ * (the message names the point); STATUS_ENVIRONMENT: no memory. */
 enum status operator_apply(const struct operator_settings *settings, const struct cloud *cloud,
                            size_t fields, const double *const *f, double *const *gradient,
                            struct operator_point *point, uint64_t *pairs, struct error *error);

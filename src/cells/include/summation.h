@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Densities and volumes from the kernel sum itself, in 1, 2 and 3 dimensions: rho_i = sum_j m_j
- * W(r_ij, h_i) solved together with h_i = eta (m_i/rho_i)^(1/d); the volume is m_i/rho_i. */
+ * Densities and volumes from the kernel sum, in 1, 2 and 3 dimensions: solves rho_i = sum_j m_j
+ * W(r_ij, h_i) together with h_i = eta (m_i/rho_i)^(1/d); the volume is m_i/rho_i. */
 #ifndef SPHPROOF_SUMMATION_H
 #define SPHPROOF_SUMMATION_H
 
@@ -16,10 +16,10 @@ struct summation {
     int threads;      /* >= 1; the result does not depend on it */
 };
 
-/* Fills h and rho (n each). The equation C sum_j m_j w(r_j/h) = m_i eta^d has a left side that
- * rises with h: Newton's method inside a bracket that it keeps. STATUS_BAD_INPUT: eta too small, a
- * mass not positive; STATUS_BROKE_DOWN: no root at some point (too little mass in the cloud, or
- * coincident points), which the message names; STATUS_ENVIRONMENT: no memory. */
+/* Fills h and rho (n each). The left side of C sum_j m_j w(r_j/h) = m_i eta^d rises with h; it is
+ * solved by Newton's method inside a bracket. STATUS_BAD_INPUT: eta too small, a mass not positive;
+ * STATUS_BROKE_DOWN: no root at some point (too little mass in the cloud, or coincident points),
+ * which the message names; STATUS_ENVIRONMENT: no memory. */
 enum status summation_solve(const struct summation *summation, double *h, double *rho,
                             struct error *error);
 
