@@ -15,7 +15,7 @@
 #include "text.h"
 #include "trace.h"
 
-/* Keys of a case file beside settings_keys: SECTION, KEY. */
+/* Keys of a case file that are not in setting_keys: SECTION, KEY. */
 #define EXTRA_LIST(EXTRA)                                                                          \
     EXTRA(case, title)                                                                             \
     EXTRA(case, dimension)                                                                         \
@@ -39,7 +39,7 @@ struct parser {
     struct case_file *file;
     struct ini_text at;
     char reference[64];
-    /* lines */
+    /* line of the first occurrence */
     int seen_settings[SETTINGS], seen_extras[EXTRAS], seen_gates[CASE_GATES_MAX],
         seen_compared[CASE_GATES_MAX], seen_finer[CASE_GATES_MAX];
 };
@@ -62,7 +62,7 @@ static void set_fields(struct parser *parser, const char *name, const char *valu
     }
 }
 
-/* Rising numbers of particles; as many as an order needs, or any. */
+/* Increasing numbers of particles; order: enough for a fit of the order. */
 static void set_ladder(struct parser *parser, const char *name, const char *value, bool order,
                        size_t *ladder, size_t *count)
 {
@@ -159,7 +159,7 @@ static void set_extra(struct parser *parser, enum extra extra, const char *value
     }
 }
 
-/* "density_l1": false where name is not a field and a norm. */
+/* Splits a name such as "density_l1"; false if it is not a field and a norm. */
 static bool gate_name(const char *name, int *field, int *norm)
 {
     for (*field = 0; *field < FIELDS; ++*field)
@@ -172,7 +172,7 @@ static bool gate_name(const char *name, int *field, int *norm)
     return false;
 }
 
-/* The static name of a functional, or of a figure of conservation; NULL: it is neither. */
+/* The static name of a functional or of a conservation figure; NULL: neither. */
 static const char *figure_name(const char *name)
 {
     const size_t figure = trace_figure(name);
@@ -184,8 +184,8 @@ static const char *figure_name(const char *name)
 #define TWO_SIDES     " or LEAST:BOUND"
 #define KNOWN_FAILURE "; `known: WHY` after them, if it is known to fail"
 
-/* What stands before `known: WHY` in a gate's value, without blanks at its end, and WHY, "" where
- * it is not said; false: the mark stands there without a reason, or with one that is too long. */
+/* Splits a gate's value into the text before `known: WHY`, without trailing blanks, and WHY, "" if
+ * there is none. False: the reason is missing or too long. */
 static bool read_known(const char *value, char text[256], const char **why)
 {
     static const char mark[] = "known:";
@@ -197,8 +197,8 @@ static bool read_known(const char *value, char text[256], const char **why)
     return !(known && !**why) && strlen(*why) < sizeof((struct case_weakness *)NULL)->why;
 }
 
-/* The numbers of a gate's value, of which the last may be LEAST:BOUND (least 0: it is not), and why
- * it is known to fail; false where the value is none. */
+/* Reads the numbers of a gate's value, of which the last may be LEAST:BOUND (least 0: no lower
+ * bound), and the reason of a known failure. False: invalid value. */
 static bool read_gate(const char *value, size_t count, double *numbers, double *least,
                       const char **why)
 {
@@ -215,8 +215,8 @@ static bool read_gate(const char *value, size_t count, double *numbers, double *
     return text_reals(text, " \t,", count, numbers) && numbers[count - 1] > *least;
 }
 
-/* The number of the gate of a functional, or NULL and of a field's norm; gate_count: there is none.
- */
+/* Index of the gate of a functional or, with functional = NULL, of a field's norm; gate_count:
+ * none. */
 static size_t find_gate(const struct case_file *file, const char *functional, enum field field,
                         enum norm norm)
 {
@@ -246,7 +246,8 @@ static void add_gate(struct parser *parser, const char *name, struct case_gate g
     file->gates[file->gate_count++] = gate;
 }
 
-/* `none known: WHY`, of what cannot be measured where a scheme fails: a shock that there is not. */
+/* Reads `none known: WHY`: a scheme fails so that the error cannot be measured, for example because
+ * there is no shock. */
 static bool read_absence(const char *value, double *bound, const char **why)
 {
     char text[256];
@@ -254,7 +255,7 @@ static bool read_absence(const char *value, double *bound, const char **why)
     return read_known(value, text, why) && **why && strcmp(text, "none") == 0;
 }
 
-/* What compared schemes are held to: `BOUND`, or `BOUND known: WHY`. */
+/* Sets the bound of the compared schemes: `BOUND` or `BOUND known: WHY`. */
 static void set_compared(struct parser *parser, struct case_gate *gate, const char *name,
                          const char *value)
 {
@@ -270,8 +271,8 @@ static void set_compared(struct parser *parser, struct case_gate *gate, const ch
         snprintf(compared->why, sizeof compared->why, "%s", why);
 }
 
-/* Beyond the case's own ladder: what the gate has, an order's range and a bound or a bound alone.
- */
+/* Sets the gate beyond the case's own ladder: a range of orders and a bound, or a bound alone, like
+ * the gate itself. */
 static void set_finer(struct parser *parser, struct case_gate *gate, const char *name,
                       const char *value)
 {
@@ -287,7 +288,7 @@ static void set_finer(struct parser *parser, struct case_gate *gate, const char 
         gate->finer = (struct order_gate){numbers[0], numbers[1], numbers[2]};
 }
 
-/* A key of [compared] or [finer] belongs to a gate of [converge]. */
+/* Applies a key of [compared] or [finer] to the gate of the same name in [converge]. */
 static void amend_gate(struct parser *parser, const char *section, const char *functional,
                        int field, int norm, const char *name, const char *value)
 {
@@ -306,7 +307,7 @@ static void amend_gate(struct parser *parser, const char *section, const char *f
     }
 }
 
-/* Of a functional, or NULL and of a field's norm. */
+/* Adds a gate for a functional or, with functional = NULL, for a field's norm. */
 static void set_gate(struct parser *parser, const char *functional, int field, int norm,
                      const char *name, const char *value)
 {
@@ -327,7 +328,7 @@ static void set_gate(struct parser *parser, const char *functional, int field, i
     add_gate(parser, name, gate, why);
 }
 
-/* A key that is not allowed in its section: says where it belongs, or what is near. */
+/* Reports a key that is not allowed in its section: names its section, or the nearest known key. */
 static void unknown(struct parser *parser, const char *section, const char *name)
 {
     char where[256], what[120];
@@ -366,7 +367,7 @@ static void unknown(struct parser *parser, const char *section, const char *name
     text_unknown(parser->at.error, where, what, name, names, n);
 }
 
-/* A path of a case file is relative to it. */
+/* Resolves a path relative to the case file. */
 static const char *beside_case(const struct parser *parser, const char *value,
                                char path[2 * SETTING_TEXT_MAX])
 {
@@ -420,8 +421,8 @@ static enum status missing_key(struct parser *parser, enum setting key)
     return missing(parser, setting_keys[key].section, setting_keys[key].name);
 }
 
-/* Keys that every case has to give, those that its problem needs, and none that another one does.
- */
+/* Checks that all required keys are given, for every case and for the problem, and that no key
+ * belongs to another problem only. */
 static enum status check_keys(struct parser *parser)
 {
     static const enum setting always[] = {SETTING_kind, SETTING_t_end};
@@ -445,8 +446,8 @@ static enum status check_keys(struct parser *parser)
     return STATUS_OK;
 }
 
-/* Particles of a file may be judged by the solution of another problem: the case is then that
- * problem's, with other particles. */
+/* Particles of a file may be judged by the solution of another problem. The case then has that
+ * problem, with other particles. */
 static void find_judge(struct parser *parser)
 {
     struct settings *settings = &parser->file->settings;
@@ -459,8 +460,8 @@ static void find_judge(struct parser *parser)
     }
 }
 
-/* What a functional's gate needs: a problem that has it, in 2D or 3D (in 1D no order is found of
- * functionals). Every run has what it conserves. */
+/* Checks that the problem has each functional with a gate, in 2D or 3D, since no order is
+ * determined for functionals in 1D. Conservation figures exist for every run. */
 static enum status check_gates(struct parser *parser)
 {
     const struct case_file *file = parser->file;
@@ -495,7 +496,7 @@ static enum status check_complete(struct parser *parser)
     return ini_text_fail_value(&parser->at, "reference", parser->reference, reference);
 }
 
-/* Fields that are asked for have to be known; without a word of fields all that are known count. */
+/* Checks that the fields asked for have exact values; the default is all fields that have them. */
 static enum status check_fields(struct parser *parser, const struct problem *problem)
 {
     struct case_file *file = parser->file;
@@ -529,7 +530,7 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
     if (ini_text_read(&parser.at, take_pair, &parser) || check_complete(&parser))
         return error->status;
     struct settings trial = file->settings;
-    /* of a tube, ends that are not periodic: judge knows them, and a run refuses them */
+    /* `judge` accepts tubes with non-periodic ends, which a run refuses */
     if (file->dimension == 1 && problem_reads(problem_of(&trial), SETTING_left))
         trial.value[SETTING_boundary].automatic = true;
     struct prepared problem;

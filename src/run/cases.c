@@ -36,7 +36,8 @@ static enum status unknown_case(const char *name, struct error *error)
     return status;
 }
 
-/* A case that the user has put beside the installed ones, whose copies there are for reading. */
+/* Loads a case that the user has added to the folder of installed cases. The built-in cases have
+ * copies there, for reading only. */
 static enum status load_installed(struct case_file *file, const char *name, struct error *error)
 {
     char wanted[128], path[PLACE_LENGTH];

@@ -13,7 +13,8 @@
 #include "clock.h"
 #include "output.h"
 
-/* First line: this, the build. Second: the run. Then the state, and at the end the checksum. */
+/* The file has this string and the build in the first line, the run in the second, then the state
+ * and the checksum. */
 static const char magic[] = "sphproof-checkpoint/1";
 enum { HEAD_MAX = 1 << 16 };
 
@@ -27,7 +28,7 @@ bool checkpoint_due(struct checkpoint *checkpoint)
     return true;
 }
 
-/* A file on its way, with the hash of what has passed, in pieces of whatever size. */
+/* A file and the hash of all bytes read or written so far. */
 struct stream {
     FILE *file;
     uint64_t sum;
@@ -62,10 +63,10 @@ void checkpoint_save(struct checkpoint *checkpoint, struct simulation *simulatio
     if (checkpoint->trace) SERIALISE(&serialiser, *checkpoint->trace);
     simulation_serialise(simulation, &serialiser);
     fwrite(&stream.sum, sizeof stream.sum, 1, output.stream);
-    output_close(&output, &checkpoint->trouble); /* tells whether it worked */
+    output_close(&output, &checkpoint->trouble); /* reports failures */
 }
 
-/* One line without its end; false: there is none of that length. */
+/* Reads one line without the newline; false if it does not end within `size`. */
 static bool line_of(FILE *file, char *line, size_t size)
 {
     if (!fgets(line, (int)size, file)) return false;
@@ -79,7 +80,7 @@ static enum status refuse(const struct checkpoint *checkpoint, const char *why, 
     return error_set(error, STATUS_BAD_INPUT, "--resume '%.200s': %s", checkpoint->path, why);
 }
 
-/* Which key differs between two runs; where it is not a setting, its name alone is said. */
+/* Names the key that differs between two runs, with values if it is a setting. */
 static enum status other_run(const struct checkpoint *checkpoint, const char *there,
                              struct error *error)
 {
@@ -125,7 +126,7 @@ static enum status check_head(const struct checkpoint *checkpoint, FILE *file, s
     return status;
 }
 
-/* Are the bytes from here on those that were written? STATUS_OK; else it says why not. */
+/* Checks the remaining bytes of the file against the checksum. */
 static enum status check_bytes(const struct checkpoint *checkpoint, FILE *file, struct error *error)
 {
     enum { PART = 1 << 20 };

@@ -9,7 +9,7 @@
 #include "map.h"
 #include "result.h"
 
-/* Of a page: particles in a plot, points of a curve. */
+/* Sizes of a page's map and plots: particles shown, points of an exact curve, curves. */
 enum { CLOUD_MAP_CELLS = 64, SHOWN = 600, EXACT_POINTS = 201, QUANTITIES = 4 };
 
 /* ---- maps ---- */
@@ -69,17 +69,17 @@ static json_t *map_json(const struct run_result *result)
 
 /* ---- particles over the exact curve ---- */
 
-/* What is drawn over the one coordinate. */
+/* Quantities plotted against one coordinate. */
 struct curve {
     const struct run_result *result;
-    bool around; /* over the distance from the middle, else over x */
+    bool around; /* against the distance from the window's centre, else against x */
     const char *names[QUANTITIES];
 };
 
 static const struct curve over_x = {NULL, false, {"density", "velocity", "pressure", NULL}},
                           over_R = {NULL, true, {"density", "azimuthal", "radial", "pressure"}};
 
-/* The coordinate of a place, in the frame that moves with the boost. */
+/* The coordinate of a position in the frame that moves with the boost. */
 static double abscissa(const struct curve *curve, const double place[3])
 {
     const struct prepared *p = &curve->result->problem;
@@ -109,7 +109,7 @@ static void measured(const struct curve *curve, size_t i, double *at, double val
     quantities(curve, place, s->rho[i], v, s->P[i], values);
 }
 
-/* Exact values at a place, as they move with the boost. */
+/* Exact values at a position in the moving frame. */
 static void exactly(const struct curve *curve, const double place[3], double values[QUANTITIES])
 {
     const struct prepared *p = &curve->result->problem;
@@ -120,7 +120,7 @@ static void exactly(const struct curve *curve, const double place[3], double val
     quantities(curve, place, state.rho, state.v, state.P, values);
 }
 
-/* The place of the curve that has the coordinate: on the line along x through the middle. */
+/* Exact values at a coordinate, on the line along x through the window's centre. */
 static void on_curve(const struct curve *curve, double at, double values[QUANTITIES])
 {
     const struct window *window = &curve->result->problem.window;
@@ -129,7 +129,7 @@ static void on_curve(const struct curve *curve, double at, double values[QUANTIT
     exactly(curve, place, values);
 }
 
-/* Do the exact values at particles depend on nothing but the coordinate? */
+/* True if the exact values at the particles depend only on the coordinate. */
 static bool holds(const struct curve *curve)
 {
     const struct snapshot *s = &curve->result->snapshot;
@@ -159,7 +159,8 @@ static void add_particles(const struct curve *curve, json_t *profile)
 {
     const struct run_result *result = curve->result;
     const size_t n = result->snapshot.n;
-    uint64_t chosen = 1; /* some of many, not every k-th: lattices have rows */
+    uint64_t chosen =
+        1; /* at random, since every k-th particle would follow the rows of a lattice */
     for (size_t i = 0; i < n; i++) {
         double place[3], at, values[QUANTITIES], exact[QUANTITIES];
         chosen = chosen * 6364136223846793005u + 1442695040888963407u;
@@ -183,7 +184,7 @@ static json_t *exact_json(const struct curve *curve)
     const double from = curve->around ? 0 : window->lo[0], to = curve->around ? hi - middle : hi;
     json_t *exact = json_object();
     for (int i = 0; i < EXACT_POINTS; i++) {
-        /* not in the very middle, where directions are none, nor on an edge */
+        /* neither at the centre, where directions are undefined, nor at an edge */
         const double at = from + (to - from) * (i + 0.5) / EXACT_POINTS;
         double values[QUANTITIES];
         on_curve(curve, at, values);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Points as dense as the gas: quasi-random ones, each kept with the density's probability
- * (rejection in one dimension more), then pushed apart into a glass. */
+ * Quasi-random points with the density of the gas, by rejection in one additional dimension, then
+ * relaxed to a glass. */
 #include "equal_masses.h"
 
 #include <math.h>
@@ -9,13 +9,13 @@
 #include "quasi_random.h"
 #include "relax.h"
 
-enum { CELLS_PLANE = 512, CELLS_SPACE = 96 }; /* per direction, of sums over the box */
+enum { CELLS_PLANE = 512, CELLS_SPACE = 96 }; /* cells per direction for sums over the box */
 
-/* The gas that is to be followed, and what each particle has of it. */
+/* The gas to follow, and the mass of a particle. */
 struct gas {
     const struct prepared *p;
-    double most; /* density, a little above the greatest */
-    double mass; /* in the box; later of a particle */
+    double most; /* upper bound of the density */
+    double mass; /* total mass in the box; later the mass of a particle */
 };
 
 static double density_at(const struct prepared *p, const double x[3])
@@ -25,7 +25,8 @@ static double density_at(const struct prepared *p, const double x[3])
     return state.rho;
 }
 
-/* Mass by the midpoint rule, exact for smooth periodic gas; a jump costs a part of a cell. */
+/* Mass by the midpoint rule: exact for smooth periodic gas, wrong by a fraction of a cell at a
+ * jump. */
 static void measure(struct gas *gas)
 {
     const struct domain *box = &gas->p->domain;

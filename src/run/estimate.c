@@ -10,21 +10,21 @@
 #include "viscosity.h"
 #include "width.h"
 
-/* The program with its libraries, and what does not grow with n. */
+/* Memory of the program and its libraries that does not depend on n. */
 static const double base = 7e6;
 
-enum { START = 4 }; /* evaluations: the first widths are looked for */
+enum { START = 4 }; /* evaluations to find the initial smoothing lengths */
 
 struct estimate estimate_size(const struct setup *setup)
 {
     const double n = (double)setup->n;
-    /* arrays of the snapshot, more than particles start with; in 2D and 3D the solver gives them
-     * the memory of the neighbours, of which there is more */
+    /* arrays of the snapshot in addition to the initial particles; in 2D and 3D the snapshot reuses
+     * the memory of the neighbour lists, which is larger */
     const int kept = setup->dim == 1 ? 2 * setup->dim + 6 : 0;
     return (struct estimate){.memory = base + memory_bytes(setup) + 8 * n * kept};
 }
 
-/* CPU time of a particle's part in a step, ns: measured on one core of 3.7 GHz, which was busy. */
+/* CPU time per particle and step in ns, measured on a busy core of 3.7 GHz. */
 static double step_ns(const struct setup *setup)
 {
     const struct scheme *scheme = &setup->scheme;
@@ -38,7 +38,7 @@ static double step_ns(const struct setup *setup)
     return 100 + pair * neighbours;
 }
 
-/* 1/s: signal speed over h, the largest. */
+/* Largest ratio of signal speed to h, in 1/s. */
 static double fastest(const struct setup *setup)
 {
     const double g = setup->gamma, d = setup->dim;

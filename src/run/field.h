@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What errors are measured of, in which norms, and where: the fields of a gas, the domain that it
- * fills, and the window that is looked at. Code units. */
+ * Fields of a gas, the norms of their errors, the domain of the gas, and the window in which errors
+ * are measured. Code units. */
 #pragma once
 
 #include <math.h>
@@ -12,10 +12,10 @@ enum field { FIELD_DENSITY, FIELD_VELOCITY, FIELD_PRESSURE, FIELD_INTERNAL_ENERG
 enum norm { NORM_L1, NORM_L2, NORM_LINF, NORM_PARTICLE_MEAN, NORM_L1_WHOLE, NORMS };
 extern const struct family field_family, field_norm_family;
 
-/* In code units, by dimension: densities are per length, area or volume. */
+/* In code units; densities are per length, area or volume according to dim. */
 const char *field_unit(enum field field, int dim);
 
-/* The box, periodic in each direction; lo < hi where d < dim. */
+/* A box, periodic in each direction; lo < hi for d < dim. */
 struct domain {
     int dim;
     double lo[3], hi[3];
@@ -26,19 +26,19 @@ static inline double domain_length(const struct domain *domain, int direction)
     return domain->hi[direction] - domain->lo[direction];
 }
 
-/* The position measured from the lower corner of the box, as most codes expect it. For x inside of
- * the box the result is smaller than the length of the box even after rounding. */
+/* Position relative to the lower corner of the box, as most codes expect it. For x in the box the
+ * result is smaller than the box length even after rounding. */
 static inline double domain_offset(const struct domain *domain, int direction, double x)
 {
     const double from = x - domain->lo[direction], length = domain_length(domain, direction);
     return from >= length && x < domain->hi[direction] ? nextafter(length, 0) : from;
 }
 
-/* Where errors are measured: an interval, a rectangle or a box, sides included (radius 0), or else
- * a disc or a ball. */
+/* Where errors are measured: an interval, rectangle or box including its sides (radius 0), or a
+ * disc or ball. */
 struct window {
     int dim;
-    double lo[3], hi[3]; /* of a ball: the box around it */
+    double lo[3], hi[3]; /* of a ball: its bounding box */
     double centre[3], radius;
 };
 

@@ -24,7 +24,7 @@ static void put_record(FILE *to, const char *name, const void *bytes, size_t siz
     fwrite(&count, sizeof count, 1, to);
 }
 
-/* BoxSize is one number: 0 where the sides differ. */
+/* BoxSize is a single number; 0 if the sides differ. */
 static double side_of(const struct domain *box)
 {
     for (int d = 1; d < box->dim; d++)
@@ -48,7 +48,7 @@ static void put_header(FILE *to, const char *name, const struct run_result *resu
     put_record(to, name, bytes, sizeof bytes);
 }
 
-/* In [0, L) also after rounding. */
+/* Position in [0, L), also after rounding to single precision. */
 static float position(const struct domain *box, int d, double x)
 {
     const double from = domain_offset(box, d, x), length = domain_length(box, d);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The rate at which an amplitude grows in a run: the slope of its logarithm over time, by least
- * squares over what is seen of it between two times. */
+ * Growth rate of an amplitude during a run: the slope of its logarithm over time, by least squares
+ * over the values between two times. */
 #pragma once
 
 #include <stddef.h>
 
-/* Begins as {0}: sums over what was seen. */
+/* Sums over the values added so far; starts as {0}. */
 struct growth {
     size_t n;
     double t, y, tt, ty; /* y: ln amplitude */
@@ -13,5 +13,5 @@ struct growth {
 
 void growth_see(struct growth *growth, double time, double amplitude);
 
-/* NaN with fewer than three times, or where an amplitude was not positive. */
+/* NaN with fewer than three values, or if an amplitude was not positive. */
 double growth_rate(const struct growth *growth);

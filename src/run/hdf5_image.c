@@ -14,7 +14,7 @@ enum status hdf5_image_possible(const char *path, struct error *error)
     return h5_load(path, error);
 }
 
-/* Of an identifier, or of what a call returns. */
+/* For an identifier or a status of the library. */
 static bool went_well(hid_t code)
 {
     return code >= 0;
@@ -33,7 +33,7 @@ static hid_t type_of(enum hdf5_type type)
 void hdf5_image_begin(struct hdf5_image *image)
 {
     const hid_t access = h5.Pcreate(h5.P_CLS_FILE_ACCESS_ID_g);
-    h5.Pset_fapl_core(access, 1 << 20, 0); /* in memory, never on disk */
+    h5.Pset_fapl_core(access, 1 << 20, 0); /* in memory, no file on disk */
     image->file = h5.Fcreate("image", H5F_ACC_TRUNC, H5P_DEFAULT, access);
     image->group = -1;
     image->good = went_well(image->file);
@@ -87,7 +87,7 @@ void hdf5_image_data(struct hdf5_image *image, const char *name, enum hdf5_type 
     h5.Sclose(space);
 }
 
-/* The bytes of the file; NULL: something has failed. */
+/* Contents of the file; NULL after a failure. */
 static void *bytes_of(struct hdf5_image *image, size_t *size)
 {
     if (went_well(image->group)) h5.Gclose(image->group);
@@ -110,7 +110,7 @@ enum status hdf5_image_end(struct hdf5_image *image, const char *path, struct er
         return error_set(error, STATUS_ENVIRONMENT, "%.200s: HDF5 has no memory for it", path);
     enum status status = output_open(&output, path, error);
     if (!status) {
-        fwrite(bytes, 1, size, output.stream); /* output_close sees what failed */
+        fwrite(bytes, 1, size, output.stream); /* output_close reports failures */
         status = output_close(&output, error);
     }
     free(bytes);

@@ -54,7 +54,7 @@ enum status ini_text_load(const char *path, const char *kind, char **bytes, size
     *bytes = NULL;
     *length = 0;
     snprintf(too_large, sizeof too_large, "larger than 64 KiB: not a %s", kind);
-    /* not blocking: to open a pipe would wait for somebody who writes into it */
+    /* non-blocking: opening a pipe would wait for a writer */
     const int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (descriptor < 0) return cannot_read(path, kind, strerror(errno), error);
     if (fstat(descriptor, &info) || S_ISDIR(info.st_mode))
@@ -77,7 +77,7 @@ enum status ini_text_load(const char *path, const char *kind, char **bytes, size
     return status;
 }
 
-/* Hands inih one line without its blanks at the start (it would take them for a continuation). */
+/* Passes one line to inih, without leading blanks, which inih would read as a continuation. */
 static char *take_line(char *line, int size, void *context)
 {
     struct ini_text *text = context;
@@ -92,7 +92,8 @@ static char *take_line(char *line, int size, void *context)
     return line;
 }
 
-/* Nothing that inih would cut or misread: long lines, NUL and other bytes that are not text. */
+/* Rejects what inih would truncate or misread: long lines, NUL and other bytes that are not
+ * text. */
 static bool check_text(struct ini_text *text)
 {
     char what[64];
@@ -120,7 +121,7 @@ static bool check_text(struct ini_text *text)
     return true;
 }
 
-/* A pair for the callback, unless the file has failed already. */
+/* The callback and its context. Pairs are passed only until the file fails. */
 struct receiver {
     struct ini_text *text;
     ini_text_pair *pair;
@@ -134,7 +135,7 @@ static int hand_over(void *context, const char *section, const char *name, const
     return 1;
 }
 
-/* inih has one context for the lines and the pairs, and says nothing of sections without pairs. */
+/* inih has one context for lines and pairs, and does not report sections without pairs. */
 static char *next_line(char *line, int size, void *context)
 {
     const struct receiver *receiver = context;

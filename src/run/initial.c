@@ -27,7 +27,6 @@ bool initial_is_shaken(const struct settings *settings)
            settings_choice(settings, SETTING_lattice) == LATTICE_GLASS;
 }
 
-/* What the sample says of particle i; its mass stays. */
 void initial_sample(struct initial *initial, const struct prepared *p, size_t i)
 {
     struct problem_state state;

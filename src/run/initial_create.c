@@ -7,7 +7,7 @@
 #include "particle_file.h"
 #include "problem.h"
 
-/* Brings every second particle of a line close to its neighbour on the same side of the jump. */
+/* Moves particles of a line pairwise together, unless a jump separates the pair. */
 static void pair_up(struct initial *initial, const struct settings *settings)
 {
     const int lattice = settings_choice(settings, SETTING_lattice);
@@ -29,7 +29,7 @@ static double spacing(const struct initial *initial, size_t i)
     return initial->dim == 1 ? volume : initial->dim == 2 ? sqrt(volume) : cbrt(volume);
 }
 
-/* Round the box, or back from an end that is none. */
+/* Maps x into a periodic box, or reflects it at another end. */
 static double into_box(const struct prepared *p, int d, double x)
 {
     const double lo = p->domain.lo[d], hi = p->domain.hi[d];
@@ -39,8 +39,8 @@ static double into_box(const struct prepared *p, int d, double x)
     return x;
 }
 
-/* Moves each particle in each direction by up to jitter times its share of the space: on a line
- * their order stays. */
+/* Displaces each particle in each direction by up to jitter times its spacing, which keeps the
+ * order in 1D. */
 static enum status shake(struct initial *initial, const struct prepared *p,
                          const struct settings *settings)
 {
@@ -67,8 +67,8 @@ static void add_boost(struct initial *initial, const struct prepared *p)
         for (size_t i = 0; i < initial->n; i++) initial->v[d][i] += p->boost[d];
 }
 
-/* In 2D and 3D particles that jitter moves carry the flow of where they come to be: displaced
- * particles, not a noisy gas. Beside a jump they stay what they are. */
+/* In 2D and 3D a particle displaced by jitter takes the state at its new position: displaced
+ * particles, not a noisy gas. In problems with jumps it keeps its state. */
 static void resample(struct initial *initial, const struct prepared *p,
                      const struct settings *settings)
 {

@@ -45,7 +45,7 @@ size_t judged_names_of(const struct case_file *file, const struct run_result *re
     return judged_names(file, result->functional_count, functionals, exact, names);
 }
 
-/* The components of the exact field at particle i; a scalar has one. Returns the sound speed. */
+/* The components of the exact field at particle i, one for a scalar. Returns the sound speed. */
 static double exact_at(const struct run_result *result, size_t i, enum field field, double value[3])
 {
     const struct prepared *p = &result->problem;

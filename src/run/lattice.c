@@ -9,10 +9,10 @@
 
 enum { BASE_MAX = 4 };
 
-/* A conventional cell: sides over the first one, and its points in parts of the sides; the points
- * of a lattice in the plane come first. */
+/* A conventional cell: sides relative to the first, and points in fractions of the sides; the
+ * points of the 2D lattice come first. */
 struct crystal {
-    int least_dim, plane_count, count; /* points in 2D and in 3D */
+    int least_dim, plane_count, count; /* number of points in 2D and in 3D */
     double side[3];
     double base[BASE_MAX][3];
 };
@@ -22,7 +22,7 @@ struct crystal {
 
 static const struct crystal line = {1, 0, 1, {1}, {{0.5}}};
 static const struct crystal square = {2, 1, 1, {1, 1, 1}, {{0.5, 0.5, 0.5}}};
-/* in 3D layers in the gaps of each other, every second one alike */
+/* in 3D hexagonal close-packed: each layer fills the gaps of the next, every second one is alike */
 static const struct crystal hexagonal = {2,
                                          2,
                                          4,
@@ -39,11 +39,11 @@ static const struct crystal fcc = {
     {{0.25, 0.25, 0.25}, {0.75, 0.75, 0.25}, {0.75, 0.25, 0.75}, {0.25, 0.75, 0.75}}};
 static const struct crystal bcc = {3, 0, 2, {1, 1, 1}, {{0.25, 0.25, 0.25}, {0.75, 0.75, 0.75}}};
 
-/* NULL: no crystal. */
+/* NULL: not a crystal. */
 static const struct crystal *crystal_of(enum lattice kind)
 {
     switch (kind) {
-    case LATTICE_UNIFORM: /* the other two move particles of it */
+    case LATTICE_UNIFORM: /* the other two are displaced from it */
     case LATTICE_CLUSTERED:
     case LATTICE_COINCIDENT:
         return &line;
@@ -78,7 +78,7 @@ enum status lattice_plan_make(struct lattice_plan *plan, const struct domain *bo
         volume *= domain_length(box, d);
         shape *= crystal->side[d];
     }
-    /* a cell's first side if cells filled the box without fitting it */
+    /* first side of a cell, if cells filled the box without having to fit */
     const double side = pow(volume * count / ((double)n * shape), 1. / box->dim);
     plan->n = (size_t)count;
     for (int d = 0; d < 3; d++) {
@@ -122,7 +122,7 @@ static enum status random_points(const struct lattice_plan *plan, unsigned long 
     return STATUS_OK;
 }
 
-/* Of each of equal points. */
+/* Volume of each of n equal points. */
 static double equal_share(const void *context, const double x[3])
 {
     const struct lattice_plan *plan = context;

@@ -1,21 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What problems of weakly compressible liquids share. Their exact flows are incompressible: of
- * velocities known, of density and pressure only where gravity alone makes them. What a code takes
- * for internal energy does not matter; initial states carry that of a gas with the liquid's speed
- * of sound. */
+ * Shared by problems of weakly compressible liquids. Their exact flows are incompressible:
+ * velocities are known, density and pressure only for a hydrostatic state. The internal energy does
+ * not matter; initial states have that of a gas with the liquid's sound speed. */
 #pragma once
 
 #include "functional.h"
 #include "problem.h"
 
-/* Keys of all of them. */
+/* Keys of all liquid problems. */
 #define LIQUID_KEYS                                                                                \
     {SETTING_rho0, ROLE_OPTIONAL},                                                                 \
     {                                                                                              \
         SETTING_sound, ROLE_OPTIONAL                                                               \
     }
 
-/* Only the velocity is known. */
+/* Fields without exact values: all but the velocity. */
 #define LIQUID_UNKNOWN                                                                             \
     {                                                                                              \
         [FIELD_DENSITY] = true, [FIELD_PRESSURE] = true, [FIELD_INTERNAL_ENERGY] = true            \
@@ -26,9 +25,9 @@ struct liquid {
 };
 struct liquid liquid_of(const struct settings *settings);
 
-/* At rest, with the liquid's density rho0. */
+/* The state at rest with density rho0. */
 struct problem_state liquid_state(const struct liquid *liquid, double gamma);
 
-/* By volume over the window, sum v . mode over sum mode . mode: how much of the mode there is. */
+/* Amplitude of a mode: sum v . mode over sum mode . mode, weighted with volume, over the window. */
 typedef void liquid_mode(const struct prepared *p, const double x[3], double v[3]);
 double liquid_amplitude(const struct prepared *p, const struct snapshot *s, liquid_mode *mode);

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* As many cells as particles fit in a row. */
+/* Number of cells in a row: as many as particles fit. */
 static size_t cells_along(double length, double spacing, size_t most)
 {
     const size_t fit = (size_t)fmin(round(length / spacing), (double)most);
@@ -28,7 +28,7 @@ static void place(struct map *map, const struct domain *domain, const struct sna
     map->seen++;
 }
 
-/* Counts particle i in the cells whose centres its h reaches. */
+/* Counts particle i in the cells whose centres are within its h. */
 static void cover(struct map *map, const struct snapshot *s, size_t i)
 {
     if (map->cell[i] == map->nx * map->ny) return;
@@ -89,8 +89,8 @@ void map_free(struct map *map)
     map->storage = NULL;
 }
 
-/* Mean over the cells that hold particles, of those no farther than `reach` from cell (i, j) in
- * either direction; NaN: none does. */
+/* Mean over the occupied cells that are at most `reach` cells from (i, j) in either direction; NaN:
+ * none is. */
 static double mean_around(const struct map *map, const double *z, ptrdiff_t i, ptrdiff_t j,
                           ptrdiff_t reach)
 {

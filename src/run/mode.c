@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* The displacement up to which a mode is small, in widths of the layer. */
+/* Largest displacement, in widths of the layer, for which the mode counts as small. */
 static const double small = 0.1;
 
 _Static_assert(sizeof(struct mode_start) <= PROBLEM_OWN_BYTES, "a mode fits");
@@ -47,7 +47,7 @@ enum status mode_prepare(struct prepared *p, const struct layer *layer, const do
                      amplitude, most);
 }
 
-/* x in the units of the mode. */
+/* x in units of the mode. */
 static void to_mode(const struct mode_start *start, const double x[3], double at[2])
 {
     at[0] = (x[0] - start->origin[0]) / start->length;
@@ -68,19 +68,19 @@ void mode_sample(const struct prepared *p, const double x[3], double t, struct p
                                     .u = P / ((p->gamma - 1) * rho)};
 }
 
-/* ---- what a state has of the mode ---- */
+/* ---- projection of a state on the mode ---- */
 
 enum { BINS = 32 };
 
 struct projection {
-    double complex c, other; /* of the mode, and of the other parity */
-    double noise;            /* rms of v_y without the mode, over the rms of the mode */
-    double error;            /* of v_y(y) at the mode's wavelength, relative, rms */
+    double complex c, other; /* amplitudes of the mode and of the opposite parity */
+    double noise;            /* rms of v_y without the mode over the rms of the mode */
+    double error;            /* relative rms error of v_y(y) at the mode's wavelength */
 };
 
-/* Sums over particles, and over those of a part of the height. */
+/* Sums over all particles and over bins of the height. */
 struct sums {
-    double complex half[2]; /* of the layer at y = 0, and of its mirror image */
+    double complex half[2]; /* the layer at y = 0 and its mirror image */
     double squares, all;
     double complex measured[BINS], exact[BINS];
     double volume[BINS];
@@ -114,7 +114,7 @@ static struct projection project(const struct prepared *p, const struct snapshot
     }
     struct projection of = {.c = 2 * (sums.half[0] + sums.half[1]) / sums.squares,
                             .other = 2 * (sums.half[0] - sums.half[1]) / sums.squares};
-    /* the mean square of Re(c f) is |c f|^2/2, and the rest is orthogonal to it */
+    /* the mean square of Re(c f) is |c f|^2/2; the rest is orthogonal */
     const double size = creal(of.c * conj(of.c)), mode = 0.5 * size * sums.squares;
     of.noise = sqrt(fabs(sums.all - mode) / mode);
     double off = 0, whole = 0;

@@ -25,7 +25,8 @@ enum {
 
 struct own;
 
-/* A problem of problem_family with another sample; begins with what is handed out. */
+/* A problem of problem_family with another sample. `problem` comes first, since pointers to it are
+ * converted back. */
 struct own_problem {
     struct problem problem;
     const struct problem *base;
@@ -41,7 +42,7 @@ struct own {
     const char *parameter_names[OWN_PARAMETERS_MAX];
     double parameters[OWN_PARAMETERS_MAX];
     bool unknown[FIELDS];
-    bool tried; /* the shared object has been, and is loaded */
+    bool tried; /* the shared object was tried and is loaded */
     struct own_problem problems[PROBLEMS];
 };
 
@@ -108,7 +109,7 @@ void own_miss(const struct prepared *p, const struct snapshot *s, double miss[FI
     if (of && of->own->table) own_table_miss(of->own->table, p, s, miss);
 }
 
-/* ---- at which times ---- */
+/* ---- times at which a table holds ---- */
 
 static bool holds(const struct prepared *p, double t)
 {
@@ -126,7 +127,7 @@ static enum status refuse(const struct prepared *p, double t, double longest, st
                      t, own->path, own_table_time(own->table));
 }
 
-/* ---- trying a shared object ---- */
+/* ---- trial calls of a shared object ---- */
 
 struct errand {
     struct own *own;
@@ -134,10 +135,10 @@ struct errand {
     double t;
 };
 
-/* A place in the window; the same for the same k. */
+/* A position in the window, the same for the same k. */
 static void place_in(const struct prepared *p, int k, double x[3])
 {
-    /* multiples of irrational numbers: nowhere on a symmetry */
+    /* multiples of irrational numbers avoid symmetric positions */
     static const double steps[3] = {0.7548776662466927, 0.5698402909980532, 0.3819660112501051};
     for (int d = 0; d < 3; d++) x[d] = 0;
     for (int d = 0; d < p->domain.dim; d++) {
@@ -150,7 +151,7 @@ static void place_in(const struct prepared *p, int k, double x[3])
 
 enum { TRIES = 64 };
 
-/* {"field": [number or null, ...], ...} of the samples at t: how many are known of each field. */
+/* Creates {"field": [number or null, ...], ...}: the number of known samples of each field at t. */
 static enum status try_calls(const void *context, json_t **reply, struct error *error)
 {
     const struct errand *errand = context;
@@ -189,7 +190,7 @@ static enum status judge_tries(struct own *own, const json_t *known, double t, s
                      own->path, t);
 }
 
-/* In a process of its own first, then it is loaded into this one. */
+/* Calls the shared object in a child process first, then loads it into this process. */
 static enum status try_user(struct own *own, const struct prepared *p, double t,
                             struct error *error)
 {
@@ -224,7 +225,7 @@ static enum status prepare(struct prepared *p, struct settings *settings, struct
 
 /* ---- loading ---- */
 
-/* A problem as this reference solves it. */
+/* Derives the problem that has this reference as its solution. */
 static void derive(struct own *own, const struct problem *base, struct own_problem *derived)
 {
     struct problem *problem = &derived->problem;
@@ -238,7 +239,7 @@ static void derive(struct own *own, const struct problem *base, struct own_probl
     problem->sample = sample;
     problem->holds = holds;
     problem->refuse = refuse;
-    /* these are of the problem's own solution */
+    /* these depend on the problem's own solution */
     problem->mean_energy = NULL;
     problem->ahead = NULL;
     problem->regions = NULL;
@@ -253,7 +254,7 @@ const struct problem *own_problem(int number, const struct problem *base)
     return &own->problems[k].problem;
 }
 
-/* NAME=NUMBER */
+/* Reads NAME=NUMBER. */
 static enum status read_parameter(struct own *own, const char *word, struct error *error)
 {
     const char *equals = strchr(word, '=');
@@ -275,7 +276,7 @@ static enum status read_parameter(struct own *own, const char *word, struct erro
     return STATUS_OK;
 }
 
-/* A path relative to the folder of another file. */
+/* Resolves a path relative to the folder of another file. */
 static enum status take_path(struct own *own, const char *word, const char *beside,
                              struct error *error)
 {

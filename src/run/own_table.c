@@ -18,16 +18,16 @@ enum over { OVER_X, OVER_XY, OVER_R };
 struct own_table {
     enum over over;
     double time;
-    size_t n[2];                /* rows along x or r, and along y (else 1) */
-    double *axis[2];            /* n each, rising */
-    double *value[COLUMNS];     /* n[0]*n[1] each, y the faster; NULL: there is none */
-    gsl_interp *curve[COLUMNS]; /* of x or r */
+    size_t n[2];                /* rows along x or r; rows along y, or 1 */
+    double *axis[2];            /* n each, increasing */
+    double *value[COLUMNS];     /* n[0]*n[1] each, y fastest; NULL: missing */
+    gsl_interp *curve[COLUMNS]; /* along x or r */
     char path[200];
 };
 
 /* ---- reading ---- */
 
-/* A line "# time = T"; NaN: there is none. */
+/* Reads a line "# time = T"; NaN: none. */
 static double read_time(const char *path)
 {
     char line[256], rest;
@@ -53,13 +53,14 @@ static enum status unsorted(const struct own_table *table, const char *path, con
                      path, csv->line[row], at[0][row], at[1][row]);
 }
 
-/* The rows' places: a rising line, or all pairs of two of them. order: where row i belongs. */
+/* Reads the positions of the rows: one increasing coordinate, or all pairs of two. order: index of
+ * row i in the table. */
 static enum status read_places(struct own_table *table, const char *path, const struct csv *csv,
                                const double *const at[2], size_t *order, struct error *error)
 {
     const size_t rows = csv->rows;
     const bool both = table->over == OVER_XY;
-    /* along the axis that changes from the first row to the second the rows run fast */
+    /* the fast axis is the one that changes between the first two rows */
     const int fast = both && rows > 1 && at[1][0] == at[1][1] ? 0 : both ? 1 : 0;
     size_t count = 1;
     while (count < rows && at[fast][count] > at[fast][count - 1]) count++;
@@ -86,7 +87,7 @@ static enum status read_places(struct own_table *table, const char *path, const 
     return STATUS_OK;
 }
 
-/* Curves of what is there; false: no memory. */
+/* Makes the interpolating curves; false: no memory. */
 static bool make_curves(struct own_table *table)
 {
     const size_t n = table->n[0];
@@ -186,12 +187,12 @@ bool own_table_knows(const struct own_table *table, enum field field)
     }
 }
 
-/* Row below x and the part of the way to the next; false: x is beyond the ends. */
+/* Finds the row below x and the fraction of the distance to the next; false: x is outside. */
 static bool locate(const double *axis, size_t n, double x, double period, size_t *row, double *part)
 {
     const double first = axis[0], last = axis[n - 1];
     const double near = fmax(axis[1] - first, last - axis[n - 2]);
-    if (period > 0 && last < first + period) { /* round the box */
+    if (period > 0 && last < first + period) { /* periodic box */
         x -= period * floor((x - first) / period);
         const double gap = first + period - last;
         if (x > last && gap <= 2.01 * near) {
@@ -210,7 +211,7 @@ static bool locate(const double *axis, size_t n, double x, double period, size_t
 struct spot {
     size_t row[2], next[2];
     double part[2];
-    bool inside, across; /* in the gap between the last row and the first */
+    bool inside, across; /* between the last row and the first */
 };
 
 static struct spot spot_at(const struct own_table *table, const double x[2], const double period[2])
@@ -239,7 +240,7 @@ static double value_at(const struct own_table *table, enum column c, const struc
            a * ((1 - b) * value[next[0] * ny + row[1]] + b * value[next[0] * ny + next[1]]);
 }
 
-/* vr away from the middle, vphi round it; a column that is not there is 0. */
+/* Velocity from vr and vphi about the window's centre; a missing column is 0. */
 static void turn(const struct prepared *p, const double x[3], double vr, double vphi, double v[3])
 {
     const double r = problem_radius(p, x);
@@ -251,7 +252,7 @@ static void turn(const struct prepared *p, const double x[3], double vr, double 
     v[1] += vphi * away[0];
 }
 
-/* What lies at the table's coordinates x, of the place `at`. */
+/* State at the table's coordinates x, which belong to the position `at`. */
 static void state_at(const struct own_table *table, const struct prepared *p, const double at[3],
                      const double x[2], struct problem_state *state)
 {
@@ -281,7 +282,7 @@ void own_table_sample(const struct own_table *table, const struct prepared *p, c
     state_at(table, p, x, over, state);
 }
 
-/* ---- is it enough, how good is it ---- */
+/* ---- coverage and interpolation error ---- */
 
 enum status own_table_check(const struct own_table *table, const struct prepared *p,
                             struct error *error)
@@ -318,7 +319,7 @@ enum status own_table_check(const struct own_table *table, const struct prepared
     return STATUS_OK;
 }
 
-/* Every second row along each axis; NULL: too few, or no memory. */
+/* A table of every second row along each axis; NULL: too few rows, or no memory. */
 static struct own_table *thin(const struct own_table *table)
 {
     struct own_table *half = calloc(1, sizeof *half);
@@ -350,7 +351,7 @@ static double width_of(const double *axis, size_t n, size_t i)
     return 0.5 * (axis[i + 1 < n ? i + 1 : i] - axis[i > 0 ? i - 1 : i]);
 }
 
-/* The place of a row: along x where it is over r. */
+/* Position of a row; on the x axis for a table over r. */
 static void place_of(const struct own_table *table, const struct prepared *p, size_t i, size_t j,
                      double at[3])
 {
@@ -363,7 +364,7 @@ struct missed {
     double sum[FIELDS], weight;
 };
 
-/* What the halved table makes of a place is another value. */
+/* Adds the differences between the values of the full and of the thinned table. */
 static void add_missed(struct missed *missed, const struct prepared *p, double weight,
                        const struct problem_state *whole, const struct problem_state *less)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A table of fields against x, x and y, or r, for `reference = table FILE`: what a fine run or
- * another code has found. Between the rows of x or r monotone cubics (Steffen 1990, which make no
- * new extrema at jumps), on a grid of x and y bilinear. Code units. */
+ * A table of fields against x, x and y, or r, for `reference = table FILE`, such as the result of a
+ * fine run or of another code. Interpolation is by monotone cubics in x or r (Steffen 1990, no new
+ * extrema at jumps), bilinear on a grid of x and y. Code units. */
 #pragma once
 
 #include "field.h"
@@ -9,32 +9,32 @@
 
 struct own_table;
 
-/* Reads a CSV file (csv.h): columns x, or x and y, or r, which rise, and any of rho, vx, vy, vz
- * (with r: vr, vphi), P, u; a line `# time = T` says of which time. NULL: what is wrong, with the
- * line. STATUS_BAD_INPUT, STATUS_ENVIRONMENT in error->status. */
+/* Reads a CSV file (csv.h): columns x, or x and y, or r, in increasing order, and any of rho, vx,
+ * vy, vz (with r: vr, vphi), P, u. A line `# time = T` gives the time. NULL: error names the
+ * problem and the line; error->status is STATUS_BAD_INPUT or STATUS_ENVIRONMENT. */
 struct own_table *own_table_read(const char *path, struct error *error);
 
-void own_table_free(struct own_table *table); /* NULL: nothing */
+void own_table_free(struct own_table *table); /* may be NULL */
 
 double own_table_time(const struct own_table *table);
 
-/* Is anything of the field in the table? u follows from rho and P, and P
- * from rho and u; a component of the velocity that is not there is 0. */
+/* True if the table gives the field. u follows from rho and P, and P from rho and u; a missing
+ * velocity component is 0. */
 bool own_table_knows(const struct own_table *table, enum field field);
 
-/* STATUS_BAD_INPUT: it has no form in these dimensions, or does not cover the window. */
+/* STATUS_BAD_INPUT: the table does not suit the dimension or does not cover the window. */
 enum status own_table_check(const struct own_table *table, const struct prepared *p,
                             struct error *error);
 
-/* The state at x; NaN: unknown. Up to one spacing beyond its ends the last row holds, and round a
- * periodic box the last row and the first are neighbours. */
+/* The state at x; NaN: unknown. The last row holds up to one spacing beyond the end; in a periodic
+ * box the last and the first row are neighbours. */
 void own_table_sample(const struct own_table *table, const struct prepared *p, const double x[3],
                       struct problem_state *state);
 
-/* How far the table is off the rows that are left out of it when only every second one is kept:
- * means of the absolute differences over the rows in the window, by volume (of velocities: of the
- * vector's), or over the particles of a snapshot in it, whichever is more: a particle between the
- * two rows of a jump may be off by much. With all rows it is off by a fraction of that. NaN: not
- * known. */
+/* Estimates the interpolation error: the difference between every second row and the interpolation
+ * of the other rows. The result is the larger of two means of absolute differences: over the rows
+ * in the window, by volume (for velocities, of the vector), and over the particles of a snapshot in
+ * the window, since a particle between the two rows of a jump may have a large error. The error
+ * with all rows is a fraction of this. NaN: unknown. */
 void own_table_miss(const struct own_table *table, const struct prepared *p,
                     const struct snapshot *s, double miss[FIELDS]);

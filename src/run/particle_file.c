@@ -10,7 +10,7 @@
 
 static const char *const places[] = {"x", "y", "z"}, *const velocities[] = {"vx", "vy", "vz"};
 
-/* The column of that name, NULL where there are no rows; an error where there is no such column. */
+/* Finds a column by name; NULL in a file without rows. Fails if there is no such column. */
 static enum status find(const struct particle_file *file, const char *path, const char *name,
                         const double **column, struct error *error)
 {
@@ -83,7 +83,7 @@ void particle_file_free(struct particle_file *file)
     csv_free(&file->csv);
 }
 
-/* A box around the particles, a little wider. */
+/* Sets a box slightly larger than the extent of the particles. */
 static void surround(const struct particle_file *file, int a, struct setup *setup)
 {
     double lo = (double)INFINITY, hi = -(double)INFINITY;
@@ -118,9 +118,9 @@ enum status particle_file_fill(const struct particle_file *file, const char *pat
     return STATUS_OK;
 }
 
-/* ---- the start of a run ---- */
+/* ---- initial state of a run ---- */
 
-/* In directions that are not open all particles must lie inside the box. */
+/* Particles must be inside the box, except along open directions. */
 static enum status check_places(const struct particle_file *file, const char *path,
                                 const struct prepared *p, struct error *error)
 {
@@ -149,8 +149,8 @@ static enum status check_places(const struct particle_file *file, const char *pa
     return STATUS_OK;
 }
 
-/* Estimates densities where neither problem nor file gives them; smoothing lengths are solved for
- * from there. */
+/* Initial guesses of densities from the problem, the file, or the mean. The solver finds smoothing
+ * lengths from these. */
 static void guess_densities(const struct particle_file *file, const struct prepared *p,
                             struct initial *initial)
 {

@@ -16,7 +16,7 @@ enum status problem_check_state(const struct settings *settings, enum setting ke
                      state[0] == 0 ? " (particles cannot fill a vacuum)" : "");
 }
 
-/* x where it would be without boost, in the box. */
+/* Position without the boost, in the box. */
 static void serialise_back(const struct prepared *p, const double x[3], double t, double place[3])
 {
     for (int d = 0; d < 3; d++) {
@@ -79,7 +79,7 @@ enum status problem_check_time(const struct prepared *p, double t, struct error 
         const double middle = 0.5 * (longest + reached);
         *(problem->holds(p, middle) ? &longest : &reached) = middle;
     }
-    longest *= 1 - 1e-3; /* as printed it shall still be allowed */
+    longest *= 1 - 1e-3; /* so that the value as printed is allowed */
     return problem->refuse(p, t, longest, error);
 }
 
@@ -103,13 +103,13 @@ double problem_radius(const struct prepared *p, const double x[3])
     return sqrt(square);
 }
 
-/* Length of [x - side/2, x + side/2] in the window along d, over side; also of its images. */
+/* Fraction of [x - side/2, x + side/2] and its images that is in the window along d. */
 static double part_along(const struct prepared *p, int d, double x, double side)
 {
     const double lo = p->window.lo[d], hi = p->window.hi[d];
     const bool periodic = p->boundary[d] == BOUNDARY_PERIODIC;
     double sum = 0;
-    /* of a wall, or above a liquid's mean surface */
+    /* a particle of a wall, or above a liquid's mean surface */
     if (p->walled && !periodic && !(x >= p->domain.lo[d] && x <= p->domain.hi[d])) return 0;
     if (lo <= p->domain.lo[d] && hi >= p->domain.hi[d] && p->boundary[d] != BOUNDARY_OPEN) return 1;
     for (int image = periodic ? -1 : 0; image <= periodic; image++) {
@@ -125,7 +125,7 @@ double problem_window_part(const struct prepared *p, const struct snapshot *s, s
     double x[3], part = s->volume[i];
     problem_place(p, s, i, x);
     for (int d = 0; d < p->domain.dim; d++) {
-        if (!isfinite(x[d])) return (double)NAN; /* fmin and fmax ignore it */
+        if (!isfinite(x[d])) return (double)NAN; /* fmin and fmax ignore NaN */
         part *= part_along(p, d, x[d], side);
     }
     if (!(p->window.radius > 0) || !isfinite(part)) return part;
@@ -148,7 +148,7 @@ void problem_circular(const struct prepared *p, const double x[3], const double 
         out += away[d] * v[d];
     }
     *radial = out;
-    /* not |v|^2 - out^2: of its round-off the root is 1e-8 |v| */
+    /* not |v|^2 - out^2, since its round-off gives a root of 1e-8 |v| */
     for (int d = 0; d < p->domain.dim; d++)
         squares += (v[d] - out * away[d]) * (v[d] - out * away[d]);
     const double dx = x[0] - p->window.centre[0], dy = x[1] - p->window.centre[1];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Problems: what a run starts from and what it is judged by, in one, two and three dimensions. Each
- * is one file in problem/ and one line in problems.def; nothing outside of problem/ asks which one
- * a run has, only what its descriptor says. Code units throughout. */
+ * Problems in one, two and three dimensions: the initial state of a run and the exact solution for
+ * its errors. Each problem is one file in problem/ and one line in problems.def. Code outside
+ * problem/ depends only on the descriptor, never on a particular problem. Code units. */
 #pragma once
 
 #include <stdbool.h>
@@ -16,174 +16,180 @@ enum { PROBLEM_OWN_BYTES = 4096, PROBLEM_FUNCTIONALS_MAX = 6, PROBLEM_REGIONS_MA
 
 struct initial;
 
-/* The gas at one place and time. */
+/* State of the gas at one position and time. */
 struct problem_state {
     double rho, v[3], P, u;
 };
 
-/* A problem with the numbers of one run. Plain data: it may be copied, and owns no
- * memory. */
+/* A problem with the numbers of one run. Plain data that owns no memory and may be copied. */
 struct prepared {
     const struct problem *problem;
     struct domain domain;
-    struct window window; /* where errors are measured; its centre: the middle of the domain */
-    double boost[3];      /* added to all velocities: the solution and the window move along */
+    struct window
+        window;      /* region where errors are measured; its centre is the middle of the domain */
+    double boost[3]; /* added to all velocities; the solution and the window move with it */
     enum boundary boundary[3];
-    bool walled;       /* particles beyond ends that are not periodic are none of the gas */
-    double gravity[3]; /* acceleration; prepare may set it where the key is automatic */
+    bool walled;       /* particles beyond a non-periodic end are not part of the gas */
+    double gravity[3]; /* acceleration; prepare may set an automatic one */
     double gamma;
-    /* What the problem works out once and then works with (solved jumps, an eigenmode ...). */
+    /* Private data of the problem, computed once by prepare (solved jumps, an eigenmode ...). */
     union {
         max_align_t align;
         unsigned char bytes[PROBLEM_OWN_BYTES];
     } own;
 };
 
-/* What a key of a problem is for. */
+/* The purpose of a problem's key. */
 enum problem_role {
-    ROLE_NEEDED,   /* says which problem it is, and a case file has to give it */
-    ROLE_OPTIONAL, /* the same, with a fallback */
-    ROLE_PARTICLES /* how particles are laid: the same problem, solved otherwise */
+    ROLE_NEEDED,   /* defines the problem; a case file must give it */
+    ROLE_OPTIONAL, /* defines the problem; has a default */
+    ROLE_PARTICLES /* arranges the particles: the same problem, discretised differently */
 };
 
-/* A key that only those problems read that name it. */
+/* A key that is read only by the problems that list it. */
 struct problem_key {
     enum setting key;
     enum problem_role role;
 };
 
-/* A scalar of a state, at any time of a run: a mean, the place of a shock, the amplitude of a mode.
- * What Richardson's extrapolation is for. */
+/* A scalar of the state at any time of a run: a mean, a shock position, the amplitude of a mode.
+ * Used for Richardson extrapolation. */
 struct functional {
-    const char *name;                          /* no other of the problem has it */
-    bool (*present)(const struct prepared *p); /* NULL: with all settings */
+    const char *name;                          /* unique within the problem */
+    bool (*present)(const struct prepared *p); /* NULL: exists with all settings */
     double (*measure)(const struct prepared *p, const struct snapshot *s);
     double (*exact)(const struct prepared *p,
-                    double t); /* or from a reference; NULL, NaN: unknown */
+                    double t); /* exact or from a reference; NULL or NaN: unknown */
 };
 
-/* An amplitude that grows like exp(rate t): the rate is measured through the run, and is one more
- * functional of its result. */
+/* An amplitude that grows like exp(rate t). The rate is measured during the run and becomes one
+ * more functional of the result. */
 struct growing {
     const char *name; /* of the rate */
     double (*amplitude)(const struct prepared *p, const struct snapshot *s);
-    void (*during)(const struct prepared *p, double times[2]); /* it grows like that */
-    double (*rate)(const struct prepared *p);                  /* exact */
+    void (*during)(const struct prepared *p, double times[2]); /* interval of exponential growth */
+    double (*rate)(const struct prepared *p);                  /* exact value */
 };
 
-/* Parts of the exact solution, for an error budget. */
+/* Regions of the exact solution, for an error budget. */
 struct regions {
-    const char *names[PROBLEM_REGIONS_MAX + 1]; /* ends with NULL */
-    /* Position among the names of what is at x; reach: numerical width of a wave there. */
+    const char *names[PROBLEM_REGIONS_MAX + 1]; /* NULL-terminated */
+    /* Index of the region at x in `names`; reach: numerical half-width of a wave there. */
     size_t (*at)(const struct prepared *p, const double x[3], double reach, double t);
     /* max |v - v0|/c in gas of the whole box that no wave has reached; NaN: too few particles. */
     double (*still)(const struct prepared *p, const struct snapshot *s);
 };
 
-/* What may be at both ends of a direction so that the sample stays exact. {0}: periodic only. */
+/* Boundaries of one direction that keep the sample exact. {0}: periodic only. */
 struct problem_ends {
-    enum boundary usual; /* unless a case or the user says otherwise */
-    unsigned also;       /* PROBLEM_END(OPEN) | ... : what else is sound */
+    enum boundary usual; /* default */
+    unsigned also;       /* other valid boundaries: PROBLEM_END(OPEN) | ... */
 };
 #define PROBLEM_END(name) (1u << BOUNDARY_##name)
 
-/* Flows with azimuthal and radial errors: round the middle of the domain, and to it or from it. */
+/* Flows whose velocity errors have azimuthal and radial parts: rotating around the middle of the
+ * domain, or moving towards it or away from it. */
 enum circular { CIRCULAR_NOT, CIRCULAR_ROUND, CIRCULAR_RADIAL };
 
-/* Solutions of users (own_reference.h); only functions know other times, the start too. */
+/* Exact solutions of users (own_reference.h). A table is valid at one time only, a function at any
+ * time, including the start. */
 enum own_kind { OWN_NOT, OWN_TABLE, OWN_FUNCTION };
 
 struct problem {
-    struct member member;  /* in cases: kind = NAME */
-    const char *reference; /* exact solution, as case files name it */
+    struct member member;  /* the key `kind` selects it by name */
+    const char *reference; /* exact solution, by its name in case files */
     int least_dim, most_dim;
-    bool carried; /* exact everywhere in the periodic box, so that it may be boosted */
+    bool carried; /* exact everywhere in the periodic box, so that a boost is allowed */
     enum circular circular;
-    bool fieldless;       /* of t > 0 only functionals are known: there are no errors of fields */
-    bool unknown[FIELDS]; /* nor of these, although others are known; their samples are NaN */
-    enum own_kind own;    /* whose its sample is */
-    bool liquid;          /* weakly compressible: for snapshots and runs of other codes only */
-    bool filed;           /* its particles come from a file, always */
-    bool heavy;           /* it takes gravity: any other has no solution in it */
-    bool steady; /* the exact flow is the same at all times, but for where the boost carries it */
-    bool shifts; /* closed gradients and particle shifting make its errors smaller */
-    bool shifts_equal_masses; /* they do with equal_masses=yes, whose particles are in disorder */
-    bool smooth;              /* neither jumps nor shocks, for as long as it is solved */
+    bool fieldless;           /* for t > 0 only functionals are known; there are no field errors */
+    bool unknown[FIELDS];     /* fields without exact values; their samples are NaN */
+    enum own_kind own;        /* who provides the sample */
+    bool liquid;              /* weakly compressible: only for snapshots and runs of other codes */
+    bool filed;               /* the particles always come from a file */
+    bool heavy;               /* has a solution with gravity; no other problem allows gravity */
+    bool steady;              /* the exact flow does not change with time, except for the boost */
+    bool shifts;              /* closed gradients and particle shifting reduce the errors */
+    bool shifts_equal_masses; /* they also do so with equal_masses=yes, where particles are
+                                 disordered */
+    bool smooth;              /* no jumps and no shocks while the solution holds */
     struct problem_ends ends[3];
-    /* NULL, but where energy starts in the middle of the window: the sample at t = 0 does not show
-     * it, and later u has no bound there. Energy over mass of the ball of radius r round it. */
+    /* For a point explosion: energy over mass of the ball of radius r around the middle of the
+     * window. The sample at t = 0 does not show this energy, and u is unbounded there later. Else
+     * NULL. */
     double (*mean_energy)(const struct prepared *p, double r, double t);
-    const struct problem_key *keys; /* its own, beside those of every run */
+    const struct problem_key *keys; /* keys of the problem, in addition to those of every run */
     size_t key_count;
-    /* Checks its own keys, gives those that are automatic a value, fills p->own; domain, boost,
-     * gamma, boundary and gravity are there, and a window which it may replace unless the user
-     * asked for one. STATUS_BAD_INPUT: what is wrong with them, or why nothing is exact. */
+    /* Checks the problem's keys, sets the automatic ones, and fills p->own. On entry domain, boost,
+     * gamma, boundary and gravity are set, and a window, which prepare may replace unless the user
+     * asked for one. STATUS_BAD_INPUT: the keys are invalid or give no exact solution. */
     enum status (*prepare)(struct prepared *p, struct settings *settings, struct error *error);
-    /* The state at x and t: the initial one at t = 0, the exact one after that. Where the exact gas
-     * is a vacuum: rho, P and u 0, and a velocity that joins its edges. */
+    /* The state at x and t: initial at t = 0, exact later. In a vacuum of the exact solution rho, P
+     * and u are 0, and the velocity joins those at the edges of the vacuum. */
     void (*sample)(const struct prepared *p, const double x[3], double t,
                    struct problem_state *state);
-    /* Particles of the initial state, undisturbed and without boost: see initial.h. */
+    /* Makes the particles of the initial state, without perturbation and boost: see initial.h. */
     enum status (*fill)(const struct prepared *p, const struct settings *settings,
                         struct initial *initial, struct error *error);
-    /* Is the sample at t exact in the whole window: no wave from an image of the domain has come
-     * in, none has broken? NULL: always. */
+    /* True if the sample at t is exact in the whole window: no wave from an image of the domain has
+     * entered and no wave has broken. NULL: always. */
     bool (*holds)(const struct prepared *p, double t);
-    /* Says why it does not; longest: the last time at which it does. */
+    /* Reports why the sample is not exact; longest: the last time at which it is. */
     enum status (*refuse)(const struct prepared *p, double t, double longest, struct error *error);
-    /* How far ahead of the nearest wave x lies, without boost; <= 0 where one has been. NULL: no
+    /* Distance of x from the nearest wave, without boost; <= 0 where a wave has passed. NULL: no
      * wave has an edge. */
     double (*ahead)(const struct prepared *p, const double x[3], double t);
-    /* Does the start depend on the seed? */
+    /* True if the initial state depends on the seed. */
     bool (*random)(const struct settings *settings);
-    /* Ends with NULL; with the rate of what grows at most PROBLEM_FUNCTIONALS_MAX. */
+    /* NULL-terminated; at most PROBLEM_FUNCTIONALS_MAX including the growth rate. */
     const struct functional *functionals[PROBLEM_FUNCTIONALS_MAX + 1];
-    const struct growing *growing; /* NULL: nothing grows */
-    const struct regions *regions; /* NULL: none */
+    const struct growing *growing; /* may be NULL */
+    const struct regions *regions; /* may be NULL */
 };
 
 void problem_sample(const struct prepared *p, const double x[3], double t,
                     struct problem_state *state);
 
-/* Are there errors of that field? */
+/* True if the errors of the field are known. */
 bool problem_knows(const struct problem *problem, enum field field);
 
 /* A field of a state; velocity: along x. */
 double problem_field(const struct problem_state *state, enum field field);
 
-/* Means of a field over each of bins equal parts of the window at t, to 1e-10 (dim = 1). */
+/* Means of a field at t over `bins` equal parts of the window, to 1e-10 (dim = 1). */
 void problem_means(const struct prepared *p, enum field field, double t, size_t bins,
                    double *means);
 
-/* STATUS_BAD_INPUT where the sample is not exact in the window at t: why, and up to when it is. */
+/* STATUS_BAD_INPUT: the sample is not exact in the window at t; the message says why and until when
+ * it is. */
 enum status problem_check_time(const struct prepared *p, double t, struct error *error);
 
-/* For a problem's prepare: is key, "rho v P", a state that particles can have? */
+/* For prepare of a problem: checks that the key, "rho v P", is a valid state of particles. */
 enum status problem_check_state(const struct settings *settings, enum setting key,
                                 struct error *error);
 
-/* Position and velocity of particle i, without what the boost has done. */
+/* Position and velocity of particle i without the boost. */
 void problem_place(const struct prepared *p, const struct snapshot *s, size_t i, double x[3]);
 void problem_velocity(const struct prepared *p, const struct snapshot *s, size_t i, double v[3]);
 
-/* How much of the volume of particle i lies in the window; continuous in its position. The particle
- * is a cube along the axes; where the box is periodic its images count, too, and along a direction
- * in which the window is as long as a box that gas cannot leave nothing is cut. The surface of a
- * disc or a ball cuts a cube as a plane across the radius does. NaN: it is nowhere. */
+/* The part of the volume of particle i that lies in the window; a continuous function of the
+ * position. The particle is a cube along the axes. Images in periodic directions count, too.
+ * Nothing is cut off along a direction in which the window is as long as a box that gas cannot
+ * leave. The surface of a disc or ball is taken as a plane normal to the radius. NaN: no
+ * position. */
 double problem_window_part(const struct prepared *p, const struct snapshot *s, size_t i);
 
-/* Distance from the window's centre of a place as problem_place gives it. */
+/* Distance of x, as given by problem_place, from the window's centre. */
 double problem_radius(const struct prepared *p, const double x[3]);
 
-/* For a problem's prepare: the key direction as a unit vector, and the length of a wave that runs
- * so and fits the box once. Where it is automatic: along x. */
+/* For prepare of a problem: the key `direction` as a unit vector, and the length of a wave along it
+ * that fits the box once. Automatic: along x. */
 enum status problem_direction(const struct prepared *p, struct settings *settings, double n[3],
                               double *length, struct error *error);
 
-/* Has a run azimuthal and radial errors? Those of circular problems in 2D and 3D. */
+/* True if the run has azimuthal and radial errors: circular problems in 2D and 3D. */
 bool problem_is_circular(const struct prepared *p);
 
-/* Parts along the circle round the window's centre, and away from it, of a vector at x in a plane;
- * in space the first is the size of the part across the radius. At the centre itself: 0. */
+/* Azimuthal and radial parts of a vector at x about the window's centre in 2D. In 3D the azimuthal
+ * part is the magnitude of the part normal to the radius. Both are 0 at the centre itself. */
 void problem_circular(const struct prepared *p, const double x[3], const double v[3],
                       double *azimuthal, double *radial);

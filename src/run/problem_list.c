@@ -40,7 +40,7 @@ bool problem_reads(const struct problem *problem, enum setting key)
     return true;
 }
 
-/* Keys that say nothing in 1D. */
+/* True for keys without meaning in 1D. */
 static bool needs_a_plane(enum setting key)
 {
     return key == SETTING_direction || key == SETTING_boost || key == SETTING_viscosity_form ||

@@ -9,7 +9,7 @@
 static const enum setting vectors[] = {SETTING_lo,        SETTING_hi,      SETTING_boost,
                                        SETTING_direction, SETTING_gravity, SETTING_boundary};
 
-/* A vector has one number, or one for each direction. */
+/* Checks that vectors have one number, or one per direction. */
 static enum status check_vectors(const struct settings *settings, int dim, struct error *error)
 {
     for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++) {
@@ -42,7 +42,7 @@ static enum status check_box(const struct domain *domain, const struct settings 
                      window[0], window[1], domain->lo[0], domain->hi[0]);
 }
 
-/* What is at the ends of the box, and whether the problem can be solved so. */
+/* Sets the boundaries of the box and checks that the problem allows them. */
 static enum status choose_ends(struct prepared *p, struct settings *settings, struct error *error)
 {
     const struct problem *problem = p->problem;
@@ -80,7 +80,7 @@ static enum status choose_ends(struct prepared *p, struct settings *settings, st
     return STATUS_OK;
 }
 
-/* Gravity as asked; what is automatic may be the problem's to set. */
+/* Sets gravity as asked; the problem may set an automatic one. */
 static enum status choose_gravity(struct prepared *p, const struct settings *settings,
                                   struct error *error)
 {
@@ -96,7 +96,7 @@ static enum status choose_gravity(struct prepared *p, const struct settings *set
     return STATUS_OK;
 }
 
-/* What the problem asks for; scheme_default knows what excludes it. */
+/* Sets automatic shifting as the problem wishes; scheme_default checks what excludes it. */
 static void choose_shifting(const struct prepared *p, struct settings *settings)
 {
     struct setting_value *shifting = &settings->value[SETTING_shifting];
@@ -109,8 +109,8 @@ static void choose_shifting(const struct prepared *p, struct settings *settings)
     shifting->choice = closed ? SHIFTING_CLOSED : SHIFTING_NONE;
 }
 
-/* Of gas; scheme_default knows schemes without dissipation. Evaluations of other codes' particles
- * have none unless they ask. */
+/* On for gas, off for liquids; scheme_default handles schemes without dissipation. Evaluations of
+ * other codes' particles have none unless asked. */
 static void choose_conductivity(const struct prepared *p, struct settings *settings)
 {
     struct setting_value *conductivity = &settings->value[SETTING_shock_conductivity];
@@ -118,7 +118,7 @@ static void choose_conductivity(const struct prepared *p, struct settings *setti
     conductivity->real[0] = p->domain.dim > 1 && !p->problem->liquid ? 1 : 0;
 }
 
-/* Automatic keys as they are used. */
+/* Stores the values of automatic keys. */
 static void write_back(const struct prepared *p, struct settings *settings)
 {
     struct setting_value *gravity = &settings->value[SETTING_gravity];
@@ -130,7 +130,7 @@ static void write_back(const struct prepared *p, struct settings *settings)
     settings->value[SETTING_window_radius].real[0] = p->window.radius;
 }
 
-/* What concerns two keys, neither of them the problem's own. */
+/* Checks combinations of keys that do not belong to the problem. */
 static enum status check_together(const struct prepared *p, const struct settings *settings,
                                   struct error *error)
 {
@@ -171,7 +171,7 @@ bool problem_lays_particles(const struct problem *problem, enum setting key)
            key == SETTING_seed;
 }
 
-/* Particles of a file are as they are. */
+/* Particles of a file cannot be rearranged. */
 static enum status check_file(const struct prepared *p, const struct settings *settings,
                               struct error *error)
 {
@@ -186,19 +186,19 @@ static enum status check_file(const struct prepared *p, const struct settings *s
     return STATUS_OK;
 }
 
-/* The default lattice, and whether the lattice exists in this dimension. */
+/* Sets the default lattice and checks that the lattice exists in this dimension. */
 static enum status choose_lattice(struct settings *settings, int dim, struct error *error)
 {
     static const enum lattice usual[] = {LATTICE_UNIFORM, LATTICE_SQUARE, LATTICE_CUBIC};
     static const unsigned char dims[LATTICES] = {
-        /* a bit for each */
+        /* one bit per dimension */
         [LATTICE_UNIFORM] = 1, [LATTICE_CLUSTERED] = 1, [LATTICE_COINCIDENT] = 1,
         [LATTICE_SQUARE] = 2,  [LATTICE_CUBIC] = 4,     [LATTICE_HEXAGONAL] = 6,
         [LATTICE_FCC] = 4,     [LATTICE_BCC] = 4,       [LATTICE_JITTERED] = 6,
         [LATTICE_RANDOM] = 6,  [LATTICE_GLASS] = 6};
     struct setting_value *lattice = &settings->value[SETTING_lattice],
                          *jitter = &settings->value[SETTING_jitter];
-    /* lattices have one spacing */
+    /* positions that follow the density cannot be on a lattice of one spacing */
     const bool follows = settings_choice(settings, SETTING_equal_masses) &&
                          problem_of(settings)->fill == initial_fill;
     if (lattice->automatic) lattice->choice = (int)(follows ? LATTICE_GLASS : usual[dim - 1]);

@@ -30,7 +30,7 @@ static void sample_at(const struct run_result *result, double x, double values[F
     for (int f = 0; f < FIELDS; f++) values[f] = problem_field(&state, (enum field)f);
 }
 
-/* The exact curve; points on a straight line between their neighbours are left out. */
+/* The exact curve without points on a straight line between their neighbours. */
 static json_t *exact_profile(const struct run_result *result)
 {
     json_t *profile = json_object();

@@ -4,12 +4,12 @@
 #include <gsl/gsl_rng.h>
 #include <stdlib.h>
 
-/* Numbers of GSL's sequence are whole multiples of 1/RANGE. */
+/* GSL's sequence consists of integer multiples of 1/RANGE. */
 #define RANGE (UINT32_C(1) << 30)
 
 struct quasi_random *quasi_random_create(int dim, unsigned long seed)
 {
-    /* odd, without a pattern: the golden ratio, and the roots of 2, 3 and 5 */
+    /* odd and without a pattern: from the golden ratio and the roots of 2, 3 and 5 */
     static const uint32_t scatter[QUASI_RANDOM_DIM_MAX] = {0x9e3779b9, 0x6a09e667, 0xbb67ae85,
                                                            0x3c6ef373};
     struct quasi_random *random = calloc(1, sizeof *random);

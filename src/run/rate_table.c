@@ -19,8 +19,8 @@ static bool allocate(struct rate_table *table)
     return true;
 }
 
-/* Puts the solver's order back into the setup's; dE = v . F + dU where it is E that is integrated.
- */
+/* Copies the solver's results in the order of the setup; total: the solver integrates E, dE = v . F
+ * + dU. */
 static void take(struct rate_table *table, const struct simulation *simulation, bool total)
 {
     struct snapshot s;

@@ -7,9 +7,9 @@
 #include "grid.h"
 #include "shapes.h"
 
-/* Sums over the points seen so far. Of the distances to the nearest neighbour the mean and the sum
- * of squared deviations from it are updated point by point (Welford 1962): on a lattice the mean of
- * the squares less the square of the mean is noise. */
+/* Sums over the points so far. The mean distance to the nearest neighbour and the sum of squared
+ * deviations are updated point by point (Welford 1962), because on a lattice the mean square minus
+ * the squared mean is mere round-off. */
 struct sums {
     const struct regularity_cloud *cloud;
     struct shapes shapes;
@@ -18,14 +18,14 @@ struct sums {
     size_t paired;
 };
 
-/* Sums over the neighbours of one point seen so far. */
+/* One point and the sums over its neighbours so far. */
 struct place {
     size_t i;
     double nearest, sum, to[3];
 };
 
-/* Some of its neighbours: the vector from the nearest image of each to the point, and its volume.
- */
+/* A batch of neighbours of one point: the vectors from the nearest image of each to the point, and
+ * the volumes. */
 enum { PART = 64 };
 
 struct part {
@@ -121,8 +121,8 @@ static struct place see_slot(const struct sums *sums, const struct grid *grid,
 
 enum { BLOCK = 65536 };
 
-/* Threads share the points of the block that begins at first; the results are added in the order of
- * the slots, whatever the number of threads. */
+/* Threads share the points of the block that begins at `first`. The results are added in the order
+ * of the slots, so that they do not depend on the number of threads. */
 static bool walk_block(struct sums *sums, const struct grid *grid, size_t first,
                        const unsigned char *asleep, double widest, int threads, struct place *seen)
 {
@@ -144,8 +144,8 @@ static bool walk_block(struct sums *sums, const struct grid *grid, size_t first,
     return enough;
 }
 
-/* Neighbours are searched for one block of points at a time: the lists of all points would take too
- * much memory. */
+/* Searches neighbours for one block of points at a time, since the lists of all points would take
+ * too much memory. */
 static enum status walk_blocks(struct sums *sums, struct grid *grid, unsigned char *asleep,
                                double widest, int threads, struct place *seen, struct error *error)
 {
@@ -196,7 +196,7 @@ static int by_place(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-/* Neighbours on one side of the k-th point in the row, as far as its h reaches; at least one. */
+/* Adds the neighbours on one side of point k in the sorted row within its h, and at least one. */
 static void walk_side(const struct sums *sums, const struct stand *row, size_t k, bool right,
                       struct place *place)
 {

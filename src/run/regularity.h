@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How regular particles stand: distances of nearest neighbours, and what sums over a kernel make of
- * a constant (the lattice-sum errors of Quinlan et al. 2006 and Price 2012, there called E0). Code
+ * Regularity of particle positions: distances of nearest neighbours, and the errors of kernel sums
+ * for a constant field (lattice-sum errors of Quinlan et al. 2006; E0 in Price 2012). Code
  * units. */
 #pragma once
 
@@ -9,7 +9,7 @@
 
 #include "problem.h"
 
-/* Points with the volume that each stands for and the width h of its neighbourhood; n each. */
+/* Points with their volumes and smoothing lengths h; n each. */
 struct regularity_cloud {
     struct domain box;
     bool periodic[3];
@@ -17,27 +17,25 @@ struct regularity_cloud {
     const double *x[3];
     const double *volume, *h;
     const struct kernel *kernel;
-    int threads; /* that share the work in 2D and 3D; 0: one. The result does not depend on it */
+    int threads; /* used in 2D and 3D; 0: one; does not affect the result */
 };
 
-/* Distances are in spacings: of the nearest neighbour over volume^(1/d), a neighbour further away
- * than the widest h counting as that far. Sums: of points whose h does not reach beyond an end that
- * is not periodic; NaN where there is none. Random points at 53 neighbours: density about 0.15,
- * gradient 0.3. */
+/* Distances are those of the nearest neighbour over volume^(1/d), at most the largest h. Sums
+ * exclude points whose h reaches beyond a non-periodic end; NaN if none is left. Random points with
+ * 53 neighbours have density about 0.15 and gradient 0.3. */
 struct regularity {
     double nearest;  /* mean distance */
-    double spread;   /* standard deviation of the distances, over their mean */
-    double paired;   /* share of the points with a neighbour nearer than half a spacing */
+    double spread;   /* standard deviation of the distances over their mean */
+    double paired;   /* fraction of points with a neighbour nearer than half a spacing */
     double density;  /* rms of sum V W - 1 */
     double gradient; /* rms of h |sum V grad W| */
 };
 
-/* The first is 1 on a square or cubic lattice, 1.075 on a hexagonal and 1.122 on the face-centred
- * cubic one. STATUS_BAD_INPUT: an h exceeds half a periodic side, or is not finite; or no memory.
- */
+/* `nearest` is 1 on a square or cubic lattice, 1.075 on a hexagonal and 1.122 on a face-centred
+ * cubic one. STATUS_BAD_INPUT: an h exceeds half a periodic side or is not finite; or no memory. */
 enum status regularity_measure(const struct regularity_cloud *cloud, struct regularity *regularity,
                                struct error *error);
 
-/* Of a state of a run, with the kernel that the run has. NaN where it cannot be said. */
+/* The regularity of a run's state with the run's kernel. NaN: unknown. */
 struct regularity regularity_of(const struct prepared *p, const struct kernel *kernel,
                                 const struct snapshot *s, int threads);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Each point is pushed by those nearer than REACH times the mean of two spacings, the harder the
- * nearer, and moves by a part of its spacing that falls from sweep to sweep. The push is that of
- * Diehl et al. 2015, made to vanish at its reach. */
+ * Repels each point from those within `reach` times the mean of their spacings, more strongly the
+ * nearer they are. A point moves by a fraction of its spacing that decreases with each sweep. The
+ * force is that of Diehl et al. 2015, modified to vanish at its reach. */
 #include "relax.h"
 
 #include <math.h>
@@ -13,18 +13,20 @@
 #include "regularity.h"
 
 enum { SWEEPS = 60 };
-static const double reach = 2.5;                      /* spacings */
-static const double first_step = 0.06, fading = 0.95; /* parts of a spacing and a push */
-static const double longest = 0.3;                    /* spacings a sweep */
+static const double reach = 2.5; /* spacings */
+static const double
+    first_step = 0.06,
+    fading = 0.95; /* first step in spacings per unit of force, and its factor per sweep */
+static const double longest = 0.3; /* in spacings per sweep */
 static const double judge_eta = 3.6;
 
-/* Points with the width of each one's neighbourhood. */
+/* Points and their smoothing lengths. */
 struct cloud {
     int dim;
     size_t n;
     double *const *x;
-    double *width; /* n: what is summed over */
-    double *to[3]; /* n each: sums over neighbours of push times direction */
+    double *width; /* n: radius of the sums */
+    double *to[3]; /* n each: sums over neighbours of force times direction */
     double *storage;
     struct grid *grid;
     struct grid_reader reader;
@@ -75,7 +77,7 @@ static enum status find(struct cloud *cloud, struct error *error)
                      cloud->n);
 }
 
-/* From the point of a slot to another one, the nearest image. */
+/* Vector to the point of a slot from the nearest image of another point. */
 static double step_to(const struct cloud *cloud, size_t slot, int32_t other, double delta[3])
 {
     const double(*position)[3] = grid_positions(cloud->grid);
@@ -89,7 +91,7 @@ static double step_to(const struct cloud *cloud, size_t slot, int32_t other, dou
     return sqrt(square);
 }
 
-/* 0 at q = 1 and beyond; about 3 between neighbours. */
+/* Repulsion: 0 for q >= 1, about 3 between neighbours. */
 static double push(double q)
 {
     const double soft = 0.1, edge = 1 / ((1 + soft) * (1 + soft));
@@ -137,8 +139,8 @@ static double root(double volume, int dim)
     return dim == 2 ? sqrt(volume) : cbrt(volume);
 }
 
-/* All that decides where points end: the box, where they begin, and their room there, which stands
- * for that elsewhere. */
+/* Hash of everything that determines the result: the box, the initial positions, and the volumes
+ * there, which stand for the whole volume function. */
 static uint64_t content_of(const struct relax_region *room, size_t n, double *const x[3])
 {
     const size_t dim = (size_t)room->box.dim;

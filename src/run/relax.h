@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Glasses: points that have pushed each other apart until none is pushed any more, each keeping as
- * much room as it is asked to (weighted Voronoi tessellations, Diehl et al. 2015). They have no
- * directions, unlike a lattice, and few of the fluctuations of random points. Code units. */
+ * Glasses: points relaxed by mutual repulsion, each with a prescribed volume (weighted Voronoi
+ * tessellations, Diehl et al. 2015). They have no preferred directions, unlike a lattice, and much
+ * smaller density fluctuations than random points. Code units. */
 #pragma once
 
 #include <stdbool.h>
@@ -11,41 +11,42 @@
 #include "field.h"
 #include "status.h"
 
-/* What is to be filled: a periodic box in 2 or 3 dimensions. */
+/* The region to fill: a periodic box in 2 or 3 dimensions. */
 struct relax_region {
     struct domain box;
-    /* Room that a point at x takes: of all points together about the box. */
+    /* Volume of a point at x; the volumes of all points add up to about that of the box. */
     double (*volume)(const void *context, const double x[3]);
     const void *context;
 };
 
-/* How good points are, by sums with the kernel wendland_c4 at eta = 3.6: rms of what sum V W
- * departs from 1, and of h |sum V grad W|, 0 on a lattice; and the deviation of the distances of
- * nearest neighbours, over their mean. Random points: about 0.15, 0.3 and 0.5. */
+/* Quality of the points from sums with the kernel wendland_c4 at eta = 3.6: rms of sum V W - 1, and
+ * rms of h |sum V grad W| (0 on a lattice); and the standard deviation of nearest-neighbour
+ * distances over their mean. Random points have about 0.15, 0.3 and 0.5. */
 struct relax_quality {
     double density, gradient, spread;
 };
 
-/* Moves n points, sweep by sweep; those that have been moved so before are read where they are
- * kept (relax_store_find). STATUS_BAD_INPUT: too few for a neighbourhood; or no memory. */
+/* Relaxes n points in sweeps, or reads the result from the cache (relax_store_find).
+ * STATUS_BAD_INPUT: too few points for a neighbourhood; or no memory. */
 enum status relax_points(const struct relax_region *room, size_t n, double *const x[3],
                          struct error *error);
 
-/* Of any points: rooms as they are given, n each. */
+/* Quality of any n points with the given volumes. */
 enum status relax_measure(const struct domain *box, size_t n, const double *const x[3],
                           const double *volume, struct relax_quality *quality, struct error *error);
 
-/* Points that have been relaxed before are kept by content in the user's cache folder
- * ($XDG_CACHE_HOME/sphproof/glass, else ~/.cache/sphproof/glass; none where there is no such
- * folder), for this build of the program alone. Entries that have not been used for a month are
- * removed when others are stored.
+/* A cache of relaxed points, by content, in the user's cache folder
+ * ($XDG_CACHE_HOME/sphproof/glass, else ~/.cache/sphproof/glass; unused if there is no such
+ * folder), valid for this build of the program only. Storing an entry removes those that have not
+ * been used for a month.
  *
- * Numbers of points that are stored: fewer are relaxed faster than read, more fill the disk. */
+ * Numbers of points that are stored: fewer are faster to relax than to read, more take too much
+ * disk space. */
 enum { RELAX_STORE_LEAST = 1000, RELAX_STORE_MOST = 300000 };
 
-/* content: a hash of all that decides where the n points end. Returns false, and leaves x alone, if
- * they are not stored. */
+/* content: a hash of everything that determines the n points. Returns false and leaves x unchanged
+ * if they are not stored. */
 bool relax_store_find(uint64_t content, int dim, size_t n, double *const x[3]);
 
-/* Stores the points. A failure is ignored: the next run relaxes them again. */
+/* Stores the points. Failures are ignored: the next run relaxes the points again. */
 void relax_store_keep(uint64_t content, int dim, size_t n, double *const x[3]);

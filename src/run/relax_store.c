@@ -9,7 +9,7 @@
 
 enum { KEY_MAX = 80 };
 
-/* The folder; false: there is none. */
+/* Opens the folder; false: there is none. */
 static bool open_store(struct cache *cache, size_t n)
 {
     const char *cached = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");

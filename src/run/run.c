@@ -25,7 +25,7 @@ enum status run_prepare(struct run_settings *settings, const char *case_name, in
     return settings_apply(&settings->settings, n, arguments, error);
 }
 
-/* Of this program: what getrusage says on Linux is also that of the process that started it. */
+/* Of this program only: on Linux getrusage includes the parent process before exec. */
 static double peak_rss(void)
 {
     struct rusage usage;
@@ -81,7 +81,7 @@ struct setup run_setup(const struct run *run, const struct initial *initial)
     };
 }
 
-/* A result of which nothing is known yet but what the run is given. */
+/* A result that contains only the input of the run. */
 static void start_result(const struct run *run, struct run_result *result)
 {
     const double none = (double)NAN;
@@ -92,7 +92,7 @@ static void start_result(const struct run *run, struct run_result *result)
     snprintf(result->case_name, sizeof result->case_name, "%s", run->asked.file.asked);
 }
 
-/* How good a glass is that fills a periodic box. */
+/* Measures the quality of a glass in a periodic box. */
 static enum status measure_start(struct run_result *result, const struct initial *initial,
                                  struct error *error)
 {
@@ -122,7 +122,8 @@ static void add_snapshots(const struct run *run, const struct setup *setup,
             snapshots_memory(setup->dim, n) + n * snapshot_writer_memory(snapshots->path);
 }
 
-/* Before there is an array of n numbers; a file's particles are as many as they are. */
+/* Checks the memory before any array of n numbers is allocated. The number of particles in a file
+ * is not known yet. */
 static enum status check_size(const struct run *run, struct error *error)
 {
     const struct initial none = {.n = (size_t)settings_real(&run->settings, SETTING_n)};
@@ -132,7 +133,7 @@ static enum status check_size(const struct run *run, struct error *error)
     return run->settings.file[0] ? STATUS_OK : estimate_check(&estimate, none.n, error);
 }
 
-/* Everything before the first step. On an error nothing is left to free. */
+/* Does everything before the first step. After an error nothing is left to free. */
 static enum status begin(const struct run *run, struct run_result *result, struct initial *initial,
                          struct error *error)
 {
@@ -213,12 +214,12 @@ enum status run_ask_equal_masses(struct run_settings *asked, struct error *error
     return STATUS_OK;
 }
 
-/* With equal masses: lattices of two spacings, or parts of a line, have them for some numbers of
- * particles only, of which the nearest is taken. */
+/* As `begin`, with equal masses. Lattices of two spacings, or parts of a line, give equal masses
+ * only for some numbers of particles; takes the nearest of those. */
 static enum status begin_equal(struct run *run, struct run_result *result, struct initial *initial,
                                struct error *error)
 {
-    enum { TRIES = 200 }; /* up to half of n away, at first all */
+    enum { TRIES = 200 }; /* up to half of n away, first in steps of 1 */
     const double n = settings_real(&run->settings, SETTING_n);
     struct run_settings asked = run->asked;
     struct error reason;
@@ -237,7 +238,7 @@ static enum status begin_equal(struct run *run, struct run_result *result, struc
     return status;
 }
 
-/* In layers, where they are asked for: run becomes that of the slab. */
+/* As `begin`, with layers if asked for: run then becomes that of the slab. */
 static enum status begin_start(struct run *run, struct run_result *result, struct initial *initial,
                                struct error *error)
 {
@@ -251,7 +252,7 @@ static enum status begin_start(struct run *run, struct run_result *result, struc
     return status;
 }
 
-/* The simulation has given the state the pressure of a gas; a liquid's is that of the case. */
+/* Replaces the gas pressure from the simulation by that of the liquid. */
 static void give_liquid_pressure(struct run_result *result)
 {
     const struct snapshot *s = &result->snapshot;
@@ -276,7 +277,8 @@ enum status run_start(const struct run *asked, struct run_result *result, struct
     }
     initial_free(&initial);
     if (!status) status = simulation_begin(simulation, error);
-    /* no step, but what a run evaluates where it stops: a snapshot at t = 0 has the same bits */
+    /* no step, but the evaluation at the end of a run, so that a snapshot at t = 0 has the same
+     * bits */
     if (!status) status = simulation_run(simulation, 0, NULL, NULL, error);
     if (!status) {
         struct snapshot seen;

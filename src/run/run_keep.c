@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* In 1D the particles start in the order of their numbers, periodically: counts those whose right
+/* In 1D particles start in the (periodic) order of their numbers. Counts those whose right
  * neighbour is no longer the next one. */
 static size_t count_crossed(const struct snapshot *snapshot)
 {
@@ -15,8 +15,8 @@ static size_t count_crossed(const struct snapshot *snapshot)
     return crossed;
 }
 
-/* Copies a field in the order of positions: particles that have passed the periodic end come last.
- */
+/* Copies a field in the order of positions: particles that have crossed the periodic end are moved
+ * to the other end. */
 static void copy_line(const struct snapshot *seen, const double *from, double *to)
 {
     size_t first = 0;
@@ -26,7 +26,7 @@ static void copy_line(const struct snapshot *seen, const double *from, double *t
     memcpy(to + seen->n - first, from, first * sizeof(double));
 }
 
-/* Copies a field in the order of the particles' numbers, which is that of the initial state. */
+/* Copies a field in the order of the particle numbers, which is the initial order. */
 static void copy_cloud(const struct snapshot *seen, const double *from, double *to)
 {
     for (size_t i = 0; i < seen->n; i++) to[seen->id[i]] = from[i];

@@ -8,26 +8,26 @@
 #include "growth.h"
 #include "own_reference.h"
 
-/* What errors are measured of, n numbers each. */
+/* Measured and exact values for the errors, n numbers each. */
 struct comparison {
-    double *exact[FIELDS];            /* of the fields at the particles; velocity: along x */
-    double *place;                    /* 0 in the window, 2 beside it, NaN nowhere */
-    double *none;                     /* 0 */
-    double *part;                     /* volume in the window */
-    double *jump;                     /* |v - exact v| */
-    double *azimuthal[2], *radial[2]; /* measured, exact */
+    double *exact[FIELDS]; /* of each field at the particles; velocity along x */
+    double *place;         /* 0: in the window, 2: outside, NaN: position is not finite */
+    double *none;          /* zeros */
+    double *part;          /* volume in the window */
+    double *jump;          /* |v - exact v| */
+    double *azimuthal[2], *radial[2]; /* measured and exact values */
     double *storage;
 };
 
-/* Radius of the ball that is as large as a particle. */
+/* Radius of the ball with the volume of a particle. */
 static double own_reach(int dim, double volume)
 {
     static const double balls[] = {0, 2, M_PI, 4 * M_PI / 3};
     return pow(volume / balls[dim], 1. / dim);
 }
 
-/* u of a particle at a place whose own volume reaches a point where u has no bound: the mean over
- * as large a ball. */
+/* If the volume of a particle contains a point where u is unbounded, replaces the exact u by the
+ * mean over a ball of this volume. */
 static void bound_energy(const struct run_result *result, size_t i, const double place[3],
                          struct problem_state *state)
 {
@@ -64,7 +64,8 @@ static bool compare(struct comparison *of, const struct run_result *result)
             squares += (v[d] - exact_v[d]) * (v[d] - exact_v[d]);
         }
         of->place[i] = window_contains(&p->window, place) ? 0 : 2;
-        for (int d = 0; d < p->domain.dim; d++) of->place[i] += 0 * x[d]; /* NaN: nowhere */
+        for (int d = 0; d < p->domain.dim; d++)
+            of->place[i] += 0 * x[d]; /* NaN if x is not finite */
         of->part[i] = problem_window_part(p, s, i);
         of->jump[i] = sqrt(squares);
         if (!problem_is_circular(p)) continue;
@@ -74,13 +75,13 @@ static bool compare(struct comparison *of, const struct run_result *result)
     return true;
 }
 
-/* Is a field nearer another one's exact values than its own? */
+/* Warns if a field is closer to the exact values of another field than to its own. */
 static enum status suspect(struct run_result *result, const double *const *measured,
                            const struct comparison *of, struct error *error)
 {
     static const char *const names[] = {"density", "velocity", "pressure", "energy"};
     const struct snapshot *s = &result->snapshot;
-    double *inside = malloc((2 * FIELDS + 1) * s->n * sizeof *inside); /* the window's particles */
+    double *inside = malloc((2 * FIELDS + 1) * s->n * sizeof *inside); /* particles in the window */
     if (!inside) return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
     double *volume = inside + 2 * FIELDS * s->n;
     const double *value[FIELDS], *exact[FIELDS];
@@ -100,7 +101,7 @@ static enum status suspect(struct run_result *result, const double *const *measu
         }
         volume[n++] = s->volume[i];
     }
-    /* about a point-like explosion the energy a mass has grows without bound */
+    /* near a point explosion the energy per mass is unbounded */
     const size_t bounded = result->problem.problem->mean_energy ? FIELD_INTERNAL_ENERGY : FIELDS;
     if (all) suspicion_swapped(bounded, names, n, volume, value, exact, result->suspicion);
     free(inside);
@@ -113,7 +114,7 @@ static const struct norms no_norms = {.l1 = (double)NAN,
                                       .particle_mean = (double)NAN,
                                       .l1_whole = (double)NAN};
 
-/* One norm of all: of particles in the window, and L1 of what of all volumes lies in it. */
+/* All norms over the particles in the window, but L1 over the parts of all volumes in it. */
 static struct norms norms_of(const struct snapshot *s, const struct comparison *of,
                              const double *value, const double *exact)
 {
@@ -123,7 +124,7 @@ static struct norms norms_of(const struct snapshot *s, const struct comparison *
     return norms;
 }
 
-/* On a line: also what bins say. */
+/* Measures in 1D, where density is also compared in bins. */
 static void measure_line(struct run_result *result, const double *const *measured,
                          const struct comparison *of)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A run's result as JSON and as a snapshot file. */
+ * A run's result as JSON and as a snapshot. */
 #include "run.h"
 
 #include <math.h>
@@ -42,7 +42,7 @@ void run_interpolation_text(const double interpolation[FIELDS], char *text, size
                                      field_family.members[field]->name, interpolation[field]);
 }
 
-/* {"density": {"l1", ...}, ..., "interpolation": what a table may be off, by field, or absent} */
+/* Adds "interpolation": the interpolation error of a table by field. */
 static void add_interpolation(json_t *errors, const double interpolation[FIELDS])
 {
     json_t *object = json_object();
@@ -137,7 +137,7 @@ static json_t *cost_json(const struct run_result *result)
         (json_int_t)result->peak_rss);
 }
 
-/* At the end; most: of one evaluation. */
+/* The matrix at the end of the run; "fallen_back_most" is that of the worst evaluation. */
 static json_t *matrix_json(const struct run_result *result)
 {
     json_t *matrix = description_json(&result->matrix);

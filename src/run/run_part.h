@@ -1,34 +1,33 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The parts of a run, each from its own file. Internal to runs. */
+ * Parts of a run, one in each source file. Internal to runs. */
 #pragma once
 
 #include "run.h"
 
 struct initial;
 
-/* Runs the core solver, or the solver that was asked for, to setup->t_end, and measures the state
- * there. setup: of the run and initial. STATUS_OK also where it breaks down: result->status tells
- * that. initial may be freed on the way.
- */
+/* Runs the core solver, or the solver that was asked for, to setup->t_end, and measures the final
+ * state. setup: made from run and initial. Returns STATUS_OK also after a breakdown, which is
+ * recorded in result->status. May free initial before it returns. */
 enum status run_simulate(const struct run *run, const struct setup *setup, struct initial *initial,
                          struct run_result *result, struct error *error);
 
-/* Copies a snapshot, which may be the solver's own memory, into result->snapshot: in 1D by
- * position, in 2D and 3D by number. Sets the time, the spacing, and how many neighbours have
- * crossed. run_free it. STATUS_ENVIRONMENT: no memory. */
+/* Copies a snapshot, which may be the solver's own memory, into result->snapshot: in 1D ordered by
+ * position, in 2D and 3D by particle number. Sets the time, the spacing and the number of crossed
+ * neighbours. Free with run_free. STATUS_ENVIRONMENT: no memory. */
 enum status run_keep(struct run_result *result, const struct snapshot *snapshot,
                      struct error *error);
 
-/* Of result->snapshot at result->time. STATUS_ENVIRONMENT: no memory. */
+/* Measures the errors of result->snapshot at result->time. STATUS_ENVIRONMENT: no memory. */
 enum status run_measure_errors(struct run_result *result, struct error *error);
 
-/* Splits the L1 norms by the regions of the problem; exact_values[f]: n numbers of field f at the
+/* Splits the L1 norms by the regions of the problem; exact_values[f]: field f at the n
  * particles. */
 void run_measure_budget(const struct prepared *p, const struct snapshot *s,
                         const double *const *exact_values, struct budget *budget);
 
-/* Errors where there is nothing to measure: NaN. */
+/* Sets all errors to NaN. */
 void run_measure_nothing(struct run_result *result);
 
-/* Those of the problem that are there with its settings, and the rate of what grows. */
+/* Measures the functionals that exist for the problem's settings, and the growth rate. */
 void run_measure_functionals(struct run_result *result);

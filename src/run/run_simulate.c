@@ -8,7 +8,7 @@
 #include "growth.h"
 #include "initial.h"
 
-/* Sums at the end against t = 0. */
+/* Compares the sums at the end with those at t = 0. */
 static void measure_conservation(struct run_result *result, const struct conservation *start,
                                  const struct conservation *end)
 {
@@ -32,7 +32,7 @@ static enum status finish(struct run_result *result, const struct run_outcome *o
     return run_keep(result, &outcome->snapshot, error);
 }
 
-/* A state without density or smoothing length: there is nothing to measure. */
+/* A state without density or smoothing length cannot be measured. */
 static enum status broke_down_at_start(struct run_result *result, const struct error *reason)
 {
     result->status = STATUS_BROKE_DOWN;
@@ -48,12 +48,12 @@ struct watch {
     struct simulation *simulation;
     struct run_result *result;
     struct trace *trace;
-    double until; /* where the present call of simulation_run ends */
+    double until; /* end of the current call of simulation_run */
 };
 
-/* Sums of what a run shall conserve, kinetic energy without that of the boost: no momentum along a
- * direction where walls or gravity push, and none at all beside layers that are kept: they also
- * drag what flows along them. */
+/* Sums that a run should conserve; the kinetic energy excludes the boost. Momentum along a
+ * direction with walls or gravity is set to 0, and all momentum beside fixed layers, which also
+ * drag gas that flows along them. */
 static void take_sums(const struct run *run, const struct simulation *simulation,
                       struct conservation *sums)
 {
@@ -91,8 +91,9 @@ static bool after_step(void *context, double time, uint64_t steps)
     const struct run_settings *settings = &watch->run->asked;
     const double t_end = settings_real(&watch->run->settings, SETTING_t_end);
     struct checkpoint *checkpoint = settings->checkpoint;
-    if (trace_wants(watch->trace, steps)) keep_trace(watch, time); /* a checkpoint has it */
-    /* not after the last step: a checkpoint always has a step to go on with */
+    if (trace_wants(watch->trace, steps))
+        keep_trace(watch, time); /* before the checkpoint, which contains the trace */
+    /* not after the last step, so that a checkpoint always has a next step */
     if (checkpoint && time < watch->until && checkpoint_due(checkpoint)) {
         checkpoint->snapshot = settings->snapshots ? snapshots_last(settings->snapshots) : -1;
         checkpoint_save(checkpoint, watch->simulation, &watch->result->growth);
@@ -105,11 +106,11 @@ static bool after_step(void *context, double time, uint64_t steps)
              snapshots_keep(settings->snapshots, watch->simulation, time, watch->until));
 }
 
-/* A snapshot on the way; what cannot be written or kept does not end the run. */
+/* Writes an intermediate snapshot. A failure does not end the run. */
 static void leave_snapshot(const struct watch *watch, size_t number)
 {
     struct snapshots *snapshots = watch->run->asked.snapshots;
-    struct run_result moment = *watch->result; /* of which nothing is measured yet */
+    struct run_result moment = *watch->result; /* without measurements */
     struct snapshot seen;
     struct error error = {0};
     char *path = snapshots_path(snapshots, number);
@@ -125,7 +126,7 @@ static void leave_snapshot(const struct watch *watch, size_t number)
     free(path);
 }
 
-/* From the state that was kept to each snapshot that is due, and back. */
+/* Runs from the saved state to each snapshot that is due, then restores the saved state. */
 static void go_aside(const struct watch *watch)
 {
     struct snapshots *snapshots = watch->run->asked.snapshots;
@@ -160,7 +161,7 @@ static enum status run_until(struct watch *watch, double until, simulation_progr
     }
 }
 
-/* To t_end, with stops where the problem says that something grows. */
+/* Runs to t_end, stopping at times at which a growing amplitude is measured. */
 static enum status steps(struct watch *watch, struct simulation *simulation,
                          struct run_result *result, double t_end, struct error *error)
 {
@@ -169,7 +170,7 @@ static enum status steps(struct watch *watch, struct simulation *simulation,
     const struct growing *growing = p->problem->growing;
     double times[2] = {0, 0};
     if (growing) growing->during(p, times);
-    /* a run that is resumed has seen some of it */
+    /* a resumed run has already measured some */
     for (int i = (int)result->growth.n; growing && i < STOPS; i++) {
         const double stop = times[0] + (times[1] - times[0]) * i / (STOPS - 1);
         struct snapshot seen;
@@ -220,7 +221,7 @@ static enum status simulate(const struct run *run, const struct setup *setup,
     outcome.status = steps(&watch, simulation, result, setup->t_end, &outcome.reason);
     simulation_cost(simulation, &result->cost);
     if (!outcome.status) result->matrix = description_sum(simulation);
-    simulation_end(simulation); /* its neighbours' memory serves for the snapshot */
+    simulation_end(simulation); /* the snapshot reuses the memory of the neighbour lists */
     take_sums(run, simulation, &outcome.end);
     simulation_snapshot(simulation, &outcome.snapshot);
     trace_add(watch.trace, outcome.snapshot.time, &outcome.end);
@@ -228,7 +229,7 @@ static enum status simulate(const struct run *run, const struct setup *setup,
     if (asked->trace) keep_look(&watch, outcome.snapshot.time);
     if (asked->checkpoint) asked->checkpoint->trace = NULL;
     status = finish(result, &outcome, error);
-    simulation_destroy(simulation); /* its memory serves for the errors */
+    simulation_destroy(simulation); /* frees memory for the errors */
     return status ? status : run_measure_errors(result, error);
 }
 

@@ -35,7 +35,7 @@ const struct family settings_lattice_family = {
             MEMBER("glass", "2D, 3D: random points that have pushed each other apart",
                    "Diehl et al. 2015")),
     LATTICES};
-/* The words of the key kind; problem_list.c knows what they stand for. */
+/* The choices of the key `kind`; problem_list.c maps them to problems. */
 static const struct member *const kinds[] = {
 #define PROBLEM(name) &(const struct member){#name, "", ""},
 #include "problems.def"
@@ -103,7 +103,7 @@ void setting_allowed(const struct setting_key *key, char *text, size_t size)
         for (size_t i = 0; i < key->family->n && used < size; i++)
             used +=
                 (size_t)snprintf(text + used, size - used, " %s", key->family->members[i]->name);
-        if (used >= size && size > 4) memcpy(text + size - 5, " ...", 5); /* not cut in silence */
+        if (used >= size && size > 4) memcpy(text + size - 5, " ...", 5); /* marks the truncation */
         return;
     }
     const bool tuple = key->type == SETTING_REALS;
@@ -149,7 +149,7 @@ static bool in_range(const struct setting_key *key, double value)
     return (key->above ? value > key->lo : value >= key->lo) && value <= key->hi;
 }
 
-/* All members of the key's family are allowed, and auto where the key has it. */
+/* Lists the members of the family, and auto if allowed. */
 static enum status unknown_choice(const struct setting_key *key, const char *where,
                                   const char *word, struct error *error)
 {
@@ -161,7 +161,7 @@ static enum status unknown_choice(const struct setting_key *key, const char *whe
     return text_unknown(error, where, key->name, word, names, n);
 }
 
-/* given is 0 where there are no words, or too many. */
+/* Sets given to 0 if there are no words or too many. */
 static enum status read_choices(const struct setting_key *key, const char *text, const char *where,
                                 struct setting_value *value, struct error *error)
 {
@@ -194,7 +194,7 @@ static enum status read_choice(enum setting which, const char *text, const char 
     return *choice < 0 ? unknown_choice(key, where, text, error) : STATUS_OK;
 }
 
-/* Of a vector as many as there are. */
+/* A vector takes as many numbers as the text has. */
 static bool read_numbers(const struct setting_key *key, const char *text,
                          struct setting_value *value)
 {
@@ -304,7 +304,7 @@ int settings_choice_along(const struct settings *settings, enum setting key, int
     return value->choices[value->given > 1 ? direction : 0];
 }
 
-/* Reads the keys of the scheme; open receives the choices that they leave to the case. */
+/* Reads the keys of the scheme; open: marks the automatic choices. */
 static enum status read_scheme(const struct settings *settings, int dim, struct scheme *scheme,
                                struct scheme_open *open, struct error *error)
 {
@@ -360,7 +360,7 @@ static enum status read_scheme(const struct settings *settings, int dim, struct 
 #undef IS_AUTO
 }
 
-/* The values of keys that were left open, as they are used. */
+/* Stores the values of automatic keys. */
 static void write_scheme(struct settings *settings, const struct scheme *scheme)
 {
     const struct {

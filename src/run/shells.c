@@ -10,7 +10,7 @@ static double radius_of(const struct prepared *p, const struct snapshot *s, size
     return problem_radius(p, x);
 }
 
-/* How far apart particles in the window are. */
+/* Mean spacing of the particles in the window. */
 static double mean_spacing(const struct prepared *p, const struct snapshot *s)
 {
     double volume = 0, count = 0;
@@ -30,7 +30,7 @@ void shells_make(struct shells *shells, const struct prepared *p, const struct s
     for (int d = 0; d < p->domain.dim; d++) reach = fmin(reach, 0.5 * domain_length(&p->domain, d));
     shells->width = mean_spacing(p, s);
     shells->n = 0;
-    if (!(shells->width > 0)) return; /* nothing in the window */
+    if (!(shells->width > 0)) return; /* no particle in the window */
     shells->width = fmax(shells->width, reach / SHELLS_MAX);
     shells->n = (size_t)fmin(SHELLS_MAX, ceil(reach / shells->width));
     for (size_t i = 0; i < s->n; i++) {
@@ -54,7 +54,7 @@ double shells_crossing(const struct shells *shells, double level)
     size_t outer = shells->n;
     for (size_t k = shells->n; k-- > 0;) {
         const double here = shells->density[k];
-        if (isnan(here)) continue; /* an empty shell joins its neighbours */
+        if (isnan(here)) continue; /* interpolate across an empty shell */
         if (here >= level && outer < shells->n) {
             const double out = shells->density[outer];
             const double part = (here - level) / (here - out);

@@ -31,9 +31,9 @@ enum status slab_ask(struct run_settings *asked, const char *layers, const char 
     return STATUS_OK;
 }
 
-/* Layers are thicker than two reaches of the largest particle, a cube of its area times what layers
- * are apart: of equal ones round-off would decide. Where density jumps, some particles reach a
- * little further, and are refused by the search. */
+/* Layers must be thicker than twice the largest support radius, that of a cube with the area of the
+ * largest particle and the height of a layer; equality would leave the decision to round-off. At
+ * jumps of density some particles reach slightly further, and the neighbour search refuses them. */
 static enum status check_reach(const struct initial *plane, int layers, double apart,
                                const struct scheme *scheme, struct error *error)
 {
@@ -75,7 +75,7 @@ enum status slab_lay(struct run *run, struct initial *initial, struct error *err
     const int layers = run->asked.layers;
     const double area = domain_length(box, 0) * domain_length(box, 1);
     const double apart = sqrt(area / (double)initial->n);
-    struct settings settings = run->asked.settings; /* what is automatic is another in 3D */
+    struct settings settings = run->asked.settings; /* automatic values differ in 3D */
     struct prepared plane;
     if (problem_prepare(&plane, &settings, 2, error) ||
         settings_scheme(&settings, 3, &run->scheme, error) ||

@@ -18,8 +18,8 @@ append(struct snapshot_remark *remark, const char *format, ...)
     va_end(arguments);
 }
 
-/* Does the key change the exact solution? Box, boundary, gamma and window have places of their own,
- * and how particles were laid or moved does not matter. */
+/* True if the key changes the exact solution. Box, boundary, gamma and window have remarks of their
+ * own, and the arrangement of the particles does not matter. */
 static bool changes_solution(const struct settings *settings, enum setting key)
 {
     const struct setting_key *about = &setting_keys[key];

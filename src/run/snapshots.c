@@ -6,10 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Steps before a snapshot's time: the last two are made equal, and one prepares the next. */
+/* Steps before a snapshot's time at which the state is saved: a run makes its last two steps equal
+ * and prepares them in the step before. */
 static const double steps_aside = 4;
 
-/* The end's own one is no nearer than that, in intervals. */
+/* In intervals; a snapshot closer to the end than this is the final one. */
 static const double round_off = 1e-9;
 
 enum status snapshots_check(const struct snapshots *snapshots, double t_end, struct error *error)
@@ -44,7 +45,7 @@ char *snapshots_path(const struct snapshots *snapshots, size_t number)
 
 double snapshots_memory(int dim, double n)
 {
-    static const double kept[] = {0, 180, 350, 480}; /* a particle's state, measured */
+    static const double kept[] = {0, 180, 350, 480}; /* bytes of a particle's state, measured */
     return n * kept[dim];
 }
 
@@ -61,7 +62,7 @@ double snapshots_last(const struct snapshots *snapshots)
     return snapshots->next ? snapshots_time(snapshots, snapshots->next - 1) : -1;
 }
 
-/* Bytes on their way into a buffer, or out of it; without one they are counted. */
+/* A buffer that is written or read; with bytes = NULL the bytes are only counted. */
 struct buffer {
     unsigned char *bytes;
     size_t used;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Intermediate snapshots. For --snapshot F.csv, which holds the particles at the end, these are
- * F_0000.csv at the start and F_0001.csv, F_0002.csv ... at the multiples of an interval. They do
- * not change the run: a few steps before each, the state is saved in memory, the run goes on to
- * exactly the snapshot's time as if it ended there, and then continues from the saved state, equal
+ * Intermediate snapshots. If --snapshot F.csv names the final snapshot, the intermediate ones are
+ * F_0000.csv at the start and F_0001.csv, F_0002.csv ... at multiples of an interval. They do not
+ * change the run: a few steps before each, the state is saved in memory; the run continues to
+ * exactly the snapshot's time, as if it ended there, and then restarts from the saved state, equal
  * to the last bit. */
 #pragma once
 
@@ -11,56 +11,56 @@
 
 #include "simulation.h"
 
-enum { SNAPSHOTS_MOST = 10000 }; /* files; their numbers have four digits */
+enum { SNAPSHOTS_MOST = 10000 }; /* files, since numbers have four digits */
 
 struct run_result;
 
 struct snapshots {
-    const char *path; /* of the one at the end */
-    double every;     /* interval, of the run's time */
-    /* Called with each that was made on the way; may be NULL. */
+    const char *path; /* of the final snapshot */
+    double every;     /* interval in the run's time */
+    /* Called with each intermediate snapshot; may be NULL. */
     void (*show)(void *context, const struct run_result *moment, size_t number,
                  struct error *error);
     void *context;
-    struct error trouble; /* why the first that could not be written was not */
-    /* kept by the functions below: */
-    size_t next, count; /* number of the next one; how many there are beside the one at the end */
-    double reach;       /* those up to this time begin with what is kept */
+    struct error trouble; /* error of the first snapshot that could not be written */
+    /* set by the functions below: */
+    size_t next, count; /* number of the next snapshot; number of intermediate snapshots */
+    double reach;       /* snapshots up to this time start from the saved state */
     unsigned char *state;
     size_t size;
 };
 
-/* STATUS_BAD_INPUT: no interval of a run to t_end, or one that makes too many files. */
+/* STATUS_BAD_INPUT: the interval is invalid for a run to t_end or gives too many files. */
 enum status snapshots_check(const struct snapshots *snapshots, double t_end, struct error *error);
 
-/* How many there are beside the one at the end. */
+/* Number of intermediate snapshots. */
 size_t snapshots_count(const struct snapshots *snapshots, double t_end);
 
-/* Of a number: its time; its file, malloced (NULL: no memory). */
+/* Time and file name (malloced; NULL: no memory) of a snapshot by its number. */
 double snapshots_time(const struct snapshots *snapshots, size_t number);
 char *snapshots_path(const struct snapshots *snapshots, size_t number);
 
-/* Bytes that going aside takes in a run of n particles, beside the run's own and what writing a
- * file takes. */
+/* Bytes that the saved state takes in a run of n particles, beside the run's own memory and that
+ * for writing a file. */
 double snapshots_memory(int dim, double n);
 
-/* Before the first step of this process: those up to `time` are over, and those up to `last`, which
- * is that of the last one that was made (< 0: none). */
+/* Call before the first step of this process: skips the snapshots up to `time`, and those up to
+ * `last`, the time of the last snapshot made (< 0: none). */
 void snapshots_begin(struct snapshots *snapshots, double time, double last, double t_end);
 
-/* The time of the last one that was made; < 0: none. */
+/* The time of the last snapshot made; < 0: none. */
 double snapshots_last(const struct snapshots *snapshots);
 
-/* Between steps, at this time: is one due within the next few, and before the run's next stop? The
- * state is then kept. */
+/* Call between steps. Saves the state and returns true if a snapshot is due within the next few
+ * steps and before the run's next stop. */
 bool snapshots_keep(struct snapshots *snapshots, struct simulation *simulation, double time,
                     double stop);
 
-/* Puts the simulation back where it was kept. */
+/* Restores the saved state. */
 void snapshots_return(struct snapshots *snapshots, struct simulation *simulation);
 
-/* Nothing is kept any more. */
+/* Discards the saved state. */
 void snapshots_go_on(struct snapshots *snapshots);
 
-/* Remembers the first trouble. */
+/* Stores the first error. */
 void snapshots_fail(struct snapshots *snapshots, const struct error *error);

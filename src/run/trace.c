@@ -19,7 +19,7 @@ bool trace_wants(const struct trace *trace, uint64_t step)
     return trace->stride == 0 || step % trace->stride == 0;
 }
 
-/* Keeps every second entry, the start among them. */
+/* Keeps every second entry, including the start. */
 static void thin(struct trace *trace)
 {
     size_t kept = 0;
@@ -34,14 +34,14 @@ static void thin(struct trace *trace)
 void trace_add(struct trace *trace, double time, const struct conservation *sums)
 {
     if (trace->stride == 0) trace->stride = 1;
-    /* The last step of a run and its end are both reported: of one time there is one entry. */
+    /* the last step of a run and its end are both reported: keep one entry per time */
     if (trace->count && trace->time[trace->count - 1] == time) trace->count--;
     trace->time[trace->count] = time;
     trace->sums[trace->count++] = *sums;
     if (trace->count > TRACE_MAX) thin(trace);
 }
 
-/* |a - b| divided by scale, or by other where scale vanishes beside it. */
+/* |a - b| over scale, or over `other` if scale is negligible. */
 static double change(const double a[3], const double b[3], double scale, double other)
 {
     const double squares = (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
@@ -76,7 +76,7 @@ struct trace_drift trace_worst(const struct trace *trace)
     return worst;
 }
 
-/* On straight lines between entries. */
+/* By linear interpolation between entries. */
 static double kinetic_at(const struct trace *trace, double time)
 {
     size_t k = 1;
@@ -122,7 +122,7 @@ bool trace_looks(const struct trace *trace, double time, double t_end)
 
 void trace_see(struct trace *trace, double time, const struct regularity *regularity)
 {
-    /* The last step of a run and its end are both reported: of one time there is one entry. */
+    /* as in trace_add */
     if (trace->looks && trace->looked[trace->looks - 1] == time) trace->looks--;
     trace->looked[trace->looks] = time;
     trace->seen[trace->looks++] = *regularity;

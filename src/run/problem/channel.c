@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A viscous liquid between plates at the ends of the box along y, at rest at t = 0, for other
- * codes: from then on the upper plate moves along x with `speed` (Couette), gravity along x drives
- * the liquid (Poiseuille), or both: the equations are linear here (Morris, Fox & Zhu 1997). */
+ * A viscous liquid between plates at the y ends of the box, for other codes. It is at rest at t =
+ * 0. Then the upper plate moves along x with `speed` (Couette), gravity along x drives the liquid
+ * (Poiseuille), or both, since the equations are linear here (Morris, Fox & Zhu 1997). */
 #include <math.h>
 
 #include "initial.h"
@@ -48,7 +48,7 @@ static void sample(const struct prepared *p, const double x[3], double t,
     if (p->gravity[0] != 0) state->v[0] += p->gravity[0] * unit * liquid_poiseuille(y, t / unit);
 }
 
-/* Mean speed along the channel: what flows through it, over its height. */
+/* Mean speed along the channel: the flow rate over the height. */
 static double flow_measured(const struct prepared *p, const struct snapshot *s)
 {
     return functional_window_mean(p, s, s->v[0]);

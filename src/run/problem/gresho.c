@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The vortex of Gresho & Chan 1990 in the middle of a periodic box: it stands still for ever, and
- * what a scheme does to it is error. Particles of equal masses. */
+ * The vortex of Gresho & Chan 1990 in the middle of a periodic box: a steady flow, so that any
+ * change is error. Particles of equal masses. */
 #include <math.h>
 
 #include "initial.h"
@@ -31,7 +31,7 @@ static void sample(const struct prepared *p, const double x[3], double t,
                                     .u = s.P / ((p->gamma - 1) * s.rho)};
 }
 
-/* ---- within R < 0.5, as other codes' errors are given: the mean over particles ---- */
+/* ---- mean error over the particles with R < 0.5, as published for other codes ---- */
 
 static double disc_measured(const struct prepared *p, const struct snapshot *s)
 {
@@ -55,7 +55,7 @@ static double none(const struct prepared *p, double t)
     return 0;
 }
 
-/* The highest speed along the circle: 1 exactly, on one circle that few particles are on. */
+/* Highest azimuthal speed: exactly 1, but only on a circle where few particles are. */
 static double peak_measured(const struct prepared *p, const struct snapshot *s)
 {
     double peak = 0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Smooth shear layers whose instability grows (McNally, Lyra & Passy 2012): nothing is exact after
- * the start, but the amplitude of the growing mode is known to many digits. In a box of another
- * side than 1 all takes as many times as long. Particles of equal spacing, whose masses follow the
+ * Smooth shear layers with a growing instability (McNally, Lyra & Passy 2012). There is no exact
+ * solution after the start, but a reference with many digits for the amplitude of the growing mode.
+ * Times scale with the side of the box. Particles of equal spacing whose masses follow the
  * density. */
 #include "kelvin_helmholtz.h"
 
@@ -21,7 +21,7 @@ static enum status prepare(struct prepared *p, struct settings *settings, struct
                      width, height);
 }
 
-/* x in the unit box. */
+/* x in units of the box. */
 static void to_unit(const struct prepared *p, const double x[3], double unit[2])
 {
     for (int d = 0; d < 2; d++) unit[d] = (x[d] - p->domain.lo[d]) / domain_length(&p->domain, d);
@@ -57,7 +57,7 @@ static double amplitude_measured(const struct prepared *p, const struct snapshot
     return M;
 }
 
-/* The reference is for a gas of its gamma. */
+/* The reference holds for one gamma only. */
 static double amplitude_reference(const struct prepared *p, double t)
 {
     return fabs(p->gamma - 5. / 3) <= 1e-6

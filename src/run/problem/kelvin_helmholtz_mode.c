@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Kelvin & Helmholtz's instability from an exact mode of its linear theory: two smooth shear layers
- * in a periodic box, at a quarter and at three quarters of its height, and `waves` wavelengths of
- * the mode that grows fastest. In a box of another side than 1 all takes as many times as long.
- * Particles of equal spacing, whose masses follow the density. */
+ * Kelvin-Helmholtz instability from an exact mode of linear theory: two smooth shear layers at a
+ * quarter and three quarters of the height of a periodic box, and `waves` wavelengths of the
+ * fastest growing mode. Times scale with the side of the box. Particles of equal spacing whose
+ * masses follow the density. */
 #include <math.h>
 
 #include "initial.h"
 #include "mode.h"
 
-/* Density and speed on either side of the layers, and their half width. */
+/* Densities and speeds of the streams, and the half width of the layers. */
 static const struct layer usual = {
     .width = 0.05, .rho = 1.5, .rho_step = 0.5, .U = 0.5, .P = 2.5, .periodic = true};
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Cold gas of density 1 that falls with speed 1 onto the middle of the box (Noh 1987): onto a plane
- * in 1D, an axis in 2D, a point in 3D. A ball of particles of equal masses in an empty box of twice
- * its size: there is no end that a boundary would have to know of, and nothing of the ball's own
- * edge comes in, since it falls faster than any signal. The box is periodic, and wide enough that
- * images do not see each other. */
+ * in 1D, an axis in 2D, a point in 3D. The gas is a ball of particles of equal masses in an empty
+ * periodic box of twice its size, wide enough that images do not interact. This needs no inflow
+ * boundary, and the edge of the ball has no influence, since the gas falls faster than any
+ * signal. */
 #include "noh.h"
 
 #include <math.h>
@@ -12,10 +12,10 @@
 #include "problem.h"
 #include "shells.h"
 
-/* The initial pressure is too low to change the flow (Mach 800). */
+/* Initial pressure, too low to change the flow (Mach 800). */
 static const double cold = 1e-6;
 
-/* The ball's radius at t = 0: half of the way to the nearest end of the box. */
+/* Radius of the ball at t = 0: half of the distance to the nearest end of the box. */
 static double radius_of(const struct prepared *p)
 {
     double nearest = (double)INFINITY;
@@ -55,7 +55,7 @@ static enum status fill(const struct prepared *p, const struct settings *setting
     return initial_fill_ball(p, settings, radius_of(p), initial, error);
 }
 
-/* Until gas from the edge of the ball reaches the window. */
+/* True until gas from the edge of the ball reaches the window. */
 static bool holds(const struct prepared *p, double t)
 {
     double far = 0;
@@ -76,14 +76,14 @@ static enum status refuse(const struct prepared *p, double t, double longest, st
                      t, radius_of(p), longest);
 }
 
-/* ---- what is seen of the shock ---- */
+/* ---- measures of the shock ---- */
 
 static double inside_exact(const struct prepared *p, double t)
 {
     return noh_sample(p->gamma, p->domain.dim, 0, t).rho;
 }
 
-/* Where the density is half-way from what falls in to what is at rest. */
+/* Radius at which the density is half-way between the infalling gas and the gas at rest. */
 static double shock_measured(const struct prepared *p, const struct snapshot *s)
 {
     struct shells shells;
@@ -99,16 +99,15 @@ static double shock_exact(const struct prepared *p, double t)
     return noh_shock(p->gamma, t);
 }
 
-/* Mean density behind the shock, away from the centre, where gas is too hot, and from the shock
- * itself, which has a width. */
+/* Mean density behind the shock, excluding the overheated centre and the width of the shock. */
 static double plateau_measured(const struct prepared *p, const struct snapshot *s)
 {
     const double R = noh_shock(p->gamma, s->time);
     return R > 0 ? shells_mean(p, s, 0.25 * R, 0.75 * R) : 1;
 }
 
-/* Mean density at the centre. It comes out too low, since gas that the first collision overheats
- * stays too hot (Noh's "wall heating"). */
+/* Mean density at the centre. It is too low, since gas overheated by the first collision stays too
+ * hot (Noh's "wall heating"). */
 static double centre_measured(const struct prepared *p, const struct snapshot *s)
 {
     const double R = noh_shock(p->gamma, s->time);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Particles from a file, as they are: nothing is known of their later state, so that a run reports
- * what it conserves and draws maps. (Any other problem, too, takes its particles from a file if it
- * is given one, and is then judged by its own solution.) Without a file they are laid with the
- * state that a user's own reference has at t = 0. */
+ * Particles from a file, used as they are. Their later state is unknown, so that a run only reports
+ * conservation and draws maps. (Any other problem may also read its particles from a file, and is
+ * then judged by its own solution.) Without a file the particles get the state at t = 0 of a user's
+ * reference. */
 #include <math.h>
 
 #include "initial.h"
@@ -17,7 +17,7 @@ static enum status prepare(struct prepared *p, struct settings *settings, struct
                      "0, reference = ./mine.so in [case]");
 }
 
-/* Unknown, at the start, too: between particles there is nothing to say. */
+/* Unknown even at the start, since a file gives no state between its particles. */
 static void sample(const struct prepared *p, const double x[3], double t,
                    struct problem_state *state)
 {
@@ -26,7 +26,7 @@ static void sample(const struct prepared *p, const double x[3], double t,
     *state = (struct problem_state){unknown, {unknown, unknown, unknown}, unknown, unknown};
 }
 
-/* Where there is a file, initial_create reads it instead. */
+/* With a file, initial_create reads the particles instead. */
 static enum status fill(const struct prepared *p, const struct settings *settings,
                         struct initial *initial, struct error *error)
 {

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Rayleigh & Taylor's instability from an exact mode of its linear theory: dense gas over thin gas
- * in hydrostatic equilibrium, joined by a smooth layer in the middle of the box, between walls, and
- * `waves` wavelengths of the mode that grows fastest. In a box of another height than 1 lengths
- * and times are as many times as long, and gravity is as many times as weak. Particles of equal
- * spacing, whose masses follow the density. */
+ * Rayleigh-Taylor instability from an exact mode of linear theory: dense gas over thin gas in
+ * hydrostatic equilibrium between walls, joined by a smooth layer in the middle of the box, and
+ * `waves` wavelengths of the fastest growing mode. Lengths and times scale with the height of the
+ * box, gravity with its inverse. Particles of equal spacing whose masses follow the density. */
 #include <math.h>
 
 #include "initial.h"
 #include "mode.h"
 
-/* In the middle of the layer, and to either side. */
+/* In the middle of the layer; rho_step is the change to either side. */
 static const struct layer usual = {
     .width = 0.05, .rho = 1.5, .rho_step = 0.5, .P = 2.5, .g = 0.5, .wall = 0.5};
 
@@ -27,7 +26,7 @@ static enum status prepare(struct prepared *p, struct settings *settings, struct
     layer.gamma = p->gamma;
     layer.g = -p->gravity[1] * height;
     layer.k = 2 * M_PI * settings_real(settings, SETTING_waves) * height / width;
-    /* free fall over a wavelength */
+    /* speed of free fall over a wavelength */
     const double speed = sqrt(2 * M_PI * layer.g / layer.k);
     return mode_prepare(p, &layer, origin, height, speed, settings, error);
 }

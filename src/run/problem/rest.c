@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Uniform gas at rest: nothing may move. What moves is noise, driven by the disorder that particles
- * start with, or an instability of their lattice. Particles of equal masses. */
+ * Uniform gas at rest. Any motion is noise, driven by the initial disorder of the particles, or an
+ * instability of their lattice. Particles of equal masses. */
 #include "functional.h"
 #include "initial.h"
 #include "problem.h"

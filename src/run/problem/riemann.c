@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Two uniform gases that meet in the middle of the box (Toro 2009, ch. 4). Where the box is
- * periodic a mirrored tube starts at its ends; walls make waves of gas that moves, and send back
- * what comes to them. The window has to stay clear of either. Particles have equal masses,
- * cell-centred on each side, or are graded towards the jumps; in 2D and 3D each gas has a lattice
- * of its own, of a spacing that gives equal masses. */
+ * Two uniform gases that meet in the middle of the box (Toro 2009, ch. 4). At the ends of a
+ * periodic box a mirrored tube starts; walls produce waves in moving gas and reflect waves that
+ * reach them. The window must be free of both. In 1D particles have equal masses, cell-centred on
+ * each side, or are graded towards the jumps; in 2D and 3D each gas has its own lattice with a
+ * spacing for equal masses. */
 #include "riemann.h"
 
 #include <math.h>
@@ -14,10 +14,10 @@
 #include "problem.h"
 
 struct tube {
-    double x0; /* where the gases meet */
+    double x0; /* initial position of the contact */
     struct riemann_solution main;
-    struct riemann_solution ends[2]; /* what starts at the left and at the right end */
-    double returning[2];             /* walls: of what they send back; see find_returning() */
+    struct riemann_solution ends[2]; /* solutions at the left and the right end */
+    double returning[2]; /* Mach numbers of waves reflected by walls; see find_returning() */
 };
 _Static_assert(sizeof(struct tube) <= PROBLEM_OWN_BYTES, "a tube fits");
 
@@ -34,9 +34,10 @@ static enum status solve(struct riemann_solution *solution, double gamma, const 
     return fault ? error_set(error, STATUS_BAD_INPUT, "no exact solution: %s", fault) : STATUS_OK;
 }
 
-/* Right over left so that spacings are equal either side of the contact, within limits: beyond, one
- * side is resolved at the other's cost (measured on sod, sod_standard, lax and strong_shock). The
- * limits are reciprocal, or a mirrored tube would be another problem. */
+/* Mass of the right over the left particles that makes the spacings equal on both sides of the
+ * contact. Limited, since beyond the limits one side is resolved at the cost of the other (measured
+ * on sod, sod_standard, lax and strong_shock). The limits are reciprocal so that a mirrored tube is
+ * the same problem. */
 static double mass_ratio_at_contact(const struct riemann_solution *tube)
 {
     if (tube->vacuum) return 1;
@@ -44,7 +45,7 @@ static double mass_ratio_at_contact(const struct riemann_solution *tube)
     return fmin(fmax(tube->rho_star_right / tube->rho_star_left, 1 / most), most);
 }
 
-/* What a wall on one side makes of a state, which meets its mirror image there. */
+/* Solution at a wall on one side: the state meets its mirror image. */
 static enum status solve_wall(struct riemann_solution *solution, double gamma, int side,
                               const double *state, struct error *error)
 {
@@ -53,8 +54,8 @@ static enum status solve_wall(struct riemann_solution *solution, double gamma, i
                 : solve(solution, gamma, image, state, error);
 }
 
-/* How many times as fast as sound what a wall sends back runs into the gas behind the main tube's
- * wave: a shock comes back as a shock, all else as sound. */
+/* Mach number of the reflected wave relative to the gas behind the main tube's wave: a shock is
+ * reflected as a shock, anything else as sound. */
 static enum status find_returning(struct tube *tube, double gamma, int side, struct error *error)
 {
     const struct riemann_solution *main = &tube->main;
@@ -77,7 +78,7 @@ static bool has_walls(const struct prepared *p)
     return p->boundary[0] == BOUNDARY_REFLECTING;
 }
 
-/* What starts at the ends. */
+/* Solves for the waves that start at the ends. */
 static enum status find_ends(struct tube *tube, const struct prepared *p, const double *left,
                              const double *right, struct error *error)
 {
@@ -124,8 +125,8 @@ static void sample(const struct prepared *p, const double x[3], double t,
 
 /* ---- particles ---- */
 
-/* Mass of particle i of n on one side over the usual one: min(1, g q^k), k counted from the nearer
- * jump (the main one or the mirrored one). */
+/* Mass of particle i of n on one side relative to ungraded particles: min(1, g q^k), where k counts
+ * from the nearer jump (the main or the mirrored one). */
 struct grading {
     double g, q;
 };
@@ -133,10 +134,10 @@ struct grading {
 static double grading_weight(const struct grading *grading, size_t i, size_t n)
 {
     const double k = fmin((double)i, (double)(n - 1 - i));
-    return fmin(1, grading->g * pow(grading->q, k)); /* q > 1: equal ones for g = 1 */
+    return fmin(1, grading->g * pow(grading->q, k)); /* q > 1: equal masses for g = 1 */
 }
 
-/* The sum of all weights of a side of n particles. */
+/* Sum of the weights of a side with n particles. */
 static double grading_sum(const struct grading *grading, size_t n)
 {
     double sum = 0;
@@ -149,8 +150,8 @@ static double grading_sum(const struct grading *grading, size_t n)
     return sum + (2 * k < n ? (double)(n - 2 * k) : 0);
 }
 
-/* Particles on the left so that the usual mass is nearly the same on both sides: round(n rho_L /
- * (rho_L + rho_R)) for equal masses. */
+/* Number of particles on the left that makes the ungraded mass nearly equal on both sides; for
+ * equal masses round(n rho_L/(rho_L + rho_R)). */
 static size_t left_share(const struct grading *grading, size_t n, double rho_left, double rho_right)
 {
     const double fraction = rho_left / (rho_left + rho_right);
@@ -158,7 +159,9 @@ static size_t left_share(const struct grading *grading, size_t n, double rho_lef
     if (grading->g == 1)
         lo = (size_t)fmin(fmax(round((double)n * fraction), 1), (double)(n - 1));
     else
-        while (lo < hi) { /* the share of the left side's weights rises with its number */
+        while (
+            lo <
+            hi) { /* the left side's share of the weights increases with its number of particles */
             const size_t middle = (lo + hi) / 2;
             const double left = grading_sum(grading, middle);
             const double right = grading_sum(grading, n - middle);
@@ -173,7 +176,7 @@ static size_t left_share(const struct grading *grading, size_t n, double rho_lef
     return lo;
 }
 
-/* A side of uniform gas: where it lies, its state, its particles (n from number `first` on). */
+/* A side of uniform gas: extent, state, and n particles from index `first`. */
 struct side {
     double lo, length;
     const double *state;
@@ -191,7 +194,7 @@ static void fill_side(struct initial *initial, const struct side *side, double g
         const size_t at = side->first + i;
         const double mass = unit * grading_weight(grading, i, n);
         initial->m[at] = mass;
-        /* equal masses: no sum of rounded widths */
+        /* equal masses: no accumulated round-off of the widths */
         initial->x[0][at] = grading->g < 1 ? edge + 0.5 * mass / state[0]
                                            : lo + ((double)i + 0.5) * (length / (double)n);
         edge += mass / state[0];
@@ -201,7 +204,7 @@ static void fill_side(struct initial *initial, const struct side *side, double g
     }
 }
 
-/* Half of the domain, and how many particles are to be there. */
+/* Plans a lattice of about n points in one half of the domain. */
 static enum status plan_side(struct lattice_plan *plan, const struct prepared *p, bool right,
                              size_t n, enum lattice kind, struct error *error)
 {
@@ -251,9 +254,9 @@ static enum status fill(const struct prepared *p, const struct settings *setting
 
 /* ---- how long the window stays free of the mirrored tube ---- */
 
-/* The greatest of v + mach c over a solution's constant states: no signal that is mach times as
- * fast as sound where it enters overtakes this inside. (Beyond a vacuum gas flees faster than the
- * edge of what expands into it.) */
+/* Upper bound of the speed of a signal that enters a solution at `mach` times the sound speed: the
+ * largest v + mach c over the constant states. (Beyond a vacuum, gas recedes faster than the edge
+ * of the gas that expands into it.) */
 static double fastest(const struct riemann_solution *s, double mach, double sign)
 {
     const struct riemann_state states[] = {s->left,
@@ -268,9 +271,9 @@ static double fastest(const struct riemann_solution *s, double mach, double sign
     return speed;
 }
 
-/* How far a front from the box's end has come towards the middle at t; sign: its direction. The
- * bound is sharp until the front meets the waves of the main tube and safe from there on. At a wall
- * beside gas at rest there is none until they come. */
+/* Distance that a front from an end of the box has travelled towards the middle at t; sign: its
+ * direction. The bound is sharp until the front meets the waves of the main tube, and safe later. A
+ * wall beside gas at rest emits no front until those waves reach it. */
 static double front(const struct prepared *p, double sign, double t)
 {
     const struct riemann_solution *tube = &tube_of(p)->main;
@@ -282,7 +285,7 @@ static double front(const struct prepared *p, double sign, double t)
     const bool quiet = has_walls(p) && gas->v == 0;
     const double ahead = sign > 0 ? -tube->left_head : tube->right_head;
     const double speed = quiet ? 0 : isnan(head) ? sign * gas->v + c : head;
-    /* nothing where both run away from each other, or there is no wave in the gas ahead */
+    /* infinite if both recede from each other or there is no wave in the gas ahead */
     const double meet = length / fmax(0, speed + ahead);
     if (t <= meet) return speed * t;
     const double mach =
@@ -310,14 +313,14 @@ static enum status refuse(const struct prepared *p, double t, double longest, st
                      t, p->window.lo[0], p->window.hi[0], longest, longest);
 }
 
-/* ---- the place of the shock ---- */
+/* ---- position of the shock ---- */
 
 static bool shock_runs_right(const struct prepared *p)
 {
     return p->domain.dim == 1 && tube_of(p)->main.right_wave == RIEMANN_SHOCK;
 }
 
-/* Where the pressure, seen from the right, first passes the mean of both sides of the shock. */
+/* Rightmost position where the pressure crosses the mean of the two sides of the shock. */
 static double shock_measured(const struct prepared *p, const struct snapshot *s)
 {
     const struct riemann_solution *tube = &tube_of(p)->main;
@@ -338,7 +341,7 @@ static double shock_exact(const struct prepared *p, double t)
 static const struct functional shock_position = {"shock_position", shock_runs_right, shock_measured,
                                                  shock_exact};
 
-/* ---- in 2D and 3D: what moves across the flow, in gas that waves have passed ---- */
+/* ---- transverse velocity in 2D and 3D, in gas that waves have passed ---- */
 
 static bool has_width(const struct prepared *p)
 {
@@ -371,7 +374,7 @@ static const struct functional transverse_noise = {"transverse_noise", has_width
 
 enum { UNDISTURBED, FAN, PLATEAU, CONTACT, SHOCK };
 
-/* A wave that is nowhere has NaN for a place and is near nothing. */
+/* A missing wave has a NaN position and is near nothing. */
 static bool near(double x, double place, double reach)
 {
     return fabs(x - place) <= reach;
@@ -394,14 +397,14 @@ static size_t region_at(const struct prepared *p, const double place[3], double 
     return x < tube->left_head * t || x > tube->right_head * t ? UNDISTURBED : PLATEAU;
 }
 
-/* Speed of the foremost edge that a solution sends to one side, sign 1 for the right. */
+/* Speed of the outermost wave on one side, sign 1 for the right. */
 static double edge(const struct riemann_solution *tube, double sign)
 {
     return sign > 0 ? fmax(tube->right_head, tube->right_tail)
                     : -fmin(tube->left_head, tube->left_tail);
 }
 
-/* The same of what the box's end sends inwards; sign: its direction. */
+/* The same for the waves from an end of the box; sign: their direction. */
 static double end_edge(const struct prepared *p, double sign)
 {
     const struct tube *tube = tube_of(p);
@@ -409,17 +412,18 @@ static double end_edge(const struct prepared *p, double sign)
     return has_walls(p) && v == 0 ? 0 : edge(&tube->ends[sign < 0], sign);
 }
 
-/* Is a place so far ahead of a wave, which has run a way (backwards: < 0), that its gas has to be
- * at rest? Counted in h (a shock's precursor falls tenfold from particle to particle), and as a
- * part of the way that the wave has run (a fan's head is dispersed, over many h), and beyond what
- * the widest particle reaches, which may be a lone one of a light gas behind that wave. */
+/* True if gas at a position must still be at rest ahead of a wave that has travelled `way` (< 0:
+ * backwards). The margin is the largest of three lengths: some h, since the precursor of a shock
+ * decreases tenfold per particle; a fraction of `way`, since the head of a fan is dispersed over
+ * many h; and the reach of the widest particle, which may be a single one in light gas behind the
+ * wave. */
 static bool far_ahead(double place, double way, double h, double widest)
 {
     const double still_widths = 12, still_way = 0.25, reaches = 2;
     return place - way > fmax(fmax(still_widths * h, still_way * fabs(way)), reaches * widest);
 }
 
-/* Of the main tube's wave and of the one that comes from the box's end. */
+/* Distance to the nearer of the main tube's wave and the wave from the end of the box. */
 static double ahead(const struct prepared *p, const double place[3], double t)
 {
     const struct tube *tubes = tube_of(p);
@@ -429,7 +433,7 @@ static double ahead(const struct prepared *p, const double place[3], double t)
                 from_end - end_edge(p, -sign) * t);
 }
 
-/* Undisturbed gas lies between the main tube's wave and the one that comes from the box's end. */
+/* Undisturbed gas lies between the main tube's wave and the wave from the end of the box. */
 static double stillness(const struct prepared *p, const struct snapshot *s)
 {
     const struct tube *tubes = tube_of(p);
@@ -450,11 +454,11 @@ static double stillness(const struct prepared *p, const struct snapshot *s)
 }
 
 static const struct regions regions = {
-    .names = {[UNDISTURBED] = "undisturbed", /* no wave has been here */
-              [FAN] = "fan",                 /* inside a rarefaction, or within reach of its ends */
+    .names = {[UNDISTURBED] = "undisturbed", /* no wave has passed */
+              [FAN] = "fan",                 /* in a rarefaction or near its ends */
               [PLATEAU] = "plateau",         /* constant states between the waves; vacuum */
-              [CONTACT] = "contact",         /* within reach of the contact */
-              [SHOCK] = "shock"},            /* within reach of a shock */
+              [CONTACT] = "contact",         /* near the contact */
+              [SHOCK] = "shock"},            /* near a shock */
     .at = region_at,
     .still = stillness,
 };

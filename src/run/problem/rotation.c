@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A disc of gas that turns like a solid body and flies apart into a vacuum (Dyson 1968): whatever
- * turns it slower is error. Particles of equal masses in an empty box of 2.5 times the disc's size,
- * periodic, and wide enough that images do not see each other. */
+ * A disc of gas that rotates like a solid body and expands into a vacuum (Dyson 1968); loss of
+ * rotation is error. Particles of equal masses in an empty periodic box of 2.5 times the size of
+ * the disc, wide enough that images do not interact. */
 #include <math.h>
 
 #include "disc.h"
@@ -10,7 +10,7 @@
 
 static const double spin = 1, middle_pressure = 0.25; /* of a disc of radius 1 */
 
-/* The disc's radius at t = 0; all lengths are multiples of it. */
+/* Radius of the disc at t = 0, the unit of length. */
 static double unit_of(const struct prepared *p)
 {
     return 0.2 * fmin(domain_length(&p->domain, 0), domain_length(&p->domain, 1));
@@ -47,7 +47,7 @@ static enum status fill(const struct prepared *p, const struct settings *setting
 static bool holds(const struct prepared *p, double t)
 {
     (void)p;
-    return disc_radius(spin, middle_pressure, t) <= 2.25; /* of 2.5 to the end of the box */
+    return disc_radius(spin, middle_pressure, t) <= 2.25; /* the end of the box is at 2.5 */
 }
 
 static enum status refuse(const struct prepared *p, double t, double longest, struct error *error)
@@ -59,7 +59,7 @@ static enum status refuse(const struct prepared *p, double t, double longest, st
                      t, longest);
 }
 
-/* ---- of all particles: how far the disc has spread, how fast it turns ---- */
+/* ---- sums over all particles: radius and rotation speed of the disc ---- */
 
 struct sums {
     double mass, inertia, turning;
@@ -77,7 +77,7 @@ static struct sums sums_of(const struct prepared *p, const struct snapshot *s)
     return sums;
 }
 
-/* Of a disc of one density the mean of r^2 is half of the radius squared. */
+/* For a uniform disc the mean of r^2 is half of the squared radius. */
 static double radius_measured(const struct prepared *p, const struct snapshot *s)
 {
     const struct sums sums = sums_of(p, s);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The blast of Sedov 1959: an energy of 1 in the middle of a periodic box of cold gas of density 1
- * at rest. Particles of equal masses; those within a few spacings of the centre share the energy by
- * a smooth weight, so that it falls into a point as their number grows. */
+ * Point explosion of Sedov 1959: an energy of 1 in the middle of a periodic box of cold gas of
+ * density 1 at rest. Particles of equal masses. Those within a few spacings of the centre share the
+ * energy with a smooth weight, which converges to a point as the number of particles grows. */
 #include "sedov.h"
 
 #include <math.h>
@@ -12,14 +12,14 @@
 #include "shells.h"
 
 static const double energy = 1, density = 1;
-/* Of a pressure so low that the shock does not know of it. */
+/* Initial pressure, too low to affect the shock. */
 static const double cold = 1e-6;
-/* Radius of the hot spot in mean distances of particles. */
+/* Radius of the hot spot in mean particle spacings. */
 static const double hot_spacings = 2.5;
 
 struct blast {
     struct sedov sedov;
-    bool even; /* directions are alike, and both ways along each */
+    bool even; /* the start is symmetric between directions and under reflection */
 };
 _Static_assert(sizeof(struct blast) <= PROBLEM_OWN_BYTES, "a blast fits");
 
@@ -46,7 +46,7 @@ static enum status prepare(struct prepared *p, struct settings *settings, struct
     return fault ? error_set(error, STATUS_BAD_INPUT, "no exact solution: %s", fault) : STATUS_OK;
 }
 
-/* At t = 0 the gas as it lies before the blast. */
+/* At t = 0 the gas without the explosion energy. */
 static void sample(const struct prepared *p, const double x[3], double t,
                    struct problem_state *state)
 {
@@ -59,7 +59,7 @@ static void sample(const struct prepared *p, const double x[3], double t,
     state->u = s.rho > 0 ? state->P / ((p->gamma - 1) * s.rho) : 0;
 }
 
-/* (1 - q^2)^2, q = r over the hot spot's radius. */
+/* (1 - q^2)^2, where q is r over the radius of the hot spot. */
 static double weight_of(const struct prepared *p, const struct initial *initial, size_t i)
 {
     double x[3] = {0}, volume = 1;
@@ -72,10 +72,10 @@ static double weight_of(const struct prepared *p, const struct initial *initial,
     return q < 1 ? (1 - q * q) * (1 - q * q) : 0;
 }
 
-/* The front is smeared over some four spacings: where that reaches too far beyond the ends of the
- * box, fronts of the images meet, and gas between them is lost. Measured at 8^3 and 9^3, which
- * broke down at t = 0.055, and at 7^2 to 9^2, where no shock is seen any more; all of 10^3 to 20^3
- * and of 10^2 to 24^2 come to their end. */
+/* The numerical shock is about four spacings wide. If it extends too far beyond the ends of the
+ * box, the shocks of neighbouring images meet and the gas between them is lost. Measured: 8^3 and
+ * 9^3 broke down at t = 0.055; 7^2 to 9^2 showed no shock; all of 10^3 to 20^3 and of 10^2 to 24^2
+ * completed. */
 static enum status check_room(const struct prepared *p, const struct settings *settings,
                               const struct initial *initial, struct error *error)
 {
@@ -114,7 +114,7 @@ static enum status fill(const struct prepared *p, const struct settings *setting
     return status;
 }
 
-/* The shock has not come near its images. */
+/* True until the shock gets close to its images. */
 static bool holds(const struct prepared *p, double t)
 {
     double half = (double)INFINITY;
@@ -135,10 +135,10 @@ static enum status refuse(const struct prepared *p, double t, double longest, st
                      t, sedov_shock(sedov_of(p), t), longest);
 }
 
-/* ---- what is seen of the shock ---- */
+/* ---- measures of the shock ---- */
 
-/* Where the density is half-way from the gas ahead to its own peak: a shock that is smeared and
- * too low has this in its middle all the same. */
+/* Radius at which the density is half-way between the gas ahead and the measured peak. This is the
+ * middle of the shock even if the shock is smeared and too low. */
 static double shock_measured(const struct prepared *p, const struct snapshot *s)
 {
     struct shells shells;
@@ -164,7 +164,7 @@ static double peak_exact(const struct prepared *p, double t)
     return t > 0 ? density * (p->gamma + 1) / (p->gamma - 1) : density;
 }
 
-/* ---- sums over all gas, which scatter less than what single shells show ---- */
+/* ---- sums over all gas, which scatter less than single shells ---- */
 
 static double kinetic_at(double r, const struct sedov_state *s)
 {
@@ -195,7 +195,7 @@ static double spread_at(double r, const struct sedov_state *s)
     return s->P * r;
 }
 
-/* Of all gas behind the shock. */
+/* Integral over all gas behind the shock. */
 static double behind(const struct prepared *p, double t,
                      double (*of)(double r, const struct sedov_state *s))
 {
@@ -215,7 +215,7 @@ static double kinetic_exact(const struct prepared *p, double t)
     return behind(p, t, kinetic_at);
 }
 
-/* Momentum away from the centre, of all directions together. */
+/* Radial momentum, summed over all directions. */
 static double outward_measured(const struct prepared *p, const struct snapshot *s)
 {
     double sum = 0;
@@ -234,7 +234,7 @@ static double outward_exact(const struct prepared *p, double t)
     return behind(p, t, momentum_at);
 }
 
-/* How far from the centre the internal energy is, in the mean. */
+/* Mean distance of the internal energy from the centre. */
 static double thermal_measured(const struct prepared *p, const struct snapshot *s)
 {
     double sum = 0, energies = 0;
@@ -252,8 +252,9 @@ static double thermal_exact(const struct prepared *p, double t)
     return t > 0 ? behind(p, t, spread_at) / behind(p, t, pressure_at) : 0;
 }
 
-/* sum m v_a x_b is the same number for a = b and 0 beside; sum m v^2 x_a is 0: how far they are
- * from that, over sums of what is positive. Gas in the planes between has no weight. */
+/* By symmetry sum m v_a x_b is the same for all a = b and 0 otherwise, and sum m v^2 x_a is 0.
+ * Returns the largest deviation, relative to sums of positive terms. Gas in the planes between
+ * particles has no weight. */
 static double asymmetry_measured(const struct prepared *p, const struct snapshot *s)
 {
     const int dim = p->domain.dim;
@@ -282,14 +283,14 @@ static double asymmetry_measured(const struct prepared *p, const struct snapshot
     return worst;
 }
 
-/* Of a start that prefers one direction nothing is known. */
+/* Unknown for a start that prefers one direction. */
 static double asymmetry_exact(const struct prepared *p, double t)
 {
     (void)t;
     return ((const struct blast *)p->own.bytes)->even ? 0 : (double)NAN;
 }
 
-/* Where r is 0 the energy a mass has is without bound; what a ball round the centre has is not. */
+/* The energy per mass diverges at r = 0, that of a ball around the centre does not. */
 static double mean_energy(const struct prepared *p, double r, double t)
 {
     const struct sedov *sedov = sedov_of(p);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Layers that slide past each other: v = v0 sin(2 pi s/L) across the direction s, in gas of one
- * density and pressure. Without viscosity nothing changes, ever (Landau & Lifshitz 1987, section
- * 2: no particle meets another pressure); with a viscosity nu the wave decays with nu (2 pi/L)^2.
- * Particles of equal masses. */
+ * Layers that slide past each other: v = v0 sin(2 pi s/L) normal to the direction s, in gas of
+ * uniform density and pressure. Without viscosity the flow is steady (Landau & Lifshitz 1987,
+ * section 2: the pressure is uniform); with a viscosity nu the wave decays at the rate nu (2
+ * pi/L)^2. Particles of equal masses. */
 #include <math.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@
 static const double speed = 0.5;
 
 struct layers {
-    double n[3], flow[3]; /* unit vectors: along which v changes, and of v */
+    double n[3], flow[3]; /* unit vectors: direction in which v changes, direction of v */
     double length;
     double gas[3]; /* rho v P; v = 0 */
 };
@@ -23,7 +23,7 @@ static const struct layers *layers_of(const struct prepared *p)
     return (const struct layers *)p->own.bytes;
 }
 
-/* n turned by a right angle in the plane of x and y; along x where n is along z. */
+/* n rotated by a right angle in the x-y plane; the x axis if n is along z. */
 static void turn(const double n[3], double flow[3])
 {
     const double part = hypot(n[0], n[1]);
@@ -47,7 +47,7 @@ static enum status prepare(struct prepared *p, struct settings *settings, struct
                      layers->gas[0], layers->gas[1], layers->gas[2]);
 }
 
-/* sin of the layers' phase at x. */
+/* Sine of the layers' phase at x. */
 static double wave_at(const struct prepared *p, const double x[3])
 {
     const struct layers *layers = layers_of(p);
@@ -68,7 +68,7 @@ static void sample(const struct prepared *p, const double x[3], double t,
     for (int d = 0; d < p->domain.dim; d++) state->v[d] = v * layers->flow[d];
 }
 
-/* Of the start: projected on the wave, over the projection of the wave itself. */
+/* Projection on the initial wave, relative to its initial value. */
 static double amplitude_measured(const struct prepared *p, const struct snapshot *s)
 {
     double sum = 0, whole = 0;
@@ -90,7 +90,7 @@ static double one(const struct prepared *p, double t)
     return 1;
 }
 
-/* What kinematic viscosity would have done the same; 0 at the start. */
+/* Kinematic viscosity that gives the same decay; 0 at the start. */
 static double viscosity_measured(const struct prepared *p, const struct snapshot *s)
 {
     const double k = 2 * M_PI / layers_of(p)->length;

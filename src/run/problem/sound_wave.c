@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A simple wave that runs to the right through a uniform gas and is exact at any amplitude until it
- * breaks (Landau & Lifshitz 1987, section 101): `waves` wavelengths in the box; in 2D and 3D in a
- * `direction` of integers, so that it is periodic in the box. Particles of equal masses, whose
- * positions carry the density exactly. */
+ * A simple wave that travels to the right through a uniform gas; exact at any amplitude until it
+ * breaks (Landau & Lifshitz 1987, section 101). `waves` wavelengths fit the box, in 2D and 3D along
+ * a `direction` of integers, which makes the wave periodic. Particles of equal masses whose
+ * positions represent the density exactly. */
 #include "initial.h"
 #include "simple_wave.h"
 
@@ -13,7 +13,7 @@
 
 struct plane_wave {
     struct simple_wave wave;
-    double n[3]; /* unit vector of its direction */
+    double n[3]; /* unit vector along the wave */
 };
 _Static_assert(sizeof(struct plane_wave) <= PROBLEM_OWN_BYTES, "a wave fits");
 
@@ -27,7 +27,7 @@ static const double *direction_of(const struct prepared *p)
     return ((const struct plane_wave *)p->own.bytes)->n;
 }
 
-/* How far x lies from the domain's corner along the wave. */
+/* Distance of x from the domain's corner along the wave. */
 static double along(const struct prepared *p, const double x[3])
 {
     const double *n = direction_of(p);
@@ -49,7 +49,7 @@ static enum status prepare(struct prepared *p, struct settings *settings, struct
                                  .P0 = gas[2],
                                  .amplitude = settings_real(settings, SETTING_amplitude)};
     if (problem_direction(p, settings, plane->n, &wave->length, error)) return error->status;
-    if (p->domain.dim == 1) wave->length = domain_length(&p->domain, 0); /* to the last bit */
+    if (p->domain.dim == 1) wave->length = domain_length(&p->domain, 0); /* exactly */
     wave->length /= settings_real(settings, SETTING_waves);
     const char *fault = simple_wave_fault(wave);
     return fault ? error_set(error, STATUS_BAD_INPUT, "no exact solution: %s", fault) : STATUS_OK;
@@ -64,8 +64,8 @@ static void sample(const struct prepared *p, const double x[3], double t,
         state->v[d] = s.v * direction_of(p)[d];
 }
 
-/* Position x (from lo) with mass between lo and x equal to `mass`: Newton on
- * rho0 (x + A (1 - cos k x)/k), which rises by at least rho0 (1 - A). */
+/* Position x (from lo) such that the mass between lo and x equals `mass`: Newton's method on rho0
+ * (x + A (1 - cos k x)/k), whose slope is at least rho0 (1 - A). */
 static double wave_position(const struct simple_wave *wave, double mass)
 {
     const double k = 2 * M_PI / wave->length;
@@ -79,7 +79,7 @@ static double wave_position(const struct simple_wave *wave, double mass)
     return x;
 }
 
-/* Lattice points, displaced along the wave as on a line. */
+/* Lattice points, displaced along the wave as in 1D. */
 static enum status fill_cloud(const struct prepared *p, const struct settings *settings,
                               struct initial *initial, struct error *error)
 {
@@ -177,11 +177,11 @@ static double mode_measured(const struct prepared *p, const struct snapshot *s)
 
 static double mode_exact(const struct prepared *p, double t)
 {
-    const bool line = p->domain.dim == 1; /* along the wave, as long as it is */
+    const bool line = p->domain.dim == 1; /* along the wave, over its wavelength */
     const double length = line ? domain_length(&p->domain, 0) : wave_of(p)->length;
     const double step = length / MODE_POINTS;
     struct mode mode = {0};
-    for (int i = 0; i < MODE_POINTS; i++) { /* smooth and periodic: converges at once */
+    for (int i = 0; i < MODE_POINTS; i++) { /* smooth and periodic: converges exponentially */
         const double way = (i + 0.5) * step;
         struct problem_state state;
         double x[3] = {p->domain.lo[0] + way};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A square of dense gas in a periodic box of thin gas of the same pressure (Saitoh & Makino 2013):
- * nothing may move, and no corner may be rounded. Particles of equal spacing, whose masses have the
- * ratio of the densities, or of equal masses on lattices of two spacings. */
+ * A square of dense gas in a periodic box of thin gas at the same pressure (Saitoh & Makino 2013).
+ * Nothing should move, and the corners should stay sharp. Particles of equal spacing whose masses
+ * have the ratio of the densities, or of equal masses on lattices of two spacings. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -23,7 +23,7 @@ static const struct square *square_of(const struct prepared *p)
     return (const struct square *)p->own.bytes;
 }
 
-/* Half the box in each direction, in its middle. */
+/* The square has half the size of the box in each direction and is centred. */
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
     struct square *square = (struct square *)p->own.bytes;
@@ -55,14 +55,14 @@ static void sample(const struct prepared *p, const double x[3], double t,
         (struct problem_state){.rho = rho, .P = pressure, .u = pressure / ((p->gamma - 1) * rho)};
 }
 
-/* ---- equal masses: each gas on a lattice of its own, the thin one with a hole ---- */
+/* ---- equal masses: each gas on its own lattice, the thin one with a hole ---- */
 
 static bool is_around(const void *square, const double x[3])
 {
     return !is_inside(square, x);
 }
 
-/* Brings the masses of a gas to what its volume holds. */
+/* Scales the masses of a gas to its total mass. */
 static void fill_up(struct initial *initial, size_t first, size_t end, double mass)
 {
     for (size_t i = first; i < end; i++) initial->m[i] = mass / (double)(end - first);
@@ -96,8 +96,8 @@ static enum status fill_equal_masses(const struct prepared *p, const struct sett
     return STATUS_OK;
 }
 
-/* One lattice for all, with edges of the square between its planes: four times as many cells each
- * way as one of a quarter of the particles each way has. */
+/* One lattice for both gases, with the edges of the square between its planes: four times as many
+ * cells per direction as a lattice with a quarter of the particles per direction. */
 static enum status fill_equal_spacing(const struct prepared *p, const struct settings *settings,
                                       struct initial *initial, struct error *error)
 {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A standing wave of small amplitude on a liquid under gravity along y, for other codes. The bottom
- * is at the lower end of the box, the mean surface at the upper one. At t = 0 the surface is flat
- * and moves upwards with amplitude depth omega cos(k x), k = 2 pi waves/L; velocities go on as
- * cos(omega t) exp(-2 nu k^2 t), omega^2 = g k tanh(k depth) (Lamb 1932, sections 228 and 348: in
- * linear theory, so to a part k depth amplitude of them, and of a viscosity that is small). */
+ * is at the lower end of the box, the mean surface at the upper end. At t = 0 the surface is flat
+ * and moves upwards with amplitude depth omega cos(k x), k = 2 pi waves/L. Velocities evolve as
+ * cos(omega t) exp(-2 nu k^2 t), omega^2 = g k tanh(k depth) (Lamb 1932, sections 228 and 348;
+ * linear theory, so exact up to a fraction k depth amplitude and for small viscosity). */
 #include <math.h>
 
 #include "initial.h"
@@ -50,7 +50,7 @@ static void mode(const struct prepared *p, const double x[3], double v[3])
     liquid_wave_mode(of->k, of->depth, x[0] - p->domain.lo[0], x[1] - p->domain.lo[1], v);
 }
 
-/* Of the mode, over that at the start. */
+/* Amplitude of the mode relative to the start. */
 static double amplitude_exact(const struct prepared *p, double t)
 {
     const struct wave *of = wave_of(p);

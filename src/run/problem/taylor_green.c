@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Taylor & Green's vortices in a periodic square of a viscous liquid, for other codes: vx = speed
- * sin(k x) cos(k y), vy = -speed cos(k x) sin(k y), both times exp(-2 nu k^2 t), k = 2 pi waves/L,
- * x and y from the lower ends of the box on. An exact solution of the equations of Navier and
- * Stokes for an incompressible liquid (Taylor & Green 1937). `vortex_decay` is -ln A/t, A the
- * projection of the velocity on the flow of the start over that of the start itself. */
+ * Taylor-Green vortices in a periodic square of a viscous liquid, for other codes: vx = speed sin(k
+ * x) cos(k y), vy = -speed cos(k x) sin(k y), both times exp(-2 nu k^2 t), k = 2 pi waves/L, x and
+ * y from the lower ends of the box. An exact solution of the incompressible Navier-Stokes equations
+ * (Taylor & Green 1937). `vortex_decay` is -ln A/t, where A is the projection of the velocity on
+ * the initial flow, relative to its initial value. */
 #include <math.h>
 
 #include "initial.h"
@@ -34,7 +34,7 @@ static enum status prepare(struct prepared *p, struct settings *settings, struct
                      length, height);
 }
 
-/* The flow at the start, of speed 1. */
+/* The initial flow with speed 1. */
 static void mode(const struct prepared *p, const double x[3], double v[3])
 {
     const double k = vortices_of(p)->k;
@@ -69,7 +69,7 @@ static double amplitude_exact(const struct prepared *p, double t)
     return exp(-decay(p, t) * t);
 }
 
-/* At the start the exact one: nothing has decayed. */
+/* The exact rate at the start, where nothing has decayed yet. */
 static double decay_measured(const struct prepared *p, const struct snapshot *s)
 {
     return s->time > 0 ? -log(amplitude_measured(p, s)) / s->time : decay(p, 0);

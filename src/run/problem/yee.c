@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The isentropic vortex of Yee, Sandham & Djomehri 1999, of strength 5, in the middle of a periodic
- * box: smooth, so that an error's order is the scheme's own. At the edge of a box of [-5, 5] it
- * still turns at 2.4e-5: no error falls below that. Particles of equal spacing, whose masses follow
- * the density. */
+ * box. It is smooth, so that the error has the order of the scheme. At the edge of a box of [-5, 5]
+ * it still rotates with 2.4e-5, which limits the error from below. Particles of equal spacing whose
+ * masses follow the density. */
 #include <math.h>
 
 #include "initial.h"
@@ -11,7 +11,7 @@
 
 static const double strength = 5;
 
-/* Its centre is warm for every gamma: T = 1 - 1.72 (gamma - 1)/(2 gamma). */
+/* The temperature at the centre, 1 - 1.72 (gamma - 1)/(2 gamma), is positive for every gamma. */
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
     (void)p, (void)settings, (void)error;

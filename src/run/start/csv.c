@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Text for a program of one's own; its comment lines say everything. */
+ * Text for a user's own program; comment lines contain the metadata. */
 #include "start_format.h"
 
 extern const struct snapshot_writer writer_csv;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Format 2 of GADGET's binaries, for GADGET, AREPO and GIZMO, as they are usually compiled: single
- * precision. They read the blocks up to the energies; densities and widths are for other readers.
- */
+ * Format 2 of GADGET's binary files, for GADGET, AREPO and GIZMO as usually compiled: single
+ * precision. These codes read the blocks up to the energies; densities and smoothing lengths are
+ * for other readers. */
 #include "start_format.h"
 
 static enum status write(const struct run_result *result, const char *path, struct error *error)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * HDF5 for SPH-EXA (Cavelan et al. 2020), a single step as H5Part lays it out: all that a restart
- * reads, so that both `--init FILE` and `--init FILE,1` work. The support is 2 h; temperatures are
- * those that its ideal gas turns into our energies; x_m1 is the way of the step before. */
+ * HDF5 for SPH-EXA (Cavelan et al. 2020), a single step in the layout of H5Part with everything
+ * that a restart reads, so that both `--init FILE` and `--init FILE,1` work. The support radius is
+ * 2 h; temperatures are those that its ideal gas converts to our energies; x_m1 is the displacement
+ * of the previous step. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,7 +11,7 @@
 
 static const double gas_constant = 8.317e7, ion_weight = 10, alpha_min = 0.05;
 
-/* Half of what its Courant number of 0.2 allows. */
+/* Half of the step allowed by its Courant number of 0.2. */
 static double first_step(const struct run_result *result)
 {
     const struct snapshot *s = &result->snapshot;
@@ -43,7 +44,7 @@ static void set_attributes(struct hdf5_image *image, const struct run_result *re
     hdf5_image_attribute(image, "boundaryType", HDF5_CHAR, periodic, 3);
 }
 
-/* A dataset of the values times a factor, and a number. */
+/* Writes a dataset: values times factor, plus number. room: work array of n. */
 static void set_field(struct hdf5_image *image, const char *name, const double *values,
                       double factor, double number, size_t n, double *room)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * ASCII with the head that SPLASH writes (Price 2007), which it turns into dumps of Phantom,
+ * ASCII with the header that SPLASH writes (Price 2007). SPLASH converts it to files for Phantom,
  * NDSPMHD or GADGET; h is half of the support radius. */
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * XML of VTK for TrixiParticles and ParaView; its field data say gamma, box and boundary. */
+ * VTK XML for TrixiParticles and ParaView; the field data contain gamma, box and boundary. */
 #include "start_format.h"
 
 extern const struct snapshot_writer writer_vtu;

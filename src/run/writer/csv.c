@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Text: a line with the names of the columns, x,vx,m,rho,u,P,h or in 2D and 3D x,y,vx,vy, ...;
- * comment lines `# KEY = VALUE` (see snapshot_writer.h); a line a particle, in the order in which
- * particles have started. */
+ * comment lines `# KEY = VALUE` (see snapshot_writer.h); one line per particle in the initial
+ * order. */
 #include <stdio.h>
 
 #include "output.h"

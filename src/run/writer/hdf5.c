@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * HDF5 as GADGET's snapshots are laid out (Springel 2005): what yt, pynbody and ParaView read.
- * Header: NumPart_*, MassTable, Time, BoxSize (one number, or one each where sides differ),
- * Dimension, Gamma, Origin, and as text Case, Boundary and Keys (see snapshot_writer.h);
- * PartType0: Coordinates (from the lower corner of the box, `Origin`, z = 0 in 2D), Velocities,
- * Masses, Density, InternalEnergy, Pressure, SmoothingLength (support radius), ParticleIDs (from 1,
- * in the order of the start). */
+ * HDF5 in the layout of GADGET's snapshots (Springel 2005), which yt, pynbody and ParaView read.
+ * Header: NumPart_*, MassTable, Time, BoxSize (one number, or one per direction if sides differ),
+ * Dimension, Gamma, Origin, and as text Case, Boundary and Keys (see snapshot_writer.h). PartType0:
+ * Coordinates (from the lower corner of the box, `Origin`; z = 0 in 2D), Velocities, Masses,
+ * Density, InternalEnergy, Pressure, SmoothingLength (support radius), ParticleIDs (from 1, in the
+ * initial order). */
 #include <stdlib.h>
 #include <string.h>
 
 #include "hdf5_image.h"
 #include "snapshot_writer.h"
 
-/* What no attribute of GADGET's says: Case, Boundary and Keys. */
+/* Metadata without an attribute in GADGET: Case, Boundary and Keys. */
 static void set_remarks(struct hdf5_image *image, const struct run_result *result)
 {
     static const struct {
@@ -25,7 +25,7 @@ static void set_remarks(struct hdf5_image *image, const struct run_result *resul
                 hdf5_image_text(image, names[i].attribute, remarks[k].value);
 }
 
-enum { TYPES = 6 }; /* of particles, gas first */
+enum { TYPES = 6 }; /* particle types, gas first */
 
 static void set_header(struct hdf5_image *image, const struct run_result *result)
 {
@@ -111,7 +111,7 @@ const struct snapshot_writer writer_hdf5 = {
     .member = {"hdf5", "HDF5 in GADGET's layout: .hdf5 .h5", "Springel 2005"},
     .endings = ".hdf5 .h5",
     .from_corner = true,
-    .memory = 250, /* of a file that is made in memory */
+    .memory = 250, /* for the file image in memory */
     .possible = hdf5_image_possible,
     .write = write_hdf5,
 };

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * XML of VTK, an unstructured grid with a vertex for each particle: what ParaView, VTK and meshio
- * read. Numbers of particles are base64 of their own bytes, so that no bit is lost.
- * Points and velocity have three components, 0 beyond the dimensions; besides them mass, density,
- * pressure, internal_energy, smoothing_length (support radius) and particle_spacing,
- * (m/rho)^(1/dim), are data of points. What belongs to the whole run is field data: TimeValue,
- * gamma, ndims, box (lower and upper end along each direction), and as codes of letters, since not
- * all readers know strings, case, boundary and keys (see snapshot_writer.h). A series is listed in
- * a collection, F.pvd of F.vtu, with the time of each file. */
+ * VTK XML, an unstructured grid with a vertex for each particle, which ParaView, VTK and meshio
+ * read. Numbers are base64 of their bytes, so that no bit is lost. Points and velocity have three
+ * components, 0 beyond the dimension. Other point data: mass, density, pressure, internal_energy,
+ * smoothing_length (support radius) and particle_spacing, (m/rho)^(1/dim). Field data of the whole
+ * run: TimeValue, gamma, ndims, box (lower and upper end along each direction), and case, boundary
+ * and keys (see snapshot_writer.h) as character codes, since not all readers support strings. A
+ * series is listed in a collection, F.pvd for F.vtu, with the time of each file. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -21,7 +20,7 @@
 static const char *const byte_order =
     __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? "LittleEndian" : "BigEndian";
 
-/* Arrays are filled behind their size in bytes, with which they begin in the file. */
+/* The array follows its size in bytes, as in the file. */
 struct grid {
     FILE *to;
     uint64_t *size;
@@ -152,7 +151,7 @@ static enum status write_vtu(const struct run_result *result, const char *path, 
     return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
 }
 
-/* One that could not be written is not listed. */
+/* Lists a file, unless it could not be written. */
 static void list_file(struct buffer *to, const char *path, double time)
 {
     const char *slash = strrchr(path, '/');
