@@ -13,18 +13,16 @@
 
 enum { SINC_ORDER = 5 };
 
-/* A median error above this part of the range of the exact values is no error at jumps. */
-#define JUDGE_FOREIGN      0.06
-#define JUDGE_FOREIGN_MEAN 0.2 /* and an L1 above this none of jumps that are a few h wide */
-#define JUDGE_FOREIGN_PART 0.5 /* and a functional that is off by more than this of its value */
-#define JUDGE_FOREIGN_MODE 10  /* and other motion of a mode's wavelength, times the mode */
-#define JUDGE_FOREIGN_AHEAD                                                                        \
-    0.03                       /* and motion in this part of the window, where no wave has been    \
-                                */
-#define JUDGE_FOREIGN_MASS 0.3 /* and gas whose mass is off by this of what fills its box */
+/* A median error above this fraction of the range of the exact values is not caused by jumps. */
+#define JUDGE_FOREIGN       0.06
+#define JUDGE_FOREIGN_MEAN  0.2  /* nor is an L1 above this, for jumps a few h wide */
+#define JUDGE_FOREIGN_PART  0.5  /* relative error of a functional */
+#define JUDGE_FOREIGN_MODE  10   /* motion at a mode's wavelength, over the mode */
+#define JUDGE_FOREIGN_AHEAD 0.03 /* fraction of the window that moves ahead of all waves */
+#define JUDGE_FOREIGN_MASS  0.3  /* relative error of the total mass */
 
-/* A stored pressure that is that of the gas law to the file's precision is taken from it: it has
- * been rounded once more. */
+/* Recomputes a stored pressure that agrees with the gas law to the file's precision, because the
+ * file rounded it once more. */
 static void sharpen_pressure(struct snapshot_file *file, double gamma)
 {
     double *P = file->column[SNAPSHOT_P];
@@ -42,7 +40,7 @@ static void sharpen_pressure(struct snapshot_file *file, double gamma)
     snapshot_note(&file->notes, "pressure", value, "the stored one differs by at most %.2g", worst);
 }
 
-/* Of liquids u means nothing, and P may be missing. */
+/* For liquids u has no meaning, and P may be missing. */
 static enum status complete_liquid(struct judged *judged, struct error *error)
 {
     struct snapshot_file *file = &judged->file;
@@ -58,7 +56,7 @@ static enum status complete_liquid(struct judged *judged, struct error *error)
     return STATUS_OK;
 }
 
-/* P and u, where one is missing. */
+/* Computes P from u, or u from P, where one is missing. */
 static enum status complete(struct judged *judged, double gamma, struct error *error)
 {
     struct snapshot_file *file = &judged->file;
@@ -84,7 +82,7 @@ static enum status complete(struct judged *judged, double gamma, struct error *e
     return STATUS_OK;
 }
 
-/* ---- the gas of the file as a snapshot ---- */
+/* ---- the file's gas as a snapshot ---- */
 
 enum { ARRAYS = 12 };
 
@@ -163,9 +161,10 @@ static enum status gas_make(struct gas *gas, const struct judged *judged, const 
     return STATUS_OK;
 }
 
-/* ---- what is measured beside the errors ---- */
+/* ---- measurements besides errors ---- */
 
-/* One particle more; c: its sound speed. As of a run: no momentum where walls or gravity push. */
+/* Adds one particle to the sums; c: its sound speed. As in a run, momentum does not count where
+ * walls or gravity act. */
 static void add_to_sums(const struct prepared *problem, const double x[3], const double v[3],
                         double m, double u, double c, struct conservation *sums)
 {
@@ -203,7 +202,7 @@ void judge_sum(const struct prepared *problem, const struct snapshot *s, const d
         double square = problem->gamma * s->P[i] / s->rho[i];
         for (int d = 0; d < problem->domain.dim; d++)
             x[d] = s->x[d][i] + shift[d], v[d] = s->v[d][i];
-        if (problem->problem->liquid) { /* whose P is not a gas's: the case's own */
+        if (problem->problem->liquid) { /* its P follows the case's own equation of state */
             struct problem_state state;
             problem_sample(problem, x, s->time, &state);
             square = problem->gamma * (problem->gamma - 1) * state.u;
@@ -212,8 +211,9 @@ void judge_sum(const struct prepared *problem, const struct snapshot *s, const d
     }
 }
 
-/* Of the snapshot, and of the particles that a run of the case in this box would begin with, on
- * the case's own lattice; none where that is a glass, which takes its time. */
+/* Sums over the snapshot and over the particles that a run of the case would start with in this
+ * box, on the case's own lattice. A case that starts from a glass has no sums of the start, because
+ * a glass takes long to make. */
 static void measure_sums(struct judged *judged)
 {
     const struct prepared *p = &judged->run.problem;
@@ -224,7 +224,8 @@ static void measure_sums(struct judged *judged)
     struct run start;
     double x[3] = {0}, v[3] = {0};
     judge_sum(p, s, x, &judged->sums);
-    if (!judged->boxed || p->problem->liquid) return; /* plates and viscosity change a liquid's */
+    if (!judged->boxed || p->problem->liquid)
+        return; /* plates and viscosity change the sums of a liquid */
     plain.settings.value[SETTING_lattice] = plain.file.settings.value[SETTING_lattice];
     plain.settings.value[SETTING_equal_masses] = plain.file.settings.value[SETTING_equal_masses];
     if (!run_resolve(&start, &plain, &ignored) &&
@@ -237,7 +238,7 @@ static void measure_sums(struct judged *judged)
     initial_free(&initial);
 }
 
-/* Velocity across x of planar flows, the radial one of circular ones. */
+/* Rms velocity across x in planar flows, in the radial direction in circular ones. */
 static double measure_noise(const struct judged *judged)
 {
     const struct prepared *p = &judged->run.problem;
@@ -255,8 +256,8 @@ static double measure_noise(const struct judged *judged)
     return volume > 0 ? sqrt(sum / volume) : (double)NAN;
 }
 
-/* Of what grows, one snapshot says its mean rate since the start, whose amplitude is known. The
- * first functional of such a problem is the amplitude. */
+/* For a growing mode one snapshot gives the mean growth rate since the start, where the amplitude
+ * is known. The first functional of such a problem is the amplitude. */
 static void measure_growth(struct judged *judged)
 {
     const struct growing *growing = judged->run.problem.problem->growing;
@@ -268,7 +269,8 @@ static void measure_growth(struct judged *judged)
                 r->functionals[k].exact + log(amplitude->value / amplitude->exact) / r->time;
 }
 
-/* Is the particle in the window? Exact state there, and the one that was there at the start. */
+/* True if the particle is in the window. Fills the exact states at its position, now and at the
+ * start. */
 static bool counts(const struct judged *judged, size_t i, struct problem_state *now,
                    struct problem_state *before)
 {
@@ -294,16 +296,16 @@ static const char *region_of(const struct judged *judged, size_t i)
     return regions->names[regions->at(p, place, BUDGET_REACH * s->h[i], judged->result.time)];
 }
 
-/* At which every scheme errs. */
+/* True if the particle is near a jump, where every scheme has large errors. */
 static bool near_jump(const struct judged *judged, size_t i)
 {
     const char *name = region_of(judged, i);
     return strcmp(name, "shock") == 0 || strcmp(name, "contact") == 0;
 }
 
-/* Part of the window's particles that move by more than a tenth of the range of velocities where
- * the exact solution knows of no wave yet: of a scheme waves are near the exact ones, of another
- * time or place they are not. NaN: the window has none. */
+/* Fraction of the window's particles that move by more than a tenth of the range of velocities
+ * ahead of all exact waves: a scheme's waves are close to the exact ones, those of another time or
+ * position are not. NaN if the window has no such gas. */
 static double moves_ahead(const struct judged *judged, double range)
 {
     const struct snapshot *s = &judged->result.snapshot;
@@ -329,10 +331,10 @@ static double value_of(const struct problem_state *state, int f, int dim)
     return problem_field(state, (enum field)f);
 }
 
-/* Median error of a field where the flow has changed it, over the range of its exact values: a
- * scheme errs at jumps, another solution nearly everywhere. A uniform field is measured in half of
- * its value. Where gas rests, velocities are measured in the speed of sound; where gas is cold,
- * pressure and energy also in what its motion could make of them. */
+/* Median error of a field in the gas that the flow has changed, over the range of its exact values:
+ * a scheme has large errors at jumps, another solution nearly everywhere. The scale of a uniform
+ * field is half its value, that of velocities in gas at rest the sound speed. In cold gas, pressure
+ * and energy are also compared with what dissipation of the motion could give. */
 static double median_error(const struct judged *judged, int f, double *errors, double *range)
 {
     const struct snapshot *s = &judged->result.snapshot;
@@ -361,7 +363,8 @@ static double median_error(const struct judged *judged, int f, double *errors, d
         *range = fmax(most - least, (varies ? 0.2 : 0.5) * size);
         if (f == FIELD_VELOCITY && *range == 0) *range = sound;
         if (f == FIELD_PRESSURE || f == FIELD_INTERNAL_ENERGY) *range = fmax(*range, 0.1 * motion);
-        if (n < 8 && judged->run.problem.problem->regions) return 0; /* nothing to go by */
+        if (n < 8 && judged->run.problem.problem->regions)
+            return 0; /* too few particles to judge */
         if (n < 8) continue;
         list_sort(errors, n);
         return errors[n / 2] / *range;
@@ -369,8 +372,8 @@ static double median_error(const struct judged *judged, int f, double *errors, d
     return 0;
 }
 
-/* How far a functional is off; above 1 is far. The value of mode_error is its error; of others the
- * error is relative to the exact value, and 0 where that is 0. */
+/* Error of a functional over its bound; above 1 it is far off. The value of mode_error is its
+ * error; the error of others is relative to the exact value, and 0 where that is 0. */
 static double wrong_functional(const struct run_functional *f)
 {
     const double part = strcmp(f->name, mode_error.name) == 0 ? f->value / JUDGE_FOREIGN_MODE
@@ -379,8 +382,8 @@ static double wrong_functional(const struct run_functional *f)
     return isnan(part) ? (double)INFINITY : part;
 }
 
-/* What tells of problems without fields to compare how far the gas is off: the first functional, or
- * the shape of a mode, of which noise may have the amplitude. */
+/* The functional that judges a problem without comparable fields: the first one, or the shape of a
+ * mode, since noise may have its amplitude. */
 static const struct run_functional *telling(const struct run_result *result)
 {
     const struct run_functional *first = result->functionals;
@@ -391,7 +394,7 @@ static const struct run_functional *telling(const struct run_result *result)
     return first;
 }
 
-/* Is anything known of the case at the snapshot's time that the gas was compared with? */
+/* True if the case has an exact value at the snapshot's time that the gas was compared with. */
 static bool is_known(const struct run_result *r)
 {
     return !r->problem.problem->fieldless ||
@@ -421,7 +424,7 @@ static enum status measure_wrong(struct judged *judged, struct error *error)
     return STATUS_OK;
 }
 
-/* ---- what is said ---- */
+/* ---- messages ---- */
 
 static void note_kernel(struct judged *judged)
 {
@@ -461,7 +464,7 @@ static bool wrong_mass(const struct judged *judged)
            !(fabs(judged->sums.mass / judged->start.mass - 1) <= JUDGE_FOREIGN_MASS);
 }
 
-/* With the sums of the particles: see measure_sums. */
+/* Compares a snapshot of t = 0 with the initial state, including the sums of measure_sums. */
 static enum status measure_start(struct judged *judged, bool glance, struct error *error)
 {
     struct judge_start *start = &judged->of_start;
@@ -529,7 +532,7 @@ static void write_verdict(struct judged *judged)
                       judged->wrong / JUDGE_FOREIGN);
 }
 
-/* Is there no particle that the field that is known best could be compared at? */
+/* True if the field with the best known exact solution can be compared at no particle. */
 static bool sees_nothing(const struct run_result *result)
 {
     for (int f = 0; f < FIELDS; f++)
@@ -568,7 +571,7 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
                                judged->slab > 0 ? 3 : judged->file.dim, error);
     if (!status && !glance) {
         const int dim = judged->file.dim;
-        if (judged->slab > 0) judged->file.dim = 3; /* in which its densities were summed */
+        if (judged->slab > 0) judged->file.dim = 3; /* densities were summed in 3D */
         status = conventions_find(&judged->file, period, request->kernel < 0 ? NULL : &kernel,
                                   &request->width, &judged->conventions, error);
         judged->file.dim = dim;
@@ -599,7 +602,7 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
             judged->far || judged->case_gamma > 0 || wrong_mass(judged) ||
             (judged->of_start.wrong &&
              (judged->of_start.explained ||
-              judged->of_start.wrong > judged->result.n / 10)); /* few may have moved on */
+              judged->of_start.wrong > judged->result.n / 10)); /* a few may be displaced */
         judged->passes = !judged->foreign || request->allow_far;
         judged->silent = !is_known(&judged->result) && !request->allow_far;
         judged->transverse = measure_noise(judged);

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Mean radius of support in spacings of the particles. */
+/* Mean support radius in units of the particle spacing. */
 static double mean_eta(const struct judged *judged)
 {
     const struct snapshot *s = &judged->result.snapshot;
@@ -29,8 +29,8 @@ static enum status take_kernel(const struct judged *judged, struct settings *set
     return status ? status : settings_set(settings, SETTING_eta, eta, SOURCE_USER, NULL, error);
 }
 
-/* The errors of the snapshot, with the widths of our run at its particles: the file may have none.
- */
+/* Measures the errors of the snapshot, with the smoothing lengths of our run at its particles,
+ * because the file may have none. */
 static enum status look(const struct judged *judged, const struct run *used,
                         struct autopsy_level *level, struct error *error)
 {

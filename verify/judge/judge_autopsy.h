@@ -5,8 +5,8 @@
 #include "autopsy.h"
 #include "judge.h"
 
-/* A level, by the operator of the case and its keys; kernel and number of neighbours are those
- * that the snapshot proves, unless the keys name one. *used: the run that stands for all this.
- * STATUS_BAD_INPUT: as autopsy_check. */
+/* Fills a level with the gradient operator and the keys of the case. Kernel and number of
+ * neighbours are those found from the snapshot, unless the keys set them. *used: the run that
+ * stands for the snapshot. STATUS_BAD_INPUT: as autopsy_check. */
 enum status judge_autopsy(const struct judged *judged, struct autopsy_level *level,
                           struct run *used, struct error *error);

@@ -12,15 +12,16 @@
 
 enum { NAME = 48, SOURCE = 200 };
 
-/* Conservation in `--gates case`: what other codes' starts and float32 may differ by; of angular
- * momentum, which a square box does not conserve to the last bit, where all of the flow turns. */
+/* Bounds of conservation in `--gates case`, wide enough for initial states of other codes and
+ * single precision; turning_bound: angular momentum of rotating flow, which a square box does not
+ * conserve exactly. */
 static const double conserved_bound = 2e-3, turning_bound = 0.02;
-/* A weakness that is known without a number reaches this far beyond the bound. */
+/* A known weakness without a number extends the bound by this factor. */
 static const double weakness = 1.5;
-/* A snapshot within this part of the case's time is at that time. */
+/* Snapshot and case have the same time if they differ by less than this fraction of it. */
 static const double same_time = 0.01;
 
-/* ---- what may be gated ---- */
+/* ---- figures that gates can bound ---- */
 
 static void add_figure(json_t *figures, const char *prefix, const char *name, double value)
 {
@@ -38,7 +39,7 @@ static void add_norms(json_t *figures, const char *name, const struct norms *of)
         add_figure(figures, prefix, field_norm_family.members[norm]->name, values[norm]);
 }
 
-/* {NAME: number, or of an order {"order", "low", "high" ...}}. New reference. */
+/* {NAME: number, or for an order {"order", "low", "high" ...}}. New reference. */
 static json_t *figures_of(const struct judged *judged, size_t n)
 {
     const struct judged *main = judge_main(judged, n);
@@ -116,7 +117,7 @@ static json_t *gate_json(const char *name, const json_t *figure, bool least, dou
     return gate;
 }
 
-/* ---- those that are asked for ---- */
+/* ---- gates of the command line ---- */
 
 static enum status no_such_figure(const json_t *figures, const char *name, struct error *error)
 {
@@ -126,7 +127,7 @@ static enum status no_such_figure(const json_t *figures, const char *name, struc
     json_t *value;
     json_object_foreach((json_t *)figures, key, value) {
         const char *norm = strrchr(key, '_');
-        bool of_field = false; /* said once, with all norms */
+        bool of_field = false; /* listed once, with all norms */
         for (int k = 1; k < NORMS && norm; k++)
             of_field |= strstr(key, field_norm_family.members[k]->name) != NULL;
         if (of_field || used >= sizeof names) continue;
@@ -141,7 +142,8 @@ static enum status no_such_figure(const json_t *figures, const char *name, struc
 
 static enum status ask(const char *text, const json_t *figures, json_t *gates, struct error *error)
 {
-    for (const char *at = text; at && (*at || at == text);) { /* an empty text is refused, too */
+    for (const char *at = text;
+         at && (*at || at == text);) { /* the loop also runs once for an empty text, to refuse it */
         const size_t length = strcspn(at, ","), end = strcspn(at, "<>=");
         const size_t sign = strspn(at + end, "<>=");
         char name[NAME], relation[3] = "", number[40];
@@ -173,9 +175,9 @@ static enum status ask(const char *text, const json_t *figures, json_t *gates, s
     return STATUS_OK;
 }
 
-/* ---- those of the case ---- */
+/* ---- gates of the case ---- */
 
-/* Why the case's bounds say nothing of this snapshot. */
+/* Refuses, with the reason, snapshots to which the case's bounds do not apply. */
 static enum status check_case(const struct judged *main, struct error *error)
 {
     const struct case_file *file = &main->run.asked.file;

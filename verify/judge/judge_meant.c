@@ -7,14 +7,14 @@
 #include "judge.h"
 #include "problem_list.h"
 
-/* Two that are nearer to each other than this tell nothing apart; the time at which a case ends
- * decides between them. */
+/* Two cases whose misfits differ by less are equally good; the cases' end times decide. */
 static const double alike = 1e-3;
-/* Of what is wrong with the case asked for: a case that is far as well is named below this. */
+/* A case that is also far is named only if its misfit is below this fraction of that of the case
+ * asked for. */
 static const double much_nearer = 0.3;
 
-/* The file's box is as long as the case's, but for particles that do not reach its ends; a tube may
- * have any length. */
+/* True if the file's box is as long as the case's, apart from particles that do not reach its ends.
+ * A tube may have any length. */
 static bool same_box(const struct judged *judged, const struct settings *of_case)
 {
     const struct settings *of_file = &judged->run.settings;
@@ -39,8 +39,8 @@ struct candidate {
     bool fieldless, far;
 };
 
-/* What fits comes first; of that, cases of which fields can be compared come before those that are
- * known by one value alone. */
+/* Candidates that fit come first; among them, those with comparable fields come before those judged
+ * by one value. */
 static bool nearer(const struct candidate *a, const struct candidate *b)
 {
     if (!b->name) return true;
@@ -50,7 +50,7 @@ static bool nearer(const struct candidate *a, const struct candidate *b)
     return a->late < b->late;
 }
 
-/* Has the gas about the mass and energy that the case starts with, where that is known? */
+/* True if the gas has about the mass and energy of the case's initial state, or that is unknown. */
 static bool same_content(const struct judged *judged)
 {
     const struct conservation *is = &judged->sums, *was = &judged->start;
@@ -58,7 +58,8 @@ static bool same_content(const struct judged *judged)
            (fabs(is->mass / was->mass - 1) < 0.1 && fabs(is->energy / was->energy - 1) < 0.2);
 }
 
-/* False: the file is not of such a box, gas or dimension, or nothing can be compared. */
+/* Judges the snapshot as this case; false if the box, gas or dimension does not match, or nothing
+ * can be compared. */
 static bool try_case(const char *path, const struct judge_request *request,
                      const struct case_file *file, struct candidate *found)
 {
@@ -82,16 +83,17 @@ static bool try_case(const char *path, const struct judge_request *request,
     return compared;
 }
 
-/* Tries all other built-in cases that fit the dimension, box, gamma and time of a snapshot that is
- * far from the case asked for, or could not be judged as it (sound: false). meant: a question with
- * figures, or that none is near; "" where a snapshot that could not be judged fits none. */
+/* Tries all other built-in cases that match the dimension, box, gamma and time of a snapshot that
+ * is far from the case asked for, or that could not be judged as that case (sound: false). meant: a
+ * question with figures, or a statement that no case is near; "" if a snapshot that could not be
+ * judged fits none. */
 static void find_meant(const char *path, const struct judge_request *request, struct judged *judged,
                        bool sound, char meant[JUDGE_MEANT])
 {
     struct candidate best = {0};
     const char *asked = request->case_name ? request->case_name : judged->file.case_name;
     meant[0] = '\0';
-    if (!request->time.known && !judged->file.time.known) return; /* it fits none */
+    if (!request->time.known && !judged->file.time.known) return; /* without a time no case fits */
     for (const struct case_builtin *c = case_builtins; c->name; c++) {
         struct case_file file;
         struct error ignored = {0};

@@ -39,7 +39,7 @@ static json_t *notes_json(const struct snapshot_notes *notes)
     return list;
 }
 
-/* Null of other times. */
+/* Null unless the snapshot is of t = 0. */
 static json_t *start_json(const struct judge_start *start)
 {
     static const char *const names[START_FIELDS] = {"velocity", "internal_energy", "mass",
@@ -74,14 +74,14 @@ json_t *judge_one_json(const struct judged *judged, bool profiles)
     return one;
 }
 
-/* Adds what was found: {"name", "status", "message"}. */
+/* Adds a finding: {"name", "status", "message"}. */
 static void add_finding(json_t *findings, const char *name, const char *status, const char *message)
 {
     json_array_append_new(findings,
                           result_object("name=%s status=%s message=%s", name, status, message));
 }
 
-/* Of a gate: what was asked for and cannot be told fails, too. */
+/* Adds a gate's finding. A gate of the command line that cannot be decided fails. */
 static void add_gate(json_t *findings, const json_t *gate)
 {
     const char *name = value_text(gate, "name"), *why = value_text(gate, "why"),
@@ -99,7 +99,7 @@ static void add_gate(json_t *findings, const json_t *gate)
     add_finding(findings, name, untold && asked ? finding_words[FINDING_FAIL] : status, text);
 }
 
-/* One of each snapshot and of each gate; and a judgement that compared nothing is not well. */
+/* One finding for each snapshot and each gate, and one that fails if nothing could be compared. */
 static json_t *findings_json(const struct judged *judged, size_t n, const json_t *gates)
 {
     json_t *findings = json_array();
@@ -121,7 +121,7 @@ static json_t *findings_json(const struct judged *judged, size_t n, const json_t
     return findings;
 }
 
-/* Status and headline: gates that fail first; then how many say nothing. */
+/* Adds status and headline: failed gates first, then the number of undecided ones. */
 static void add_conclusion(json_t *document, const json_t *findings, size_t snapshots, size_t gates,
                            const struct judged *main)
 {

@@ -15,7 +15,7 @@ static enum status set_real(struct settings *settings, enum setting key, double 
     return settings_set(settings, key, text, SOURCE_USER, NULL, error);
 }
 
-/* A gamma stored in single precision stands for the short number that it is nearest to. */
+/* Replaces a gamma stored in single precision by the nearest short number. */
 static double unrounded(double gamma)
 {
     const double near[] = {round(gamma * 3) / 3, round(gamma * 1000) / 1000};
@@ -24,7 +24,7 @@ static double unrounded(double gamma)
     return gamma;
 }
 
-/* What P and u say of gamma, if both are stored: 1 + P/(rho u) of the middle one. */
+/* Gamma from P and u, if both are stored: the median of 1 + P/(rho u). */
 static double stored_gamma(const struct snapshot_file *file, double *scatter)
 {
     const double *P = file->column[SNAPSHOT_P], *u = file->column[SNAPSHOT_U],
@@ -91,7 +91,7 @@ static enum status take_time(const struct judge_request *request, struct judged 
 /* ---- the box ---- */
 
 struct box {
-    bool known; /* by the file, or as the case's */
+    bool known; /* from the file, or the case's */
     double lo[3], hi[3];
 };
 
@@ -104,8 +104,8 @@ static void extent(const struct snapshot_file *file, size_t n, int d, double *lo
     }
 }
 
-/* The same of a line of gas whose volumes fill it, with the halves that lie beyond the outermost
- * particles. False, and nothing done, for any other. */
+/* The extent of gas in 1D whose volumes fill a line, including the half spacings beyond the
+ * outermost particles. False, without any effect, for other gas. */
 static bool extent_of_volumes(const struct snapshot_file *file, double *lo, double *hi)
 {
     const double *x = file->column[SNAPSHOT_X], *m = file->column[SNAPSHOT_M],
@@ -123,8 +123,8 @@ static bool extent_of_volumes(const struct snapshot_file *file, double *lo, doub
     return true;
 }
 
-/* Positions all lie in the case's own box and, unless its ends are the user's word, nearly fill it.
- */
+/* True if all positions lie in the case's own box and, unless the user gives the ends, nearly fill
+ * it. */
 static bool fits_case(const struct snapshot_file *file, const struct settings *settings, bool ends)
 {
     const double part = ends ? 0 : 0.8;
@@ -138,8 +138,8 @@ static bool fits_case(const struct snapshot_file *file, const struct settings *s
     return true;
 }
 
-/* Of a liquid between plates, or from a bottom up to a surface: as the file or --box says, else
- * the case's. Particles of walls and of what rises above the surface may lie beyond it. */
+/* The box of a liquid between plates, or from a bottom up to a surface: from the file or --box,
+ * else the case's. Wall particles, and liquid above the surface, may lie outside. */
 static void take_liquid_box(const struct judge_request *request, struct judged *judged,
                             const struct settings *settings, struct box *box)
 {
@@ -196,14 +196,14 @@ static enum status take_box(const struct judge_request *request, struct judged *
         extent(file, file->n, d, &box->lo[d], &box->hi[d]);
         if (file->boxed && inside)
             box->lo[d] = file->corner[d], box->hi[d] = file->corner[d] + file->box[d];
-        else if (file->boxed) { /* as large as the header says, about the middle of the particles */
+        else if (file->boxed) { /* of the header's size, centred on the particles */
             const double middle = 0.5 * (box->lo[d] + box->hi[d]);
             const double snapped = fabs(middle) < 0.05 * file->box[d] ? 0 : middle;
             box->lo[d] = snapped - 0.5 * file->box[d], box->hi[d] = snapped + 0.5 * file->box[d];
         }
     }
     if (!file->boxed && file->gas == file->n && fits_case(file, settings, ends)) {
-        box->known = file->boxed = true; /* and periodic, as nothing else is said */
+        box->known = file->boxed = true; /* and periodic, since nothing says otherwise */
         for (int d = 0; d < file->dim; d++) {
             box->lo[d] = settings_along(settings, SETTING_lo, d);
             box->hi[d] = settings_along(settings, SETTING_hi, d);
@@ -229,8 +229,8 @@ static enum status take_box(const struct judge_request *request, struct judged *
     return STATUS_OK;
 }
 
-/* What a case or a snapshot of ours says of the ends of a tube, as --boundary would. NULL:
- * nothing. */
+/* The boundary that a case file or one of our snapshots gives for a tube, as --boundary takes it.
+ * NULL: none. */
 static const char *case_ends(struct settings *settings)
 {
     struct setting_value *value = &settings->value[SETTING_boundary];
@@ -241,8 +241,8 @@ static const char *case_ends(struct settings *settings)
     return word;
 }
 
-/* Where the two gases met: the box is then about that. A tube that has ends (*ended) has its
- * window, too, and *period becomes 0. */
+/* Finds where the two gases met and centres the box there. For a tube with ends (*ended) also sets
+ * the window, and *period to 0. */
 static enum status place_tube(const struct judge_request *request, struct judged *judged,
                               struct settings *settings, struct box *box, double *period,
                               bool *ended, struct error *error)
@@ -285,8 +285,8 @@ static enum status set_ends(struct settings *settings, enum setting key, const d
     return settings_set(settings, key, text, SOURCE_USER, NULL, error);
 }
 
-/* As --window asks, else as the file says; else that of a run: the case's about its middle, if the
- * box is as long as the case's. */
+/* Sets the window: from --window, else from the file, else that of a run: the case's, about its
+ * middle, if the box is as long as the case's. */
 static enum status set_window(const struct judge_request *request, struct judged *judged,
                               struct settings *settings, const struct box *box, double case_length,
                               double case_middle, struct error *error)
@@ -317,15 +317,15 @@ static enum status set_window(const struct judge_request *request, struct judged
     return settings_set(settings, SETTING_window, text, SOURCE_USER, NULL, error);
 }
 
-/* The first words for so many directions. */
+/* Cuts a text after as many words as there are directions. */
 static void cut_words(char *words, int directions)
 {
     for (char *c = words; *c; c++)
         if (*c == ' ' && --directions == 0) *c = '\0';
 }
 
-/* Layers of a plane's gas: they are judged along x and y. Without a box they are as thick as their
- * volumes make them. */
+/* Takes layers of a planar flow in 3D as a flow in x and y. Without a box their thickness follows
+ * from the volumes. */
 static void take_slab(struct judged *judged)
 {
     struct snapshot_file *file = &judged->file;
@@ -372,7 +372,7 @@ static enum status check_dimension(struct judged *judged, struct run_settings *a
     return STATUS_OK;
 }
 
-/* What a snapshot of ours says beside its columns: boundary, window and keys of the same case. */
+/* Reads the keys that our own snapshots contain: boundary, window and keys of the same case. */
 static enum status take_keys(struct judged *judged, struct settings *settings, struct error *error)
 {
     struct snapshot_file *file = &judged->file;
@@ -398,7 +398,8 @@ static enum status take_keys(struct judged *judged, struct settings *settings, s
 enum status judge_place(const struct judge_request *given, struct judged *judged, double period[3],
                         struct error *error)
 {
-    struct judge_request with_ends = *given; /* and the window, where the case has both */
+    struct judge_request with_ends =
+        *given; /* including the window, if the case has ends and a window */
     const struct judge_request *request = &with_ends;
     struct run_settings asked;
     struct box box;
@@ -422,7 +423,7 @@ enum status judge_place(const struct judge_request *given, struct judged *judged
         return error->status;
     judged->case_dim = asked.file.dimension;
     const struct problem *problem = problem_of(settings);
-    /* what has a form on a line varies along x alone, in any dimension */
+    /* flows that also exist in 1D vary along x alone, in any dimension */
     if (judged->file.dim == 3 && asked.file.dimension == 2 &&
         (problem->least_dim == 2 || problem->circular))
         take_slab(judged);
@@ -473,7 +474,7 @@ enum status judge_place(const struct judge_request *given, struct judged *judged
         judged->case_n *=
             (settings_along(settings, SETTING_hi, d) - settings_along(settings, SETTING_lo, d)) /
             (box.hi[d] - box.lo[d]);
-    if (judged->slab > 0) /* a layer's, if particles stand as far apart in all directions */
+    if (judged->slab > 0) /* number in one layer, if the spacing is the same in all directions */
         judged->case_n *= cbrt((box.hi[0] - box.lo[0]) * (box.hi[1] - box.lo[1]) * judged->slab /
                                (double)judged->file.gas) /
                           judged->slab;

@@ -10,15 +10,16 @@
 #include "problem_list.h"
 #include "start_gas.h"
 
-/* Above this a difference is none of rounding. */
+/* A relative difference above this is more than rounding. */
 #define WRONG    1e-4
-#define MASS_OFF 0.02 /* total masses that differ by less are taken for equal */
+#define MASS_OFF 0.02 /* total masses that differ by less count as equal */
 
 static const char *const names[START_FIELDS] = {"velocity", "internal energy", "mass", "pressure"};
 
-/* ---- what differs ---- */
+/* ---- comparison with the initial state ---- */
 
-/* On a line a particle may also have the mass of the room that it has: spacings may be graded. */
+/* True if, in 1D, the particle's mass fills the space between its neighbours: spacings may be
+ * graded. */
 static bool fills_room(const struct start_gas *gas, size_t i)
 {
     const struct snapshot *s = gas->snapshot;
@@ -30,7 +31,8 @@ static bool fills_room(const struct start_gas *gas, size_t i)
     return room > 0.95 * fmin(before, after) && room < 1.05 * fmax(before, after);
 }
 
-/* Beside a jump particles that were moved keep the state that they had. */
+/* The smallest difference from the exact states near the particle: beside a jump, particles that
+ * were displaced keep their original state. */
 static double least_off(const struct start_gas *gas, enum start_field field, size_t i)
 {
     static const double steps[] = {0.25, 0.5, 1};
@@ -56,7 +58,7 @@ static double median(double *values, size_t n)
     return values[n / 2];
 }
 
-/* Is it all but equal for most? */
+/* The number of values that equal this one apart from rounding. */
 static size_t near(const double *values, size_t n, double value)
 {
     size_t count = 0;
@@ -64,8 +66,8 @@ static size_t near(const double *values, size_t n, double value)
     return count;
 }
 
-/* The densities that the case's gas has, if they are few, and the middle mass of each; false: they
- * are many, or in one of them most masses differ. */
+/* Finds the densities of the case's gas and the median particle mass of each; false if there are
+ * too many densities, or if most masses of one density differ. */
 static bool find_gases(struct start_gas *gas, double *room)
 {
     const struct snapshot *s = gas->snapshot;
@@ -85,8 +87,8 @@ static bool find_gases(struct start_gas *gas, double *room)
     return true;
 }
 
-/* Lattices that fill the sides of a jump have masses that are but nearly equal, and those of a tube
- * may be any; else one gas that is off is wrong. */
+/* True if the masses of all densities are plausible. Lattices on the two sides of a jump have only
+ * nearly equal masses, and those of a tube are free; otherwise one deviating density is wrong. */
 static bool gases_fit(const struct start_gas *gas)
 {
     bool fit = true;
@@ -99,16 +101,17 @@ static bool gases_fit(const struct start_gas *gas)
     return fit;
 }
 
-/* The mass, or volume, that particles should have, how many have it, and whether it was found from
- * the case's total mass. */
+/* The mass or volume that particles should have, how many have it, and whether it follows from the
+ * case's total mass. */
 struct right_value {
     double value;
     size_t count;
     bool of_whole;
 };
 
-/* The median, which is right unless most particles are wrong. If the total mass is not the case's
- * they may be: then `right`, the value that makes up the case's total, if any particle has it. */
+/* The median, which is right unless most particles are wrong. If the total mass differs from the
+ * case's, they may be: then `right`, the value that gives the case's total, if any particle has
+ * it. */
 static struct right_value find_right(double *values, size_t n, double right, bool mass_is_off)
 {
     const bool of_whole = mass_is_off && near(values, n, right);
@@ -116,8 +119,8 @@ static struct right_value find_right(double *values, size_t n, double right, boo
     return (struct right_value){value, near(values, n, value), of_whole};
 }
 
-/* Finds whether masses are equal, or volumes, or the masses of each gas; false if none are. ratio:
- * the file's total mass over the case's; NaN where the box is not closed. */
+/* Finds whether masses are equal, or volumes, or the masses of each density; false if none are.
+ * ratio: the file's total mass over the case's; NaN if the box is not closed. */
 static bool measure_masses(struct start_gas *gas, double ratio, double *room)
 {
     const struct snapshot *s = gas->snapshot;
@@ -140,7 +143,8 @@ static bool measure_masses(struct start_gas *gas, double ratio, double *room)
     return right->of_whole || 2 * right->count > s->n;
 }
 
-/* Does the file say so of most particles? Some codes have a pressure of their own. */
+/* True if the pressures of most particles follow from density and energy. Some codes store a
+ * pressure of their own. */
 static bool pressures_follow(const struct start_gas *gas)
 {
     size_t count = 0;
@@ -162,7 +166,7 @@ static void measure_gas(struct start_gas *gas)
     if (!(gas->speed > 1e-12 * sound)) gas->speed = sound;
 }
 
-/* ---- what is said ---- */
+/* ---- messages ---- */
 
 static size_t count_wrong(const struct start_gas *gas, unsigned fields)
 {
@@ -171,7 +175,7 @@ static size_t count_wrong(const struct start_gas *gas, unsigned fields)
     return count;
 }
 
-/* One sentence about the particles of which one of these fields is wrong. */
+/* A sentence about the particles with a wrong value in one of these fields. */
 static void say(const struct start_gas *gas, unsigned fields, const char *what, const char *cause,
                 char *text, size_t size)
 {
@@ -185,7 +189,7 @@ static void say(const struct start_gas *gas, unsigned fields, const char *what, 
              cause);
 }
 
-/* False: of some field nothing explains what is wrong. */
+/* Describes the cause of each wrong field; false if some field has no known cause. */
 static bool explain(const struct start_gas *gas, char *text, size_t size)
 {
     bool explained = true;
@@ -208,8 +212,9 @@ static bool explain(const struct start_gas *gas, char *text, size_t size)
     return explained;
 }
 
-/* Is nearly each wrong particle no further from the gas of its place than a spacing makes?
- * Particles that are moved at random keep the mass that they had, and in flows with jumps all. */
+/* True if nearly every wrong particle differs from the exact state by no more than a displacement
+ * of one spacing causes. Particles that were displaced at random keep their mass and, in flows with
+ * jumps, their whole state. */
 static bool are_moved(const struct start_gas *gas)
 {
     enum { PER_CENT = 100 };
@@ -244,7 +249,7 @@ static bool are_moved(const struct start_gas *gas)
     return PER_CENT * moved >= 98 * wrong;
 }
 
-/* All masses are so many times the case's: each for itself looks right. */
+/* Reports masses that all differ from the case's by one factor; each alone looks right. */
 static void look_at_all_mass(const struct start_gas *gas, double ratio, struct judge_start *start)
 {
     if (start->wrong || !(fabs(ratio - 1) > MASS_OFF)) return;

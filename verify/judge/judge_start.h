@@ -10,16 +10,17 @@
 enum start_field { START_VELOCITY, START_ENERGY, START_MASS, START_PRESSURE, START_FIELDS };
 
 struct judge_start {
-    bool looked; /* it is of t = 0, and of a case whose start is known */
-    /* Worst difference: of velocities over the greatest, else over the value itself; of masses from
-     * equal ones, or from density times a volume that is equal. NaN: not known. */
+    bool looked; /* the snapshot is of t = 0, and the case has a known start */
+    /* Worst relative difference: of velocities over the greatest speed, of other fields over the
+     * exact value; of masses from equal masses, or from density times an equal volume. NaN:
+     * unknown. */
     double worst[START_FIELDS];
-    size_t wrong; /* particles */
+    size_t wrong; /* number of particles with a wrong value */
     bool explained;
     char message[500];
 };
 
-/* precision: of what the file stores beside positions. mass_ratio: all mass over the case's; NaN:
- * not known. STATUS_ENVIRONMENT: no memory. */
+/* precision: relative rounding of what the file stores besides positions. mass_ratio: total mass
+ * over the case's; NaN: unknown. STATUS_ENVIRONMENT: no memory. */
 enum status judge_start_look(const struct run_result *result, double precision, double mass_ratio,
                              struct judge_start *start, struct error *error);

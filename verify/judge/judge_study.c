@@ -7,7 +7,7 @@
 #include "order.h"
 #include "result.h"
 
-/* More particles; of as many, later; of one time, whichever comes first. */
+/* True if a has more particles than b, or as many and a later time. */
 static bool better(const struct judged *a, const struct judged *b)
 {
     return a->result.n > b->result.n ||
@@ -22,7 +22,8 @@ const struct judged *judge_main(const struct judged *judged, size_t n)
     return best;
 }
 
-/* The first and the last of as many particles; of several numbers, the most that have two times. */
+/* Finds the first and the last snapshot with one number of particles, the largest that has two
+ * times. */
 bool judge_drift(const struct judged *judged, size_t n, struct trace_drift *drift, size_t pair[2])
 {
     const struct judged *start = NULL, *end = NULL;
@@ -43,7 +44,8 @@ bool judge_drift(const struct judged *judged, size_t n, struct trace_drift *drif
     return true;
 }
 
-/* From the first to the last of a pair, all of as many particles, each time once. */
+/* Takes the snapshots from the first to the last of the pair with the same number of particles,
+ * each time once. */
 static void take_trace(const struct judged *judged, size_t n, const size_t pair[2],
                        struct trace *trace)
 {
@@ -90,7 +92,7 @@ json_t *judge_conservation(const struct judged *judged, size_t n, struct trace *
 
 /* ---- orders ---- */
 
-/* Fewest first; of as many, the last one. */
+/* Fewest particles first; for equal numbers the latest first. */
 static int by_number(const void *a, const void *b)
 {
     const struct judged *one = *(const struct judged *const *)a,
@@ -99,7 +101,7 @@ static int by_number(const void *a, const void *b)
     return better(one, other) ? -1 : better(other, one) ? 1 : (one > other) - (one < other);
 }
 
-/* The last one of each number of particles, fewest first. */
+/* The last snapshot of each number of particles, fewest first. */
 static size_t levels_of(const struct judged *judged, size_t n, const struct judged **levels)
 {
     size_t count = 0;

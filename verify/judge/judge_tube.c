@@ -7,17 +7,17 @@
 
 #include "riemann.h"
 
-/* How near to an end gas is asked whether it is undisturbed, over the length of the tube; how far
- * it may be off, over density and sound speed; and how far sound must have come to tell anything.
- */
+/* near_end: the gas within this fraction of the tube's length from an end is tested; undisturbed:
+ * the largest change that counts as none, relative to density and sound speed; far_enough: the
+ * fraction of the length that sound must have travelled before the test means anything. */
 static const double near_end = 0.02, undisturbed = 0.03, far_enough = 0.05;
-/* No signal, reflected ones among them, is faster than this times the greatest |v| + c. */
+/* No signal, reflected ones included, is faster than this times the greatest |v| + c. */
 static const double safety = 1.5;
 
 struct tube {
     struct riemann_solution main;
     double time;
-    double fastest; /* of all signals */
+    double fastest; /* the fastest signal */
 };
 
 static double sound(const struct riemann_solution *s, const struct riemann_state *gas)
@@ -35,7 +35,7 @@ static double fastest_of(const struct riemann_solution *s)
     double most = 0;
     for (size_t i = 0; i < (s->vacuum ? 2 : 4); i++)
         most = fmax(most, fabs(states[i].v) + sound(s, &states[i]));
-    for (size_t i = 0; i < 4; i++) most = fmax(most, fabs(heads[i])); /* NaN is passed over */
+    for (size_t i = 0; i < 4; i++) most = fmax(most, fabs(heads[i])); /* fmax ignores NaN */
     return most;
 }
 
@@ -56,8 +56,8 @@ static bool solve(const struct settings *settings, struct tube *tube)
     return true;
 }
 
-/* Is the gas near one end as it was, but for noise of its particles? False where hardly anything is
- * there. */
+/* True if the gas near one end is unchanged apart from particle noise. False where there is hardly
+ * any gas. */
 static bool still_there(const struct judged *judged, const struct tube *tube, const double ends[2],
                         int side)
 {
@@ -68,7 +68,7 @@ static bool still_there(const struct judged *judged, const struct tube *tube, co
     const double reach = near_end * (ends[1] - ends[0]), c = sound(&tube->main, gas);
     double there = 0, of_v = 0, of_rho = 0;
     for (size_t i = 0; i < file->n; i++) {
-        /* density is often lower at an end, where a code sums over half a neighbourhood */
+        /* density is often too low at an end, where the neighbourhood is cut in half */
         const double from = fabs(x[i] - ends[side]);
         if (!(from <= 2 * reach && from >= reach / 2)) continue;
         there++, of_v += v[i] - gas->v, of_rho += rho ? rho[i] - gas->rho : 0;
@@ -99,8 +99,8 @@ bool judge_tube_ends(const struct judge_request *request, struct judged *judged,
     return true;
 }
 
-/* How far from one end waves may have come: those that the end makes of gas that moves, or sends
- * back once they have arrived. */
+/* Distance from one end that waves may have reached: waves that the end excites in moving gas, and
+ * waves reflected there. */
 static double spoilt(const struct tube *tube, double x0, const double ends[2], int side)
 {
     const struct riemann_state *gas = side ? &tube->main.right : &tube->main.left;

@@ -8,11 +8,11 @@
 #include "oracle.h"
 #include "worst.h"
 
-enum { ORACLE_MOST = 1500 }; /* particles: it looks at all pairs */
+enum { ORACLE_MOST = 1500 }; /* particles; the oracle sums over all pairs */
 
 static const char *const names[RATE_COLUMNS] = {"h", "rho", "P", "ax", "ay", "az", "du"};
 
-/* A quantity of a particle as the file has it. */
+/* The value of a particle in this column of the file. */
 static double value(const struct rate_table *table, const double *m, int column, size_t i)
 {
     switch (column) {
@@ -29,7 +29,7 @@ static double value(const struct rate_table *table, const double *m, int column,
     }
 }
 
-/* What differences of a column are relative to. */
+/* The scale by which differences of a column are divided. */
 static double scale_of(const struct rate_table *table, const double *m, int column, size_t i)
 {
     if (column < 3) return fabs(value(table, m, column, i));
@@ -48,7 +48,7 @@ static double relative(double difference, double scale)
     return difference == 0 ? 0 : difference / scale;
 }
 
-/* Fills all but the cause; particle, where nothing differs, stays 0. */
+/* Fills everything except the cause. The particle stays 0 if nothing differs. */
 static void compare(struct rate_comparison *c, const double *theirs, const struct rate_table *ours,
                     const double *m, int column)
 {
@@ -160,17 +160,17 @@ static const struct {
     {open_box, "boundary: theirs is open"},
 };
 
-/* A difference is explained by what makes it as small as asked for, or a thousand times smaller;
- * one beyond all bounds, beside rates of 0, only by the former. */
+/* A cause explains a difference if it reduces the difference to the tolerance or by a factor of
+ * 1000. An infinite difference, relative to rates of 0, must fall to the tolerance. */
 static double near_enough(const struct rate_comparison *c, double tolerance)
 {
     return isinf(c->worst) ? tolerance : fmax(tolerance, 1e-3 * c->worst);
 }
 
-/* Names this cause for what it explains better than what was named before. left: what is left of
- * each column's difference with the cause that is named, INFINITY before the first one; a column
- * that has a cause all the same keeps it. Where the eta of theirs is open by a part, a difference
- * as small as that part is explained, too, if nine tenths of it are. */
+/* Names this cause for the columns that it explains better than the cause named so far. left: the
+ * remaining difference of each column with the cause named so far, INFINITY before the first; a
+ * column keeps a cause that explains as much. open: relative uncertainty of the other code's eta; a
+ * difference of that size also counts as explained if the cause removes nine tenths of it. */
 static void propose_better(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
                            const struct rate_table *changed, const double *m, double tolerance,
                            double open, double left[RATE_COLUMNS], const char *cause)
@@ -191,7 +191,7 @@ static void leave_all(double left[RATE_COLUMNS])
     for (int k = 0; k < RATE_COLUMNS; k++) left[k] = INFINITY;
 }
 
-/* Names this cause for what it explains and has none yet. */
+/* Names this cause for the columns that it explains and that have no cause yet. */
 static void propose(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
                     const struct rate_table *changed, const double *m, double tolerance,
                     const char *cause)
@@ -201,12 +201,11 @@ static void propose(struct rate_check *check, const double *const theirs[RATE_CO
     propose_better(check, theirs, changed, m, tolerance, 0, left, cause);
 }
 
-/* Other codes find h to 1e-4 or so. The eta of their particles may scatter by this part of itself.
- */
+/* Other codes iterate h to 1e-4 or so. Their particles' eta may scatter by this fraction. */
 static const double eta_known = 2e-3;
 
-/* The eta that their widths and densities have in common; open: the part of itself by which it
- * scatters. Ours where they have none in common. */
+/* The eta that the other code's smoothing lengths and densities have in common; ours if they have
+ * none. open: its relative scatter. */
 static double their_eta(const double *const theirs[RATE_COLUMNS], const struct setup *setup,
                         double *open)
 {
@@ -223,7 +222,8 @@ static double their_eta(const double *const theirs[RATE_COLUMNS], const struct s
     return eta;
 }
 
-/* Another kernel, the one that explains most, with our eta or theirs; or that eta alone. */
+/* Proposes another kernel, the one that explains most, with our eta or the other code's; or that
+ * eta alone. */
 static void propose_kernels(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
                             const struct setup *setup, double tolerance)
 {
@@ -251,7 +251,7 @@ static void propose_kernels(struct rate_check *check, const double *const theirs
     }
 }
 
-/* Rates without grad-h factors: the solver has no such choice, the oracle has. */
+/* Proposes rates without grad-h factors, which the oracle can compute and the solver cannot. */
 static void propose_no_grad_h(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
                               const struct setup *setup, const struct rate_table *ours,
                               double tolerance)
@@ -279,7 +279,7 @@ static void propose_no_grad_h(struct rate_check *check, const double *const thei
     oracle_free(&oracle);
 }
 
-/* Differences that show in the numbers themselves: a factor, a term that is left out. */
+/* Finds causes that the numbers themselves show: a constant factor, a missing term. */
 static void explain_plainly(struct rate_comparison *c, const double *theirs, int column,
                             const struct setup *setup, const struct rate_table *ours,
                             double tolerance)
@@ -328,7 +328,7 @@ static void find_causes(struct rate_check *check, const double *const theirs[RAT
     }
     propose_no_grad_h(check, theirs, setup, ours, tolerance);
     propose_kernels(check, theirs, setup, tolerance);
-    const char *first = NULL; /* that is wrong; what comes after it follows from it */
+    const char *first = NULL; /* first wrong column; the later ones follow from it */
     for (size_t k = 0; k < check->count; k++) {
         struct rate_comparison *c = &check->columns[k];
         const int column = c->column;

@@ -9,12 +9,12 @@
 enum { RATE_COLUMNS = 7, RATE_CAUSE = 160 };
 
 struct rate_comparison {
-    int column;           /* 0 to 6: */
+    int column;           /* 0 to 6, named by */
     const char *quantity; /* h rho P ax ay az du */
     double worst, rms; /* |theirs - ours|, relative: h, rho, P to ours, a and du to the largest */
     size_t particle;   /* the worst one, from 0 */
     bool good;
-    char cause[RATE_CAUSE]; /* "" where nothing explains the difference, or there is none */
+    char cause[RATE_CAUSE]; /* "" if nothing differs or no cause is known */
 };
 
 struct rate_check {
@@ -23,8 +23,8 @@ struct rate_check {
     bool good;
 };
 
-/* Compares the columns of THEIRS.csv with the table of the setup. STATUS_BAD_INPUT: none of the
- * columns, or another number of rows. */
+/* Compares the columns of THEIRS.csv with the table of the setup. STATUS_BAD_INPUT: no known
+ * column, or a different number of rows. */
 enum status rate_check_make(struct rate_check *check, const char *path, const struct csv *theirs,
                             const struct setup *setup, const struct rate_table *ours,
                             double tolerance, struct error *error);

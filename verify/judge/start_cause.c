@@ -10,7 +10,7 @@
 
 enum { PER_CENT = 100 };
 
-/* ---- how many ---- */
+/* ---- number of particles in words ---- */
 
 void start_share(size_t part, size_t n, char *text, size_t size)
 {
@@ -28,9 +28,9 @@ void start_share(size_t part, size_t n, char *text, size_t size)
     if (part == 1) snprintf(text, size, "one");
 }
 
-/* ---- where ---- */
+/* ---- position of the wrong particles in words ---- */
 
-/* Particles in the order of one number each. */
+/* Particles sorted by one coordinate. */
 struct rank {
     double at;
     bool wrong;
@@ -42,7 +42,8 @@ static int by_number(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* From the first to the last that is wrong, if hardly any between them is right. */
+/* Names the range from the first to the last wrong particle, if hardly any particle in it is
+ * right. */
 static bool name_range(struct rank *rank, size_t n, const char *what, char *text, size_t size)
 {
     size_t first = 0, last = n - 1, right = 0;
@@ -62,7 +63,7 @@ static bool name_range(struct rank *rank, size_t n, const char *what, char *text
     return true;
 }
 
-/* Every so many rows of the file. */
+/* Names a constant stride between the wrong rows of the file. */
 static bool name_stride(const struct start_gas *gas, unsigned fields, char *text, size_t size)
 {
     const size_t n = gas->snapshot->n;
@@ -78,13 +79,13 @@ static bool name_stride(const struct start_gas *gas, unsigned fields, char *text
     return true;
 }
 
-/* What particles can be put in order by. */
+/* Coordinates by which particles can be sorted. */
 enum way { WAY_X, WAY_Y, WAY_Z, WAY_RADIUS, WAY_ROW, WAYS };
 
 static bool has_way(const struct problem *problem, int dim, enum way way)
 {
     if (way == WAY_RADIUS) return problem->circular;
-    return way == WAY_ROW ? dim > 1 : (int)way < dim; /* in 1D rows are as good as x */
+    return way == WAY_ROW ? dim > 1 : (int)way < dim; /* in 1D rows say no more than x */
 }
 
 static double along(const struct start_gas *gas, enum way way, size_t i)
@@ -115,7 +116,7 @@ void start_place(const struct start_gas *gas, unsigned fields, char *text, size_
 
 /* ---- wrong values ---- */
 
-/* Share of the wrong particles of which the value is near. */
+/* Share of the wrong particles with a value close to the expected one. */
 typedef double expected(const struct start_gas *gas, size_t i, double factor);
 
 static bool fits(const struct start_gas *gas, enum start_field field, const double *value,
@@ -181,7 +182,7 @@ static const struct {
              {START_MASS, exact_density, "the density"},
              {START_MASS, exact_energy, "the internal energy"}};
 
-/* The middle one of the factors between the values and what they should be; NaN: there is none. */
+/* Median of the ratios of the values to the expected ones; NaN if there are none. */
 static double factor_of(const struct start_gas *gas, enum start_field field, const double *value,
                         expected *value_of)
 {
@@ -217,7 +218,7 @@ static bool scalar_cause(const struct start_gas *gas, enum start_field field, ch
         snprintf(text, size, "it is the mass, or another multiple of the density");
     if (!*text && isfinite(factor) && fits(gas, field, value, exact, factor))
         snprintf(text, size, "it is %.4g times %s", factor, should);
-    if (!*text) { /* a constant more, from the first that is wrong */
+    if (!*text) { /* a constant offset, measured at the first wrong particle */
         double more = 0;
         size_t i = 0, all = 0, near = 0;
         while (i < s->n && !(gas->wrong[i] & 1u << field)) i++;
@@ -234,7 +235,8 @@ static bool scalar_cause(const struct start_gas *gas, enum start_field field, ch
     return *text;
 }
 
-/* Fits of velocities: the case's, turned and multiplied, or with something added. */
+/* True if nearly all wrong velocities are the case's with axes `from`, times the factor (and the
+ * density if `density`), plus `more`. */
 static bool fits_velocity(const struct start_gas *gas, const int from[3], double factor,
                           const double more[3], bool density)
 {
@@ -275,7 +277,8 @@ static bool velocity_cause(const struct start_gas *gas, char *text, size_t size)
     }
     for (int d = 0; d < dim && first < gas->snapshot->n; d++)
         more[d] = gas->snapshot->v[d][first] - gas->exact[first].v[d];
-    const double factor = product / square; /* NaN, which fits nothing, where all rests */
+    const double factor =
+        product / square; /* NaN, which fits nothing, if the exact gas is at rest */
     if (fits_velocity(gas, same, 0, none, false)) return snprintf(text, size, "it is 0") > 0;
     for (int k = 0; k < dim * (dim - 1) / 2; k++)
         if (fits_velocity(gas, turns[k], 1, none, false))
@@ -299,9 +302,9 @@ bool start_cause(const struct start_gas *gas, enum start_field field, char *text
                                    : scalar_cause(gas, field, text, size);
 }
 
-/* ---- other places ---- */
+/* ---- states of other positions ---- */
 
-/* Particles to try places with. */
+/* Particles for which displacements are tried. */
 struct trial {
     const struct start_gas *gas;
     size_t n, id[96];
@@ -319,7 +322,8 @@ static void take(struct trial *trial, bool all)
         if ((all || gas->wrong[i]) && wrong++ % stride == 0) trial->id[trial->n++] = i;
 }
 
-/* How badly the particles have the gas of where they would be: 0 to 1, and how many have it. */
+/* Mean misfit, from 0 to 1, of the particles displaced by `by`; *near: the number of those that
+ * fit. */
 static double miss(const struct trial *trial, const double by[3], double limit, size_t *near)
 {
     const struct start_gas *gas = trial->gas;
@@ -344,7 +348,7 @@ static double miss(const struct trial *trial, const double by[3], double limit, 
     return sum / (double)trial->n;
 }
 
-/* From the best place of a grid downhill. */
+/* Pattern search for the least misfit from the best grid point. */
 static size_t settle(const struct trial *trial, double by[3], double step)
 {
     const int dim = trial->gas->problem->domain.dim;
@@ -367,7 +371,7 @@ static size_t settle(const struct trial *trial, double by[3], double step)
     return near;
 }
 
-/* The shift that explains the particles best; true: nearly all of them. */
+/* Finds the shift that explains the particles best; true if it explains nearly all of them. */
 static bool find_shift(const struct trial *trial, double by[3])
 {
     enum { SIDE_LINE = 480, SIDE_PLANE = 40, SIDE_SPACE = 12, KEPT = 3 };
@@ -401,7 +405,8 @@ static bool find_shift(const struct trial *trial, double by[3])
     return false;
 }
 
-/* Have nearly all wrong particles the state of where x and y exchanged, or a mirror, put them? */
+/* True if nearly all wrong particles have the exact state of the position with x and y exchanged,
+ * or of the mirrored position. */
 static bool turned(const struct start_gas *gas, int mirror)
 {
     const struct domain *box = &gas->problem->domain;
@@ -437,7 +442,7 @@ bool start_cause_places(const struct start_gas *gas, char *text, size_t size)
         take(&trial, all);
         if (!find_shift(&trial, by)) continue;
         size_t near;
-        take(&trial, false); /* all may be most that are right anyway */
+        take(&trial, false); /* a sample of all particles may consist mostly of right ones */
         miss(&trial, by, 1, &near);
         if (PER_CENT * near < 95 * trial.n) continue;
         snprintf(text, size,

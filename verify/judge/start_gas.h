@@ -10,42 +10,43 @@ struct start_gas {
     const struct prepared *problem;
     const struct snapshot *snapshot;
     double spacing;
-    struct problem_state *exact; /* of the case, where each particle is */
+    struct problem_state *exact; /* the case's exact state at each particle's position */
     double (*x)[3];
-    unsigned *wrong;     /* a bit for each start_field */
-    double speed;        /* the greatest of the case; where all rests, of sound */
-    double volume, mass; /* that all have; volume 0: masses are equal */
-    /* Of gas of few densities: what each has the particles of. */
+    unsigned *wrong;     /* per particle, one bit for each start_field */
+    double speed;        /* greatest speed of the case; the sound speed if all gas is at rest */
+    double volume, mass; /* common to all particles; volume 0: masses are equal */
+    /* If the gas has only a few densities: the particle mass of each density. */
     size_t gases;
     struct {
         double rho, mass;
     } of[START_GASES_MAX];
 };
 
-/* Are they equal to this part of b? */
+/* True if |a - b| is at most tolerance times |b|. */
 bool start_alike(double a, double b, double tolerance);
 
-/* The difference as a part of the exact value; where that is 0, 1 for any other value. */
+/* The difference relative to the exact value; where the exact value is 0, 1 for any other value. */
 double start_relative(double value, double exact);
 
-/* The mass that a particle should have in gas so dense. */
+/* The mass that a particle of gas with density rho should have. */
 double start_mass(const struct start_gas *gas, double rho);
 
-/* What its own density and energy make of its pressure. */
+/* The pressure of particle i from the file's density and energy. */
 double start_pressure(const struct start_gas *gas, size_t i);
 
-/* How far the field of particle i is from that state, as judge_start.h has it. */
+/* Difference between the field of particle i and the exact state, as defined in judge_start.h. */
 double start_off(const struct start_gas *gas, enum start_field field, size_t i,
                  const struct problem_state *exact);
 
-/* "a quarter". */
+/* Writes the share in words, such as "a quarter". */
 void start_share(size_t part, size_t n, char *text, size_t size);
 
-/* ", at x > 1": where those are of which one of these fields is wrong. */
+/* Writes where these fields are wrong, such as ", at x > 1". */
 void start_place(const struct start_gas *gas, unsigned fields, char *text, size_t size);
 
-/* What the wrong values of a field are; false: nothing simple. */
+/* Writes what the wrong values of a field are; false if no simple rule describes them. */
 bool start_cause(const struct start_gas *gas, enum start_field field, char *text, size_t size);
 
-/* Are all particles, or those that are wrong, those of other places? */
+/* True if all particles, or all wrong ones, have the states of other positions, which text
+ * names. */
 bool start_cause_places(const struct start_gas *gas, char *text, size_t size);

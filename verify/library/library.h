@@ -10,11 +10,11 @@
 
 struct sphproof_kernel {
     struct kernel kernel;
-    int dim; /* the only one; 0: all */
+    int dim; /* the only dimension; 0: all */
     bool negative, single, found_class;
 };
 
-/* Hands an error on; theirs may be NULL. Returns the status. */
+/* Copies an error to the caller's; theirs may be NULL. Returns the status. */
 enum sphproof_status library_pass(enum status status, const struct error *ours,
                                   struct sphproof_error *theirs);
 
@@ -22,7 +22,7 @@ enum sphproof_status library_pass(enum status status, const struct error *ours,
 enum sphproof_status library_fail(struct sphproof_error *theirs, enum status status,
                                   const char *format, ...) __attribute__((format(printf, 3, 4)));
 
-/* Figures on their way to the user: counts those that fail, and keeps the first in error. */
+/* Passes figures to the user's sink, counts failures and keeps the first one in error. */
 struct library_figures {
     sphproof_figure_sink *sink; /* may be NULL */
     void *context;

@@ -14,7 +14,7 @@ enum sphproof_status sphproof_convergence_norms(size_t n, const double *volume, 
 {
     static const double window[2] = {0, 0};
     if (n == 0) return library_fail(error, STATUS_BAD_INPUT, "norms of no values");
-    double *room = calloc(2 * n, sizeof *room); /* places, all in the window; equal volumes */
+    double *room = calloc(2 * n, sizeof *room); /* positions, all in the window; equal volumes */
     if (!room) return library_fail(error, STATUS_ENVIRONMENT, "no memory for %zu values", n);
     for (size_t i = 0; i < n; i++) room[n + i] = 1;
     const struct norms found =

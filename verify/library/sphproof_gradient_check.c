@@ -13,11 +13,11 @@
 
 enum { LEVELS = 5, SEEDS = 2, PLACE = 80 };
 
-/* Of figures that should vanish up to rounding, in units of max|f|/h; matrices of disordered clouds
- * cost some digits. */
+/* Bound and floor of errors that vanish up to rounding, in units of max|f|/h; matrices of
+ * disordered clouds lose some digits. */
 #define BOUND 1e-9
 #define FLOOR 1e-14
-/* A measured order may fall short of its promise by its scatter. */
+/* A measured order scatters and may be this much below the promised one. */
 #define ORDER_SLACK 0.2
 
 struct trial {
@@ -29,13 +29,13 @@ struct trial {
     bool refused, no_memory;
 };
 
-/* A cloud, a field on it, and room for gradients; component a of point i at a * n + i. */
+/* A cloud, a field on it and work arrays for gradients; component a of point i at a * n + i. */
 struct sample {
     struct clouds_settings settings;
     struct clouds_cloud cloud;
-    bool *inside;                        /* its support within the cloud as it was made */
+    bool *inside; /* per point: its support is within the cloud as generated */
     double *f, *exact, *g, *other, *sum; /* f: n; the others n * dim */
-    double largest;                      /* |f| */
+    double largest;                      /* max |f| */
 };
 
 static void sample_free(struct sample *sample)
@@ -69,7 +69,7 @@ static bool sample_make(struct trial *trial, const struct clouds_settings *setti
     return true;
 }
 
-/* The user's gradients of f; what is not filled is NaN. */
+/* The user's gradients of f; components that are not filled stay NaN. */
 static void apply(struct trial *trial, const struct sample *sample, const double *f, double *to)
 {
     const size_t n = sample->cloud.cloud.points.n;
@@ -84,7 +84,7 @@ static void apply(struct trial *trial, const struct sample *sample, const double
     if (!trial->gradients(trial->context, &cloud, f, gradient)) trial->refused = true;
 }
 
-/* Largest |a - b| h / max|f| of the points inside. */
+/* Largest |a - b| h / max|f| of the interior points. */
 static double difference(const struct sample *sample, const double *a, const double *b)
 {
     const size_t n = sample->cloud.cloud.points.n;
@@ -134,7 +134,7 @@ static void check_exactness(struct trial *trial)
         }
 }
 
-/* Root mean square error of a smooth field inside, over a few disordered clouds. */
+/* Rms error of a smooth field in the interior, over a few disordered clouds. */
 static double smooth_error(struct trial *trial, size_t side)
 {
     double sum = 0, count = 0;
@@ -175,7 +175,7 @@ static void check_order(struct trial *trial)
          trial->promise->order - fit.order, ORDER_SLACK);
 }
 
-/* A rotation about no axis of the lattice; -1 in 1D. */
+/* A rotation that maps no lattice axis to another; -1 in 1D. */
 static void rotation_make(int dim, double R[9])
 {
     const double c = cos(0.7), s = sin(0.7), e = cos(1.9), t = sin(1.9);
@@ -194,7 +194,7 @@ static void turn(const struct sample *sample, const double *R)
                 sample->other[a * n + i] += R[a * dim + b] * sample->g[b * n + i];
 }
 
-/* The cloud is moved by the matrix R and the shift; gradients go along, by R/unit^2. */
+/* Moves the cloud by the matrix R and the shift; gradients must transform by R/unit^2. */
 static void check_move(struct trial *trial, const char *property, const char *formula,
                        const double R[9], double unit, const double shift[3])
 {
@@ -235,7 +235,7 @@ static void check_moves(struct trial *trial)
                    unit, nowhere);
 }
 
-/* Same input, same output; and linear in the field. */
+/* Checks that equal inputs give equal outputs, and linearity in the field. */
 static void check_field(struct trial *trial)
 {
     static const double a = 2.385, b = -0.71;
@@ -249,7 +249,8 @@ static void check_field(struct trial *trial)
         apply(trial, &sample, sample.f, sample.sum);
         tell(trial, "repeats", "same input, same gradient, bit for bit", where,
              memcmp(sample.g, sample.sum, all * sizeof *sample.g) == 0 ? 0 : 1, 0);
-        double *const f = sample.exact; /* not needed: another field, the sum of both */
+        double *const f =
+            sample.exact; /* exact is free: it holds another field, then the sum of both */
         for (size_t i = 0; i < n; i++) f[i] = cos(3 * sample.f[i]);
         apply(trial, &sample, f, sample.other);
         for (size_t k = 0; k < all; k++) sample.other[k] = a * sample.g[k] + b * sample.other[k];

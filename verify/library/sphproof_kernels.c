@@ -69,7 +69,7 @@ static enum sphproof_status check_shape(const struct kernel *kernel, int dim,
                         kernel->member.name, dim);
 }
 
-/* The constant and the class where they are not declared. */
+/* Finds the constant and the class if they are not declared. */
 static enum sphproof_status complete(struct sphproof_kernel *own, int dim, int smoothness,
                                      struct sphproof_error *error)
 {

@@ -13,7 +13,7 @@ struct sphproof_simulation {
     double time;
 };
 
-/* The scheme that the keys stand for; nothing but the scheme is theirs to say. */
+/* Makes the scheme from the keys, which may set nothing but the scheme. */
 static enum status take_keys(const struct sphproof_setup *theirs, bool sharp, struct scheme *scheme,
                              struct error *error)
 {
@@ -125,7 +125,7 @@ enum sphproof_status sphproof_simulations_run(struct sphproof_simulation *simula
     return library_pass(status, &ours, error);
 }
 
-/* From the solver's order into the setup's. */
+/* Copies from the solver's order to the setup's. */
 static void put(double *to, const double *from, const struct snapshot *s)
 {
     for (size_t k = 0; to && k < s->n; k++) to[s->id[k]] = from[k];

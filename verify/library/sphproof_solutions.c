@@ -10,7 +10,7 @@
 #include "simple_wave.h"
 #include "vortex.h"
 
-/* What is wrong, if anything. */
+/* Sets the error if there is a text. */
 static enum sphproof_status fault(const char *text, struct sphproof_error *error)
 {
     return text ? library_fail(error, STATUS_BAD_INPUT, "%s", text) : SPHPROOF_OK;
@@ -85,7 +85,7 @@ enum sphproof_status sphproof_solutions_noh(double gamma, int dim, double t, siz
 enum sphproof_status sphproof_solutions_gresho(size_t n, const double *r, double *rho, double *v,
                                                double *P, struct sphproof_error *error)
 {
-    (void)error; /* nothing can be wrong */
+    (void)error; /* every input is valid */
     for (size_t i = 0; i < n; i++) {
         const struct vortex_state s = vortex_gresho(fabs(r[i]));
         rho[i] = s.rho, v[i] = s.v, P[i] = s.P;

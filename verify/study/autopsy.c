@@ -75,7 +75,7 @@ enum status autopsy_check(const struct run *run, struct error *error)
 
 /* ---- orders ---- */
 
-/* Of one figure of each level. Few levels have no order, and what is 0 at all has none. */
+/* Fits the order of one figure over the levels. Too few levels, or a zero, give no order. */
 static enum status fit_sizes(const struct autopsy *autopsy, const double *size,
                              struct order_fit *order, struct error *error)
 {
@@ -90,7 +90,7 @@ static enum status fit_sizes(const struct autopsy *autopsy, const double *size,
     return order_fit(autopsy->count, spacing, size, NULL, order, error);
 }
 
-/* Of a figure that stands `at` bytes behind the beginning of each level. */
+/* Fits the order of the figure at offset `at` of each level. */
 static enum status fit(const struct autopsy *autopsy, size_t at, struct order_fit *order,
                        struct error *error)
 {
@@ -117,9 +117,9 @@ static enum status fit_shares(struct autopsy *autopsy, struct error *error)
     return STATUS_OK;
 }
 
-/* ---- what is to blame ---- */
+/* ---- cause ---- */
 
-/* The largest part of those that are suspected. */
+/* The largest of the suspected parts. */
 static size_t largest(const struct autopsy_level *level, const bool suspected[AUTOPSY_PARTS])
 {
     size_t best = AUTOPSY_PARTS;
@@ -129,8 +129,8 @@ static size_t largest(const struct autopsy_level *level, const bool suspected[AU
     return best;
 }
 
-/* Where the order is lost: only parts that fall as slowly, if there are any. An order that is none
- * (the part vanishes at a level) tells nothing about it. */
+/* Suspects, where the order is lost, only parts that fall as slowly, if there are any. A part that
+ * vanishes at a level has no order and is not excluded by it. */
 static void suspect(const struct autopsy *autopsy, bool suspected[AUTOPSY_PARTS])
 {
     bool any = false;
@@ -155,7 +155,7 @@ static void blame(struct autopsy *autopsy)
                      autopsy->orders[autopsy->cause].order < AUTOPSY_FLOOR;
 }
 
-/* A number of particles as people write it: 64^2. */
+/* A number of particles as users write it: 64^2. */
 static void number_text(size_t n, int dim, char text[32])
 {
     const double root = round(pow((double)n, 1. / dim));
@@ -301,7 +301,7 @@ static json_t *level_json(const struct autopsy_level *level)
     return object;
 }
 
-/* One after the other, by n; of snapshots without what they do not show. */
+/* Shares level by level, by n; for snapshots without the unknown ones. */
 static json_t *shares_json(const struct autopsy *autopsy)
 {
     json_t *shares = json_array();

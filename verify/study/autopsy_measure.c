@@ -7,16 +7,16 @@
 #include "initial.h"
 #include "rate_table.h"
 
-/* Particles somewhere, with the exact fields of one time; n each. */
+/* Particles at given positions with the exact fields of one time; arrays of n. */
 struct scene {
     const struct run *run;
     size_t n;
     double time, spacing;
-    double *x[3]; /* not owned, and not changed */
+    double *x[3]; /* not owned, not changed */
     double *m, *rho;
     double *v[3], *u, *P;
     double *exact[3];   /* acceleration -grad P/rho + g */
-    double *inertia[3]; /* dv/dt of the solution along its own flow */
+    double *inertia[3]; /* dv/dt of the exact solution along its own flow */
     double *weight;     /* volume in the window */
     double *storage;
     struct autopsy_cells cells;
@@ -24,7 +24,7 @@ struct scene {
 
 /* ---- exact fields ---- */
 
-/* Difference quotient of fourth order of four values at -2, -1, 1 and 2 steps. */
+/* Fourth-order difference quotient of four values at -2, -1, 1 and 2 steps. */
 static double slope(const double f[4], double step)
 {
     return (8 * (f[2] - f[1]) - (f[3] - f[0])) / (12 * step);
@@ -45,7 +45,8 @@ static double pressure_slope(const struct scene *s, const double x[3], int d, do
     return slope(P, step);
 }
 
-/* Along the flow, a step of time being the one in which sound goes a step in space. */
+/* Differentiates along the flow; the time step is the one in which sound travels the step in
+ * space. */
 static void inertia(const struct scene *s, size_t i, const double x[3],
                     const struct problem_state *here, double step)
 {
@@ -62,8 +63,9 @@ static void inertia(const struct scene *s, size_t i, const double x[3],
     for (int d = 0; d < p->domain.dim; d++) s->inertia[d][i] = slope(v[d], dt);
 }
 
-/* Steps are small against the spacing, so that few particles see a kink of the solution, and large
- * against round-off. At t = 0 there is no time before: then no inertia is found. */
+/* Steps are small against the spacing, so that few particles are affected by a kink of the
+ * solution, and large against round-off. At t = 0 there is no earlier state, and inertia stays
+ * unset. */
 static void fill_exact(const struct scene *s)
 {
     const struct prepared *p = &s->run->problem;
@@ -91,7 +93,7 @@ static void fill_exact(const struct scene *s)
     }
 }
 
-/* x stays with the caller, and must outlive the scene. */
+/* x belongs to the caller and must outlive the scene. */
 static enum status scene_make(struct scene *s, const struct run *run, size_t n, double time,
                               double *const x[3], const double *m, struct error *error)
 {
@@ -122,8 +124,8 @@ static void scene_free(struct scene *s)
 
 /* ---- evaluations ---- */
 
-/* One evaluation of the scene's particles with the energies u: in the table accelerations stand in
- * place of forces. */
+/* Evaluates the scene's particles once with the energies u; the table has accelerations in place of
+ * forces. */
 static enum status evaluate_as(const struct scene *s, const struct scheme *scheme, double *u,
                                struct rate_table *table, struct error *error)
 {
@@ -141,7 +143,7 @@ static enum status evaluate_as(const struct scene *s, const struct scheme *schem
     return status;
 }
 
-/* Without viscosity. */
+/* Evaluates without viscosity. */
 static enum status evaluate(const struct scene *s, double *u, struct rate_table *table,
                             struct error *error)
 {
@@ -150,7 +152,7 @@ static enum status evaluate(const struct scene *s, double *u, struct rate_table 
     return evaluate_as(s, &scheme, u, table, error);
 }
 
-/* What one field has more than another that is independent of it. */
+/* The size of one field after subtraction of another, independent one. */
 static struct autopsy_split more(struct autopsy_split one, struct autopsy_split other)
 {
     const double noise = fmax(0, one.noise * one.noise - other.noise * other.noise),
@@ -158,9 +160,9 @@ static struct autopsy_split more(struct autopsy_split one, struct autopsy_split 
     return (struct autopsy_split){sqrt(whole), sqrt(noise), fmax(0, one.along - other.along)};
 }
 
-/* ---- positions of the start ---- */
+/* ---- initial positions ---- */
 
-/* With jitter in spacings; positions at random become a lattice first. */
+/* Initial particles with this jitter, in spacings; random positions become a lattice first. */
 static enum status lay(const struct run *run, const char *jitter, struct initial *initial,
                        struct error *error)
 {
@@ -176,14 +178,14 @@ static enum status lay(const struct run *run, const char *jitter, struct initial
     return status ? status : initial_create(initial, &other.problem, &other.settings, error);
 }
 
-/* Gives the particles energies with which their pressure is the exact one, times how much too large
- * densities are on the whole at regular positions: that factor no gradient sees. */
+/* Sets the energies so that the pressures are exact, times the mean ratio of the density to the
+ * exact one at regular positions: no gradient depends on that factor. */
 static void correct_energy(struct scene *s, const struct rate_table *table, double factor)
 {
     for (size_t i = 0; i < s->n; i++) s->u[i] *= factor * s->P[i] / table->P[i];
 }
 
-/* At regular positions: how much too large the density is, and L1 of its error. */
+/* At regular positions: mean ratio of the density to the exact one, and L1 of the density. */
 static void look_at_density(const struct scene *s, const struct rate_table *table, double *factor,
                             double *l1)
 {
@@ -217,8 +219,8 @@ static enum status look_at_regular(struct scene *s, struct autopsy_level *level,
     return status;
 }
 
-/* The error of the acceleration without viscosity, of exact velocities, pressures and, by other
- * masses, densities: where particles stand is all that is left of the run. */
+/* Error of the acceleration without viscosity for exact velocities, pressures and, through changed
+ * masses, densities: only the positions are those of the run. */
 static enum status look_at_positions(struct scene *s, double compression, struct rate_table *table,
                                      struct autopsy_split *size, struct error *error)
 {
@@ -262,7 +264,7 @@ static enum status look_at_start(const struct run *run, const char *jitter, look
 
 /* ---- the run's own positions ---- */
 
-/* What the run's own measure says of exact velocities where its particles are. */
+/* The error that the run's own measure finds for exact velocities at its particles. */
 static enum status judge_exact(const struct scene *s, const struct snapshot *end, double *l1,
                                struct error *error)
 {
@@ -281,7 +283,8 @@ static enum status judge_exact(const struct scene *s, const struct snapshot *end
     return STATUS_OK;
 }
 
-/* Parts of the acceleration: what is less is round-off, of sums and of difference quotients. */
+/* Fractions of the acceleration below which an error is round-off: of sums, and of difference
+ * quotients. */
 static const double round_off = 1e-9, quotient = 1e-6;
 
 static double mean_energy(const struct scene *s)
@@ -291,8 +294,8 @@ static double mean_energy(const struct scene *s)
     return sum / (double)s->n;
 }
 
-/* How fast conductivity, in which two evaluations differ, changes pressures, over rho c: a wave
- * whose pressure changes so loses velocity at this rate, whichever way it runs. */
+/* The rate at which conductivity, the difference between two evaluations, changes pressures, over
+ * rho c: a wave loses velocity at this rate in whichever direction it travels. */
 static enum status look_at_conductivity(const struct scene *s, const struct rate_table *with,
                                         const struct rate_table *without,
                                         struct autopsy_level *level, struct error *error)
@@ -310,7 +313,7 @@ static enum status look_at_conductivity(const struct scene *s, const struct rate
     return STATUS_OK;
 }
 
-/* What dissipates, term by term. plain: without any of it. */
+/* Measures the dissipative terms one by one. plain: rates without any of them. */
 static enum status look_at_dissipation(const struct scene *s, const struct rate_table *plain,
                                        struct autopsy_level *level, struct error *error)
 {
@@ -381,9 +384,10 @@ static enum status look_at_result(const struct run *run, const struct run_result
 
 /* ---- a level ---- */
 
-/* Time step and measure have their shares of the error itself. What is left the others share: noise
- * of the error as the squares of their noise, as independent errors do; a smooth error as what is
- * smooth in them, and points along it where it moves with the flow, as errors do that add up. */
+/* Time step and measure have their shares of the error itself. The other parts divide the rest: the
+ * error's noise in proportion to the squares of their noise, as for independent errors; the smooth
+ * error in proportion to their smooth components, along it where the error moves with the flow, as
+ * for errors that add up. */
 static void divide(struct autopsy_level *level)
 {
     double *share = level->share, noise = 0, smooth = 0;

@@ -25,7 +25,7 @@ static bool has(const struct scheme *scheme, enum autopsy_term term)
     return term == AUTOPSY_PRESSURE || !viscosity_of[scheme->viscosity].none;
 }
 
-/* Power of the difference of two evaluations; less NULL: of one. */
+/* Power of the difference of two evaluations; less NULL: of the first one. */
 static struct autopsy_power exchanged(const struct snapshot *s, const struct rate_table *table,
                                       const struct rate_table *less)
 {
@@ -42,7 +42,8 @@ static struct autopsy_power exchanged(const struct snapshot *s, const struct rat
     return (struct autopsy_power){work, heat, scale};
 }
 
-/* Terms are taken away one after the other, pressure is left: so their sum is that of the whole. */
+/* Removes the terms one after the other until pressure is left, so that the powers add up to the
+ * total. */
 enum status autopsy_power(const struct run *run, const struct snapshot *state,
                           struct autopsy_power power[AUTOPSY_TERMS], struct error *error)
 {
@@ -76,7 +77,8 @@ enum status autopsy_power(const struct run *run, const struct snapshot *state,
 
 /* ---- smooth fields and noise ---- */
 
-/* Sums of a cell: of 1, x, x x and, for the fields, f, f x, f f; x from the first particle. */
+/* Sums over a cell: of 1, x, x x and, for the fields, f, f x, f f; x relative to the first
+ * particle. */
 struct autopsy_cell {
     size_t n;
     double weight, origin[3], x[3], xx[3][3], f[3], fx[3][3], squares;
@@ -146,8 +148,8 @@ static void add(const struct autopsy_cells *cells, size_t i, double *const a[3],
     }
 }
 
-/* Squares about the linear function that fits best, as many as there would be about one that was
- * fitted to other particles. Too few particles say nothing. */
+/* Sum of squares about the best linear function, corrected for its fitted parameters. Too few
+ * particles give 0. */
 static double scattered(const struct autopsy_cell *cell, int dim)
 {
     double about = cell->squares, spread[9] = {0}, inverse[9] = {0};

@@ -10,11 +10,11 @@
 #include "value.h"
 
 static const double compared_bound = 3;
-/* Round-off of sums over particles and steps is some 1e-14. */
+/* Round-off of sums over particles and steps is about 1e-14. */
 static const double conserved_bound = 1e-12;
-/* A bound beyond this part of the exact value lets pass what is no solution. */
+/* A bound above this fraction of the exact value would pass a wrong solution. */
 static const double coarse_part = 0.25;
-/* An order that is known to no more than this does not tell convergence from none. */
+/* An order with a wider interval cannot tell convergence from divergence. */
 static const double open_width = 1;
 
 double gates_raise(const struct case_file *file, const struct case_gate *gate, size_t n)
@@ -69,7 +69,7 @@ void gates_compare(struct case_file *file)
         if (*gate->compared.why) gate->known = gate->compared;
         if (gate->compared.bound > 0 && !*gate->compared.why) {
             gate->gate.bound = gate->compared.bound;
-            gate->finer.bound = 0; /* theirs holds at every n */
+            gate->finer.bound = 0; /* bounds of [compared] hold at every n */
         } else {
             gate->gate.bound *= compared_bound;
             gate->finer.bound *= compared_bound;
@@ -77,7 +77,7 @@ void gates_compare(struct case_file *file)
     }
 }
 
-/* Takes the name over. weighed: what is said of an error that passes, with its reason. */
+/* Takes ownership of the name. weighed, why: status and reason of an error that passes. */
 static json_t *weighed_json(json_t *name, double value, double bound,
                             const struct case_weakness *known, enum finding_status weighed,
                             const char *why)
@@ -92,8 +92,8 @@ static json_t *weighed_json(json_t *name, double value, double bound,
     return gate;
 }
 
-/* What a gate is of and its name, which is the caller's; NaN where the run does not have it, as is
- * the exact value of a field. NULL: a functional without an exact value. */
+/* Reads value, exact value and name (owned by the caller) of a gate; NaN if the run lacks them, or
+ * for a field's exact value. NULL: a functional without an exact value. */
 static json_t *read_error(const struct case_gate *gate, const json_t *run, double *value,
                           double *exact)
 {
@@ -137,7 +137,7 @@ void gates_add_errors(const struct case_file *file, const json_t *run, json_t *l
     }
 }
 
-/* Does one of the settings' words, or of a list of them, say so? */
+/* True if a setting, or a member of its list, is this word. */
 static bool says(const json_t *run, const char *key, const char *word)
 {
     const json_t *value = json_object_get(json_object_get(run, "settings"), key), *entry;
@@ -172,7 +172,7 @@ void gates_add_conserved(const json_t *run, json_t *list)
     const bool walls = says(run, "boundary", "reflecting") || says(run, "boundary", "fixed");
     add_conserved("mass", run, list);
     if (!walls && !is_heavy(run)) add_conserved("momentum", run, list);
-    /* layers that are kept give and take energy */
+    /* fixed layers exchange energy with the gas */
     if (says(run, "energy", "total") && !is_heavy(run) && !says(run, "boundary", "fixed"))
         add_conserved("energy", run, list);
 }

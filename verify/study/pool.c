@@ -18,7 +18,7 @@
 
 enum { POLL_MS = 200, CHUNK = 1 << 16 };
 
-/* A job in its process: what has come through its pipe so far. */
+/* A job in its own process; text: what its pipe has delivered so far. */
 struct worker {
     pid_t pid;
     int pipe;
@@ -74,7 +74,8 @@ void pool_end_with_parent(void)
 #endif
 }
 
-/* {"status", "message", "document", "note"}: what a job said, and why it could not be kept. */
+/* {"status", "message", "document", "note"}: the job's result, and why the cache could not keep
+ * it. */
 static json_t *reply_of(const struct pool_job *job, const struct cache *cache)
 {
     json_t *document = NULL;
@@ -104,7 +105,7 @@ static _Noreturn void work(const struct pool_job *job, const struct cache *cache
 
 /* ---- in the parent ---- */
 
-/* Is it worth another attempt? */
+/* True if the job broke down and may succeed at another attempt. */
 static bool failed(const struct pool_job *job, const json_t *reply)
 {
     return job->fickle && json_integer_value(json_object_get(reply, "status")) == STATUS_BROKE_DOWN;
@@ -148,11 +149,11 @@ static enum status start(struct worker *worker, const struct pool *pool, size_t 
     return STATUS_OK;
 }
 
-/* Reads what there is, which needs no waiting; false at the end. */
+/* Reads the available bytes without waiting; false at the end. */
 static bool receive(struct worker *worker)
 {
     char *text = realloc(worker->text, worker->length + CHUNK);
-    if (!text) return false; /* half a reply is none */
+    if (!text) return false; /* half a reply is useless */
     worker->text = text;
     const ssize_t n = read(worker->pipe, text + worker->length, CHUNK);
     if (n <= 0) return false;
@@ -189,7 +190,7 @@ static int heavy_first(const void *a, const void *b)
     return x != y ? (x < y) - (x > y) : (i > j) - (i < j);
 }
 
-/* The same in every process that has these jobs, in whatever order. */
+/* A total order that does not depend on the order in which jobs were added. */
 static int heavy_first_by_key(const void *a, const void *b)
 {
     const struct pool_job *x = &sorted_jobs[*(const size_t *)a],
@@ -221,7 +222,7 @@ enum status pool_divide(const struct pool *pool, int of, int *shares, struct err
     return sound ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory for %d shares", of);
 }
 
-/* Leaves out what is not in this process's share. */
+/* Leaves out the jobs of other shares. */
 static enum status take_share(struct pool *pool, const struct pool_share *mine, struct error *error)
 {
     if (!mine->of) return STATUS_OK;
@@ -235,12 +236,12 @@ static enum status take_share(struct pool *pool, const struct pool_share *mine, 
 }
 
 struct course {
-    size_t *order, next, ready; /* jobs by weight; the next one; how many are done */
-    double work, worked;        /* weight that is not in the cache, and what of it is done */
+    size_t *order, next, ready; /* jobs by falling weight; index of the next; number done */
+    double work, worked;        /* total weight that the cache lacks; the part of it that is done */
     const char *last;
 };
 
-/* What the cache has; the others, heavy ones first. */
+/* Takes results from the cache and queues the other jobs, the heaviest first. */
 static size_t look_up(struct pool *pool, const struct pool_settings *settings,
                       struct course *course)
 {
@@ -294,7 +295,7 @@ static enum status run_workers(struct pool *pool, const struct pool_settings *se
             course->worked += pool->jobs[workers[i].job].weight;
             course->ready++;
             finish(&workers[i], pool);
-            workers[i] = workers[--running]; /* looked at already */
+            workers[i] = workers[--running]; /* the moved worker has been polled */
         }
         report(pool, settings, course);
     }

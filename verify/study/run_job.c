@@ -15,7 +15,7 @@ char *run_job_key(const struct run *run, const char *kind, struct error *error)
     json_t *key = result_object("kind=%s case=%s title=%s dimension=%d any_window=%d? settings=%p",
                                 kind, file->name, file->title, file->dimension,
                                 run->asked.any_window, (void *)settings_json(&run->settings));
-    /* what a file of particles holds decides the result, not its name alone */
+    /* the content of a particle file decides the result, not its name alone */
     if (key && run->settings.file[0])
         json_object_set_new(key, "content",
                             json_integer((json_int_t)cache_hash_file(run->settings.file)));
@@ -31,7 +31,8 @@ char *run_job_key(const struct run *run, const char *kind, struct error *error)
     return text;
 }
 
-/* Every step updates all particles, and there are as many as the box has particles in a row. */
+/* Assumes that every step updates all particles, and that the number of steps is proportional to
+ * the particles in a row of the box. */
 double run_job_weight(const struct run *run)
 {
     const double n = settings_real(&run->settings, SETTING_n);

@@ -27,7 +27,7 @@ size_t study_neighbour(size_t n, size_t replicates, size_t r)
     if (replicates < 2) return n;
     const size_t step = (size_t)fmax(1, round(0.05 * (double)n / (double)(replicates - 1)));
     const size_t away = (r + 1) / 2 * step, most = replicates / 2 * step;
-    if (n < most + 4) return n + r * step; /* the least that a run can have is 4 */
+    if (n < most + 4) return n + r * step; /* a run has at least 4 */
     return r % 2 ? n + away : n - away;
 }
 
@@ -44,7 +44,7 @@ static enum status set_integer(struct run_settings *settings, enum setting key, 
     return settings_set(&settings->settings, key, text, SOURCE_USER, NULL, error);
 }
 
-/* Refuses settings that no level could run, before anything runs. */
+/* Refuses settings that no level could run, before any run starts. */
 static enum status try_coarsest(const struct run *run, struct error *error)
 {
     struct run_result *plan = malloc(sizeof *plan);
@@ -54,7 +54,7 @@ static enum status try_coarsest(const struct run *run, struct error *error)
     return status;
 }
 
-/* The runs of a combination, resolved. */
+/* Resolves the runs of a combination. */
 static enum status make_runs(struct study *study, size_t c, const struct run_settings *base,
                              struct error *error)
 {
@@ -81,7 +81,8 @@ static enum status plan_combination(struct study *study, size_t c, struct pool *
     struct error reason = {0};
     if (sweep_apply(&study->sweep, c, &base, error)) return error->status;
     if (make_runs(study, c, &base, &reason)) {
-        const bool refused = reason.status == STATUS_CHECK_FAILED; /* a plug-in: no combination */
+        const bool refused =
+            reason.status == STATUS_CHECK_FAILED; /* a refused plug-in fails the whole study */
         if (study->sweep.count == 1 || refused)
             return error_set(error, reason.status, "%s", reason.message);
         result->excluded = true;

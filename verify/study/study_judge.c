@@ -10,7 +10,7 @@
 #include "study.h"
 #include "viscosity.h"
 
-/* An order lost to the lattice sums shows a relative error of this many floors at most. */
+/* The lattice sums explain a lost order up to a relative error of this many floors. */
 static const double floor_reach = 20;
 
 static enum status fit_orders(const struct study *study, struct study_result *result,
@@ -27,7 +27,7 @@ static enum status fit_orders(const struct study *study, struct study_result *re
                 errors[l] = result->levels[l].errors[f][m];
                 variance[l] = spread * spread / (double)study->replicates;
             }
-            /* of single runs the variance is 0, which is no noise */
+            /* a single run has variance 0, which is not a noise estimate */
             if (order_fit(n, spacing, errors, &noise, &result->orders[f][m].fit, error))
                 return error->status;
         }
@@ -44,8 +44,8 @@ static enum status fit_orders(const struct study *study, struct study_result *re
     return STATUS_OK;
 }
 
-/* Of what only 2D and 3D have: parts of the velocity, and functionals that are known exactly. (In
- * 1D a mean's error goes through 0, and has no order.) */
+/* Orders that exist only in 2D and 3D: of velocity components and of functionals with an exact
+ * value. (In 1D the error of a mean changes sign and has no order.) */
 static enum status fit_cloud_orders(struct study_result *result, struct error *error)
 {
     double spacing[CASE_LADDER_MAX], errors[CASE_LADDER_MAX];
@@ -66,7 +66,7 @@ static enum status fit_cloud_orders(struct study_result *result, struct error *e
     return STATUS_OK;
 }
 
-/* What is conserved has an error and no order. */
+/* Conserved quantities have an error and no order. */
 static void take_kept(struct study_result *result)
 {
     const struct study_level *finest = &result->levels[result->level_count - 1];
@@ -90,7 +90,7 @@ static void extrapolate(struct study_result *result)
     }
 }
 
-/* The number of the functional that a gate is of; of a field's gate that of all functionals. */
+/* The index of a gate's functional; for a field's gate the number of functionals. */
 static size_t functional_of(const struct study_result *result, const struct case_gate *gate)
 {
     size_t i = gate->functional ? 0 : result->functional_count;
@@ -100,7 +100,7 @@ static size_t functional_of(const struct study_result *result, const struct case
     return i;
 }
 
-/* What a gate is of; NULL: of a functional that these settings have no exact value of. */
+/* The order that a gate judges; NULL: a functional without an exact value for these settings. */
 static struct study_order *gated(struct study_result *result, const struct case_gate *gate)
 {
     const size_t i = functional_of(result, gate),
@@ -112,14 +112,14 @@ static struct study_order *gated(struct study_result *result, const struct case_
                : NULL;
 }
 
-/* The exact value of a gate's functional; NaN of a field. */
+/* The exact value of a gate's functional; NaN for a field. */
 static double exact_of(const struct study_result *result, const struct case_gate *gate)
 {
     const size_t i = functional_of(result, gate);
     return i < result->functional_count ? result->functional_exact[i] : (double)NAN;
 }
 
-/* Is it the case as it stands, on its own ladder? */
+/* True if the case is unchanged and on its own ladder. */
 static bool is_untouched(const struct study *study, const struct study_result *result)
 {
     const struct case_file *file = &study->settings.file;
@@ -143,8 +143,8 @@ static bool passes(const struct case_gate *gate, struct study_order *order)
     return false;
 }
 
-/* Of a gate that fails: does the case know, and of an error as large? What could not be measured
- * is not what it knows. */
+/* True if the failure of a gate is a known weakness of the case, and the error is within it. A
+ * failed measurement is not. */
 static bool is_known(const struct case_file *file, const struct case_gate *gate, size_t n,
                      struct study_order *order)
 {
@@ -162,7 +162,7 @@ static bool is_known(const struct case_file *file, const struct case_gate *gate,
 static void judge_gates(const struct study *study, struct study_result *result)
 {
     const struct case_file *file = &study->settings.file;
-    const bool of_ours = !study->settings.external; /* whose kernel is known */
+    const bool of_ours = !study->settings.external; /* our own runs have a known kernel */
     const struct study_level *finest = &result->levels[result->level_count - 1];
     const bool standard = result->scheme.gradient == GRADIENT_STANDARD;
     measure_lattice(&result->scheme.kernel, file->dimension, result->scheme.eta,
@@ -190,8 +190,8 @@ static void judge_gates(const struct study *study, struct study_result *result)
     }
 }
 
-/* Gas that no wave has reached: noise that was put there is none of its own. The bound is for our
- * schemes: of other codes the figure is only told. */
+/* Judges gas that no wave has reached; initial noise does not count. The bound holds for our
+ * schemes; for other codes the value is only reported. */
 static void judge_stillness(struct study_result *result, bool ours)
 {
     result->still = (double)NAN;
@@ -222,7 +222,7 @@ static void suspect(struct study_result *result, const struct case_file *file)
 
 /* ---- settings without effect ---- */
 
-/* Is the key among the parameters of a viscosity? */
+/* True if the key is a parameter of this viscosity. */
 static bool reads(int viscosity, enum setting key)
 {
     const char *parameters = viscosity_of[viscosity].parameters, *name = setting_keys[key].name;
@@ -232,7 +232,7 @@ static bool reads(int viscosity, enum setting key)
     return false;
 }
 
-/* Do these settings say anything to the solver that the key could change? `skip` must not. */
+/* True if the solver reads this key with these settings. `skip` must not change results. */
 static bool is_read(enum setting key, const struct settings *settings)
 {
     const int viscosity = settings_choice(settings, SETTING_viscosity);
@@ -272,8 +272,8 @@ bool study_suspect_same(const char *what, const struct study_result *a,
     return suspicion_idle_setting(what, n, before, after, why);
 }
 
-/* Every pair of combinations that differ in one key only and should have differed in their results:
- * suspicious where none of a key's pairs does. */
+/* Compares each pair of combinations that differ in one key. The key is suspicious if none of its
+ * pairs differs in the results. */
 static void suspect_idle(struct study *study)
 {
     size_t stride = study->sweep.count;

@@ -90,12 +90,12 @@ static json_t *floor_json(const struct study_result *result)
                          result->suspicion);
 }
 
-/* Where the finest level's L1(density) comes from, and how fast each part falls. */
+/* Share of each region in the finest level's L1(density), and its order. */
 static json_t *budget_orders_json(const struct study_result *result)
 {
     const struct study_level *finest = &result->levels[result->level_count - 1];
     json_t *regions = json_array();
-    double whole = 0; /* of arithmetic means: not the geometric one of the whole */
+    double whole = 0; /* a sum of arithmetic means; errors of the whole are geometric ones */
     for (size_t r = 0; finest->budget.regions->names[r]; r++)
         whole += finest->budget.l1[r][FIELD_DENSITY];
     for (size_t r = 0; finest->budget.regions->names[r]; r++) {
@@ -120,7 +120,7 @@ static void add(json_t *document, const char *list, json_t *item, const json_t *
     json_array_append_new(array, item);
 }
 
-/* An order that has no gate, where there is one. */
+/* Adds an order that has no gate, if there is one. */
 static void add_fit(json_t *document, const struct order_fit *fit, const char *what,
                     const char *norm, const json_t *varied)
 {

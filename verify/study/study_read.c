@@ -23,7 +23,7 @@ static double error_of(const json_t *run, int field, int norm)
     return norm_of(run, field_family.members[field]->name, norm);
 }
 
-/* Adds the budget of a run, by such regions (NULL: none), times weight; still: the largest. */
+/* Adds weight times the budget of a run by these regions (NULL: none); still: the maximum. */
 static void add_budget(struct budget *budget, const struct regions *regions, const json_t *json,
                        double weight)
 {
@@ -50,7 +50,7 @@ static void read_functionals(struct study_result *result, struct study_level *le
     result->functional_count = i;
 }
 
-/* Of the worst replicate; first: there is none yet. */
+/* Keeps the worst replicate; first: there is no earlier one. */
 static void read_kept(struct study_level *level, const json_t *conservation, bool first)
 {
     for (size_t k = 0; k < TRACE_FIGURES; k++) {
@@ -59,8 +59,8 @@ static void read_kept(struct study_level *level, const json_t *conservation, boo
     }
 }
 
-/* Means of squares and products over the replicates of a level: x = log(spacing), y = log(error).
- */
+/* Means of squares and products over the replicates of a level; x = log(spacing), y =
+ * log(error). */
 struct moments {
     double xx, xy[FIELDS][NORMS], yy[FIELDS][NORMS];
 };
@@ -102,7 +102,7 @@ static void read_run(struct study_result *result, struct study_level *level,
         snprintf(result->suspicion, sizeof result->suspicion, "%s", suspicion);
 }
 
-/* From means of logarithms to geometric means; a single run keeps its own bits. */
+/* Turns means of logarithms into geometric means; a single run keeps its own bits. */
 static void close_level(struct study_level *level, const json_t *first, size_t replicates)
 {
     const bool single = replicates == 1;
@@ -119,8 +119,8 @@ static void close_level(struct study_level *level, const json_t *first, size_t r
                : exp(level->binned_density_l1);
 }
 
-/* The spreads of sound levels. Replicates with other n have another error, too: what they scatter
- * is measured about a line of the slope that the whole ladder has. */
+/* Finds the spreads of sound levels. Replicates with different n have different errors, so their
+ * scatter is measured about a line with the slope of the whole ladder. */
 static void find_spreads(struct study_result *result, const struct moments *moments,
                          size_t replicates)
 {

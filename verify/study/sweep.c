@@ -44,13 +44,14 @@ static enum status add_value(struct sweep *sweep, const char *word, struct error
         return error_set(error, STATUS_BAD_INPUT, "--vary %s: at most %d values",
                          setting_keys[key->key].name, SWEEP_VALUES_MAX);
     if (key->key == SETTING_kernel)
-        settings_text(&trial, key->key, key->values[key->count++]); /* a plug-in with its content */
+        settings_text(&trial, key->key,
+                      key->values[key->count++]); /* includes the hash of a plug-in */
     else
         strcpy(key->values[key->count++], word);
     return STATUS_OK;
 }
 
-/* A key without values stands for all members of its family. */
+/* A key without values takes all members of its family. */
 static enum status complete(struct sweep *sweep, struct error *error)
 {
     sweep->count = 1;
