@@ -193,16 +193,24 @@ static const char *sum_of(const char *path)
     return kept[i].sum;
 }
 
-/* Those that words of a command, or of `depends`, name. */
-static void add_files(const struct code_external *external, const char *words, bool command,
-                      json_t *files)
+/* Adds the files that words of a command, or of `depends`, name; in a line for a shell, what
+ * separates commands separates words as well. */
+static void add_files(const struct code_external *external, const struct code_values *values,
+                      const char *words, bool command, json_t *files)
 {
-    char path[CODE_PATH], name[CODE_PATH];
+    char line[INI_TEXT_LINE + 1], path[CODE_PATH], name[CODE_PATH];
+    const bool shell = command && code_shell(&external->of->way);
     size_t length, n = 0;
-    for (const char *word; (word = code_next_word(&words, &length)); n++) {
-        word_file(external->code, word, length, command && n == 0, path);
+    snprintf(line, sizeof line, "%s", words);
+    for (char *at = line; shell && *(at += strcspn(at, ";|&<>()'\"`=")); at++) *at = ' ';
+    const char *rest = line;
+    for (const char *word; (word = code_next_word(&rest, &length)); n++) {
         snprintf(name, sizeof name, "%.*s", (int)length, word);
+        char *filled = code_fill(name, values->of);
+        if (!filled) continue;
+        word_file(external->code, filled, strlen(filled), command && n == 0, path);
         if (code_is_file(path)) json_object_set_new(files, name, json_string(sum_of(path)));
+        free(filled);
     }
 }
 
@@ -251,9 +259,9 @@ enum status code_add_key(const struct run_external *base, const struct run *run,
     code_values(&values, external, run, NULL);
     json_t *files = json_object();
     char *filled = code_fill(command, values.of);
-    add_files(external, way->value[CODE_depends], false, files);
-    if (!code_shell(way)) add_files(external, command, true, files);
-    if (!code_format(way)) add_files(external, way->value[CODE_ic], true, files);
+    add_files(external, &values, way->value[CODE_depends], false, files);
+    add_files(external, &values, command, true, files);
+    if (!code_format(way)) add_files(external, &values, way->value[CODE_ic], true, files);
     json_t *code = json_pack("{s:s*, s:s, s:s, s:s, s:b, s:o, s:o}", "command", filled, "ic",
                              code_value(way, CODE_ic), "snapshot", way->value[CODE_snapshot],
                              "elements", code_value(way, CODE_elements), "shell", code_shell(way),

@@ -359,6 +359,24 @@ def test_ladder(draw):
     assert abs(bounds[0]["bound"] / bounds[1]["bound"] - 1) < 1e-12, bounds
 
 
+def test_changed_program():
+    """Each way to name a program or its script: what is kept is computed again once the file has changed."""
+    ladder = ("converge", "sod", "--code", "named.ini", "--n", "50,52,54,56", "--replicates", "1", "--cache", "named")
+    for command in ("./named.sh", "sh named.sh", "sh @HERE@/named.sh", "env A=1 @HERE@/named.sh",
+                    "shell = yes\ncommand = true; sh '@HERE@/named.sh'", "shell = yes\ncommand = A=1&&(@HERE@/named.sh"):
+        write("named.ini", "[code]\nsnapshot = @OUT@_1.csv\n%s @N@ @T_END@ @OUT@%s\n[case sod]\ndensity_l1 = 0 1\n"
+              % (command if "shell" in command else "command = " + command, ")" * command.count("(")))
+        kept = []
+        for change in "", "# changed\n":
+            write("named.sh", "#!/bin/sh\n%s%s run sod n=$1 t_end=$2 --quiet --snapshot $3_1.csv\n" % (change, program))
+            os.chmod("named.sh", 0o700)
+            kept.append(answer(*ladder, "--list")[0].count("kept"))
+            if not change:
+                answer(*ladder)
+                kept.append(answer(*ladder, "--list")[0].count("kept"))
+        assert kept == [0, 4, 0], (command, kept)
+
+
 def test_motion():
     """A code that winds a vortex up on the way: neither its last snapshot nor its total energy shows it, all of them do."""
     shown = {}
@@ -560,5 +578,6 @@ def lay():
 
 
 drawing = [lambda test=test: test(random.Random(seed)) for test in (test_same, test_starts, test_slab, test_ladder)]
-play(lay, *drawing, test_failures, test_again, test_refused, test_work, test_no_errors, test_motion, test_calibrate, test_shares, test_report,
+play(lay, *drawing, test_failures, test_again, test_refused, test_work, test_no_errors, test_motion, test_changed_program,
+     test_calibrate, test_shares, test_report,
      test_corner, test_bench, test_nothing_left)
