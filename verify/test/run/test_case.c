@@ -134,7 +134,7 @@ TEST(functionals)
             AT("15") "key disc_error is given twice, first in line 13");
     if (parse(&file,
               HEAD "[converge]\ndensity_l1 = 0.7 1.3 0.015:0.02\nvelocity_l1 = 0 1e-3:1\n"
-                   "momentum = 0 1e-9\nangular_momentum = 0 2\n",
+                   "momentum = 0 1e-9\ncentre = 0 2\n",
               &error))
         fail_msg("%s", error.message);
     assert_true(a->gate.low == 0.7 && a->gate.high == 1.3 && a->gate.bound == 0.02);
@@ -150,6 +150,12 @@ TEST(functionals)
             AT("14") "key plateau and kind = gresho exclude each other");
     refused(HEAD "[converge]\nmean_pressure = 1 1\n",
             AT("13") "key mean_pressure in [converge] and dimension = 1 exclude each other");
+    refused(HEAD "[converge]\nangular_momentum = 0 2\n",
+            AT("13") "key angular_momentum in [converge] and dimension = 1 exclude each other");
+    refused(HEAD "[converge]\nke_rebound = 0 2\n",
+            AT("13") "key ke_rebound and kind = riemann exclude each other");
+    if (parse(&file, FLAT "[converge]\nke_asymmetry = 0 1\nangular_momentum = 0 1\n", &error))
+        fail_msg("%s", error.message);
 }
 
 /* What schemes that are compared are held to: a bound, or how far they are known to fail. */
