@@ -38,10 +38,16 @@ static double step_ns(const struct setup *setup)
     return 100 + pair * neighbours;
 }
 
+/* The smoothing length of a particle's initial density. */
+static double width_at_start(const struct setup *setup, size_t i)
+{
+    return setup->scheme.eta * pow(setup->m[i] / setup->rho[i], 1. / setup->dim);
+}
+
 /* Largest ratio of signal speed to h, in 1/s. */
 static double fastest(const struct setup *setup)
 {
-    const double g = setup->gamma, d = setup->dim;
+    const double g = setup->gamma;
     double mean[3] = {0}, rate = 0;
     for (int a = 0; a < setup->dim; a++)
         for (size_t i = 0; i < setup->n; i++) mean[a] += setup->v[a][i] / (double)setup->n;
@@ -50,8 +56,7 @@ static double fastest(const struct setup *setup)
         for (int a = 0; a < setup->dim; a++)
             v2 += (setup->v[a][i] - mean[a]) * (setup->v[a][i] - mean[a]);
         const double sound = sqrt(g * (g - 1) * (setup->u[i] + 0.5 * v2));
-        const double h = setup->scheme.eta * pow(setup->m[i] / setup->rho[i], 1 / d);
-        rate = fmax(rate, 2 * sound / h);
+        rate = fmax(rate, 2 * sound / width_at_start(setup, i));
     }
     return rate;
 }
@@ -73,4 +78,18 @@ enum status estimate_check(const struct estimate *estimate, size_t n, struct err
     return error_set(error, STATUS_ENVIRONMENT,
                      "n=%zu takes about %.3g GB of memory, more than the %.3g GB that there are", n,
                      1e-9 * estimate->memory, 1e-9 * there);
+}
+
+enum status estimate_check_reach(const struct setup *setup, struct error *error)
+{
+    for (int a = 0; setup->dim > 1 && setup->rho && a < setup->dim; a++) {
+        const double half = 0.5 * (setup->hi[a] - setup->lo[a]);
+        for (size_t i = 0; setup->boundary[a] == BOUNDARY_PERIODIC && i < setup->n; i++)
+            if (!(width_at_start(setup, i) <= half))
+                return error_set(error, STATUS_BAD_INPUT,
+                                 "particle %zu reaches as far as %g, beyond half the box (%g): "
+                                 "more particles or a smaller eta are needed",
+                                 i, width_at_start(setup, i), half);
+    }
+    return STATUS_OK;
 }

@@ -166,10 +166,16 @@ static enum status begin(const struct run *run, struct run_result *result, struc
 enum status run_explain(const struct run *run, struct run_result *result, struct error *error)
 {
     struct initial initial;
-    const enum status status = begin(run, result, &initial, error);
+    enum status status = begin(run, result, &initial, error);
+    if (!status) {
+        const struct setup setup = run_setup(run, &initial);
+        status = estimate_check_reach(&setup, error);
+        if (status) run_free(result);
+    }
     initial_free(&initial);
     return status;
 }
+
 enum status run_execute(const struct run *run, struct run_result *result, struct error *error)
 {
     struct initial initial;

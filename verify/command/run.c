@@ -170,9 +170,9 @@ static void print_plan(const struct run_result *result, const struct table_style
 static void print_estimate(const struct run_result *result, const struct table_style *style)
 {
     const struct estimate *e = &result->estimate;
-    printf(
-        "\n%sit would take%s     about %.0f MB of memory; about %.2g steps, %.2g s of CPU time\n",
-        style->bold, style->end, 1e-6 * e->memory, e->steps, e->cpu_s);
+    printf("\n%sit would take%s     about %.0f MB of memory; at least %.2g steps, %.2g s of CPU "
+           "time\n",
+           style->bold, style->end, 1e-6 * e->memory, e->steps, e->cpu_s);
 }
 
 /* snapshots: on the way; its path is NULL where there are none. */

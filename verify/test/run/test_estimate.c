@@ -138,6 +138,30 @@ TEST(of_few_steps)
     near_relative(estimate_run(&setup).cpu_s, 1e-9 * N * 10 * (4 + 3), 1e-14);
 }
 
+/* What a run in 2D or 3D refuses; in 1D and where the box is open a particle may reach further. */
+TEST(of_reach)
+{
+    for (int dim = 1; dim <= 3; dim++) {
+        struct setup setup = plain_setup(dim);
+        struct error error;
+        const double widest = 2.5 * pow(8, 1. / dim); /* of the second particle */
+        for (int a = 0; a < dim; a++)
+            for (int wide = 0; wide < 2; wide++)
+                for (int open = 0; open < 2; open++) {
+                    for (int b = 0; b < 3; b++)
+                        setup.lo[b] = 1, setup.hi[b] = 100, setup.boundary[b] = BOUNDARY_PERIODIC;
+                    setup.hi[a] = 1 + 2 * widest * (wide ? 1 + 1e-9 : 1 - 1e-9);
+                    setup.boundary[a] = open ? BOUNDARY_OPEN : BOUNDARY_PERIODIC;
+                    const bool refused = dim > 1 && !wide && !open;
+                    assert_int_equal(estimate_check_reach(&setup, &error),
+                                     refused ? STATUS_BAD_INPUT : STATUS_OK);
+                    if (refused) assert_non_null(strstr(error.message, "particle 1 reaches"));
+                }
+        setup.rho = NULL; /* unknown */
+        assert_int_equal(estimate_check_reach(&setup, &error), STATUS_OK);
+    }
+}
+
 /* What is there may be used up. */
 TEST(more_than_there_is)
 {
