@@ -405,6 +405,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
     enum status status = take_request(options, n, arguments, &r, error);
     if (!status && csv) status = output_probe(csv, error);
     if (!status) status = rate_table_make(&table, &r.setup, error);
+    if (!status && theirs && is_csv(theirs))
+        status = rate_check_positions(theirs, &r.theirs, &r.setup, error);
     if (!status && theirs)
         status = rate_check_make(&check, theirs, &r.theirs, &r.setup, &table, r.tolerance, error);
     if (!status) {

@@ -28,3 +28,8 @@ struct rate_check {
 enum status rate_check_make(struct rate_check *check, const char *path, const struct csv *theirs,
                             const struct setup *setup, const struct rate_table *ours,
                             double tolerance, struct error *error);
+
+/* STATUS_BAD_INPUT: THEIRS.csv has positions (x, y, z; periods do not matter) that are not those of
+ * the setup's particles, row by row, within 1e-5 of the box. */
+enum status rate_check_positions(const char *path, const struct csv *theirs,
+                                 const struct setup *setup, struct error *error);

@@ -275,6 +275,48 @@ static double scale_of(const struct gas *gas, const struct rate_table *t, int co
     return most;
 }
 
+/* Rows in another order, or of other particles, are refused where positions show it. */
+TEST(whose_rows)
+{
+    static const struct {
+        double shift; /* of all rows along the last axis, in boxes */
+        bool swapped; /* rows 3 and 7 */
+        enum boundary boundary;
+        bool good;
+    } rows[] = {{0, false, BOUNDARY_PERIODIC, true},      {1, false, BOUNDARY_PERIODIC, true},
+                {-3, false, BOUNDARY_PERIODIC, true},     {1, false, BOUNDARY_OPEN, false},
+                {0.5e-5, false, BOUNDARY_OPEN, true},     {2e-5, false, BOUNDARY_OPEN, false},
+                {-2e-5, false, BOUNDARY_PERIODIC, false}, {0, true, BOUNDARY_PERIODIC, false},
+                {0, true, BOUNDARY_OPEN, false}};
+    for (int dim = 1; dim <= 3; dim++)
+        for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+            struct gas gas;
+            struct error error;
+            double x[3][MOST];
+            static char letters[3][2] = {"x", "y", "z"};
+            make(&gas, dim, sides[dim], "eta=2.4");
+            for (int a = 0; a < dim; a++) {
+                gas.setup.hi[a] = 2, gas.setup.boundary[a] = BOUNDARY_PERIODIC;
+                memcpy(x[a], gas.x[a], sizeof x[a]);
+            }
+            gas.setup.boundary[dim - 1] = rows[k].boundary;
+            for (size_t i = 0; i < gas.setup.n; i++) x[dim - 1][i] += 2 * rows[k].shift;
+            for (int a = 0; a < dim && rows[k].swapped; a++)
+                x[a][3] = gas.x[a][7], x[a][7] = gas.x[a][3];
+            struct csv theirs = {.rows = gas.setup.n, .columns = (size_t)dim};
+            for (int a = 0; a < dim; a++) theirs.names[a] = letters[a], theirs.values[a] = x[a];
+            assert_int_equal(rate_check_positions("theirs.csv", &theirs, &gas.setup, &error),
+                             rows[k].good ? STATUS_OK : STATUS_BAD_INPUT);
+            if (rows[k].swapped) {
+                assert_non_null(strstr(error.message, "the row of particle 3 is at x="));
+                assert_non_null(strstr(error.message, ", as particle 7 is, and"));
+            }
+            theirs.columns = 0; /* no positions */
+            assert_int_equal(rate_check_positions("theirs.csv", &theirs, &gas.setup, &error),
+                             STATUS_OK);
+        }
+}
+
 /* Two particles are off, the second by more: how far, which one, and what is still good; also of
  * rates that are all tiny, and of which the first particle has by far the largest. */
 TEST(how_far_off)
