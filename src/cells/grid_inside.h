@@ -30,9 +30,8 @@ struct grid_pool {
 
 /* Work arrays of one thread: candidates for the lists of one cell's points. */
 struct candidates {
-    _Alignas(TEAM_APART) size_t capacity,
-        most;    /* most: largest number of points around a cell in this search */
-    size_t seen; /* points of the surrounding cells */
+    _Alignas(TEAM_APART) size_t capacity, most; /* most: points around a cell */
+    size_t seen;                                /* points of the surrounding cells */
     float *x[3], *radius2;
     uint8_t *near;
     uint16_t *marks;
@@ -85,8 +84,7 @@ struct grid {
                            cells that are candidates; NULL: all are */
     uint32_t *order;
     double (*position)[3];
-    float *place[3],
-        *radius2; /* by slot: position relative to the middle of the cell; squared radius */
+    float *place[3], *radius2; /* by slot: position in its cell; radius squared */
     struct grid_list *lists;
     uint32_t *part_begin, *part_cell;
     size_t parts;

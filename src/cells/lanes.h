@@ -54,7 +54,8 @@ struct lanes_layout {
     gather_loop *gather;
 };
 
-/* Arrays of the lanes that loops compute. */
+/* Arrays of the lanes that loops compute. The reactions overwrite slopes, q and the gradients at
+ * h_i and h_j, which are no longer needed then, or with vanilla_ice do not exist. */
 enum lanes_array {
     LANE_ONE,    /* 1 everywhere */
     LANE_NUMBER, /* 0, 1, 2 ... */
@@ -83,10 +84,7 @@ enum lanes_array {
     LANE_GZ_J,
     LANE_REACTION_END, /* the longest reaction, closed in 3D, needs two more */
     LANES_OWN = LANE_REACTION_END + 2,
-    LANE_REACTION =
-        LANE_SLOPE_I /* reactions: force, energy, signal speed; then by shifting: momentum, energy,
-                        mass, gradient of a constant. Overwrites slopes, q and the gradients at h_i
-                        and h_j, which are no longer needed, or with vanilla_ice do not exist */
+    LANE_REACTION = LANE_SLOPE_I /* reactions, see struct reactions */
 };
 
 struct lanes {

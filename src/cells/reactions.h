@@ -17,7 +17,8 @@ struct lanes;
 struct lanes_list;
 
 struct reactions {
-    int values; /* per slot: force, energy, largest signal speed; exchange of shifting */
+    int values; /* per slot: force, energy, largest signal speed; then by shifting: momentum,
+                   energy, mass, gradient of a constant */
     size_t chunks;
     double *of[2];        /* of even and of odd chunks; of[0] owns the memory of all arrays */
     uint32_t *begin;      /* first slot of each chunk, and the end */
@@ -27,9 +28,8 @@ struct reactions {
 
 /* The chunk that a thread works on. */
 struct reactions_chunk {
-    size_t before, begin, end,
-        beyond; /* slots: begin of the previous chunk; begin and end; end of the next one */
-    double *of; /* NULL: pairs are computed from both sides */
+    size_t before, begin, end, beyond; /* slots: previous begin; begin, end; next end */
+    double *of;                        /* NULL: pairs are computed from both sides */
 };
 
 /* Memory for each slot, in bytes. */

@@ -20,9 +20,8 @@ struct workspace {
     size_t arrays, stride; /* number of arrays in block, and distance between them */
     unsigned char *outcome;
     double *disturbance, *arriving; /* if particles may sleep: see struct cells_quiet */
-    unsigned char *parts; /* local steps: role of each particle in the evaluation of a level */
-    unsigned char
-        *woken; /* local steps: the level to which each particle wakes; 0: does not wake */
+    unsigned char *parts;  /* local steps: role of each particle in the evaluation of a level */
+    unsigned char *woken;  /* local steps: new level of a particle that wakes; 0: none */
     unsigned char *asleep; /* of each particle; NULL: no particle ever sleeps */
     double *kept;          /* 1/h of sleeping particles; may be NULL likewise */
     uint64_t sorted_at;    /* number of steps at the last sort */

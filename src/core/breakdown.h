@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The message of a run that cannot go on. */
+ * The error message of a run that breaks down. */
 #ifndef SPHPROOF_BREAKDOWN_H
 #define SPHPROOF_BREAKDOWN_H
 
@@ -9,7 +9,8 @@
 
 struct simulation;
 
-/* A breakdown at particle i: quantity = value, at the current time. Returns STATUS_BROKE_DOWN. */
+/* Reports a breakdown at particle i, quantity = value, at the current time. Returns
+ * STATUS_BROKE_DOWN. */
 enum status breakdown_of(const struct simulation *simulation, ptrdiff_t i, const char *quantity,
                          double value, struct error *error);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A cube root by arithmetic alone: loops with it vectorise, and its bits are the same everywhere.
- */
+ * A cube root from arithmetic operations only: loops vectorise, and the result is identical on
+ * every machine. */
 #ifndef SPHPROOF_CUBE_ROOT_H
 #define SPHPROOF_CUBE_ROOT_H
 
@@ -10,9 +10,10 @@
 #include "specialise.h"
 
 /* x^(1/3) to one unit in the last place; x > 0, neither subnormal nor within a factor of 4 of the
- * largest double. The upper half of a double's bits is nearly a logarithm: a third of it, shifted,
- * is good to 1/32 (as in FreeBSD). Two steps of Halley's method and one of Newton's follow.
- * 2^52 turns an integer in the lower bits into a number, and back. */
+ * largest double. The upper half of a double's bits is nearly a logarithm: one third of it plus a
+ * constant is accurate to 1/32 (as in FreeBSD). Two steps of Halley's method and one of Newton's
+ * follow. Adding and subtracting 2^52 converts between an integer in the lower bits and a double.
+ */
 ALWAYS_INLINE double cube_root(double x)
 {
     uint64_t bits;

@@ -12,7 +12,7 @@ void description_each(const struct simulation *simulation, description_visit *vi
 
 struct adding {
     struct description_sums sums;
-    double conditions, angles; /* how many are in the means */
+    double conditions, angles; /* numbers of values in the means */
 };
 
 static void add(void *context, size_t particle, const struct description *of)
@@ -38,7 +38,7 @@ struct description_sums description_sum(struct simulation *simulation)
     const double none = nan("");
     struct adding to = {.sums = {none, 0, none, 0, 0}};
     if (!simulation->plan.matrix) return (struct description_sums){none, none, none, none, 0};
-    /* where the last evaluation was one of the state alone, matrices are those of a stage before */
+    /* if the last evaluation did not compute rates, the matrices belong to an earlier stage */
     if (simulation->cost.steps > 0 && !simulation->scheme.integrator->ends_evaluated) {
         const struct simulation_cost cost = simulation->cost;
         simulation->plan.sums->matrix(simulation);

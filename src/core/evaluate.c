@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What an evaluation is made of, in its order; the sums know the geometry. */
+ * The passes of an evaluation, in order; struct sums handles the geometry. */
 #include <math.h>
 
 #include "breakdown.h"
@@ -9,7 +9,7 @@
 #include "specialise.h"
 #include "state.h"
 
-/* v and U from p and e. */
+/* Computes v and U from p and e. */
 static enum status find_primitives(struct simulation *simulation, struct error *error)
 {
     const struct particles *a = &simulation->particles;
@@ -20,7 +20,8 @@ static enum status find_primitives(struct simulation *simulation, struct error *
     return breakdown_of(simulation, i, "internal energy", a->U[i], error);
 }
 
-/* The interval to the present density sum, against the last one: half a step each side. */
+/* Time from the last density sum to this one over the time between the last two; sums are at the
+ * middle of steps. */
 static double prediction(const struct simulation *simulation)
 {
     const double before = simulation->dt_before;
@@ -48,7 +49,7 @@ enum status evaluate_rates(struct simulation *simulation, struct error *error)
     return status ? status : evaluate_rates_of_primitives(simulation, error);
 }
 
-/* Force m g, and m g . v of the total energy. */
+/* Adds the force m g, and m g . v to the rate of total energy. */
 static void fall(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
@@ -68,7 +69,7 @@ static void limit_time_step(struct simulation *simulation, double rate)
     simulation->time_step = simulation->scheme.cfl / largest(rate, simulation->sleep.rate);
 }
 
-/* Do closed gradients still make something of a constant? On a lattice they never do. */
+/* True if closed gradients do not yet vanish for a constant. On a lattice they always do. */
 static bool unsettled(const struct particles *a)
 {
     for (int k = 0; k < a->dim; k++)
@@ -77,7 +78,8 @@ static bool unsettled(const struct particles *a)
     return false;
 }
 
-/* Forces; those of a first state with closed gradients once it has potentials. */
+/* Computes the forces; for the first state with closed gradients repeatedly, until its potentials
+ * have converged. */
 static enum status find_forces(struct simulation *simulation, double *rate, struct error *error)
 {
     const struct plan *plan = &simulation->plan;
@@ -90,7 +92,7 @@ static enum status find_forces(struct simulation *simulation, double *rate, stru
     return status;
 }
 
-/* Rates of a state whose neighbours, widths and densities are known. */
+/* Computes the rates of a state whose neighbours, smoothing lengths and densities are known. */
 static enum status find_rates(struct simulation *simulation, struct error *error)
 {
     const struct plan *plan = &simulation->plan;
@@ -108,7 +110,7 @@ enum status evaluate_rates_of_primitives(struct simulation *simulation, struct e
 {
     const struct plan *plan = &simulation->plan;
     const struct particles *a = &simulation->particles;
-    /* the first widths have none before them that they could be predicted from */
+    /* there are no earlier smoothing lengths to predict the first ones from */
     const bool newton = plan->newton || simulation->dt <= 0;
     const enum status status = prepare(simulation, newton, error);
     if (status) return status;
@@ -120,7 +122,7 @@ enum status evaluate_rates_of_primitives(struct simulation *simulation, struct e
 enum status evaluate_rates_in_place(struct simulation *simulation, struct error *error)
 {
     const struct plan *plan = &simulation->plan;
-    /* predicted widths would be predicted once more, and a sum of energies has other terms now */
+    /* predicted smoothing lengths would be predicted twice, and the sum of energies has changed */
     if (!plan->newton || plan->energy_sum || !plan->sums->close)
         return evaluate_rates(simulation, error);
     const enum status status = find_primitives(simulation, error);

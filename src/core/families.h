@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Families whose members are choices in the equations. One list per family defines its enum (here),
- * its descriptors (scheme.c) and its axis in the tables of specialised loops, so that these always
- * agree. Each gradient and viscosity has a file of its own; their lists are generated
+ * Families whose members are choices in the equations. One list for each family defines its enum
+ * (here), its descriptors (scheme.c) and its axis in the tables of specialised loops, so that these
+ * always agree. Each gradient and viscosity has a file of its own; their lists are generated
  * (family_names.h).
  *
- * A member: CHOICE(symbol, name, label, paper); a list hands on what follows the first argument, so
- * that lists nest: FORMULATION_LIST(F, a) makes F(symbol, name, label, paper, a) of each member. */
+ * A member is CHOICE(symbol, name, label, paper). A list passes its further arguments to each
+ * member, so that lists nest: FORMULATION_LIST(F, a) expands to F(symbol, name, label, paper, a)
+ * for each member. */
 #ifndef SPHPROOF_FAMILIES_H
 #define SPHPROOF_FAMILIES_H
 
@@ -35,7 +36,7 @@
     CHOICE(BALSARA_ON, "on", "viscosity times |div v|/(|div v| + |curl v|)", "Balsara 1995",       \
            __VA_ARGS__)
 
-/* What is at the ends of the box in a direction. */
+/* Boundary condition at both ends of the box along an axis. */
 #define BOUNDARY_LIST(CHOICE, ...)                                                                 \
     CHOICE(BOUNDARY_PERIODIC, "periodic", "the other end follows", "", __VA_ARGS__)                \
     CHOICE(BOUNDARY_OPEN, "open", "nothing: gas may leave into a vacuum", "", __VA_ARGS__)         \
@@ -47,15 +48,15 @@
     CHOICE(ENERGY_INTERNAL, "internal", "U = m u", "", __VA_ARGS__)                                \
     CHOICE(ENERGY_TOTAL, "total", "E = U + p^2/2m: conserved to round-off", "", __VA_ARGS__)
 
-/* The width at which a pair's gradient is taken. */
+/* Smoothing length of a pair gradient. */
 #define PAIR_WIDTH_LIST(CHOICE, ...)                                                               \
     CHOICE(PAIR_WIDTH_MEAN, "mean", "mean of the gradients at h_i and h_j", "", __VA_ARGS__)       \
     CHOICE(PAIR_WIDTH_MAX, "max", "one gradient at max(h_i, h_j)", "", __VA_ARGS__)                \
     CHOICE(PAIR_WIDTH_HARMONIC, "harmonic", "one gradient at the harmonic mean of h_i and h_j",    \
            "", __VA_ARGS__)
 
-/* How h is found: by Newton to h_tolerance at every evaluation, or predicted from the last steps
- * with a single density sum, which goes through one Newton step before it predicts the next. */
+/* Method for h: Newton's method to h_tolerance at every evaluation, or prediction from the last
+ * steps with a single density sum, followed by one Newton step before the next prediction. */
 #define H_METHOD_LIST(CHOICE, ...)                                                                 \
     CHOICE(H_NEWTON, "newton", "root of h = eta (m/rho)^(1/d) at every evaluation", "",            \
            __VA_ARGS__)                                                                            \
@@ -69,7 +70,7 @@
            "one for each particle, by powers of two; pairs exchange impulses and energy", "",      \
            __VA_ARGS__)
 
-/* What moves particles besides the flow, in 2D and 3D: see shifting.h. */
+/* Particle shifting, in 2D and 3D: see shifting.h. */
 #define SHIFTING_LIST(CHOICE, ...)                                                                 \
     CHOICE(SHIFTING_NONE, "none", "particles move with the flow", "", __VA_ARGS__)                 \
     CHOICE(SHIFTING_FLUXES, "fluxes",                                                              \
@@ -79,9 +80,9 @@
            "as fluxes, with pair gradients that make nothing of a constant",                       \
            "Chiu, Wang, Hu & Jameson 2012; Trask, Bochev & Perego 2020", __VA_ARGS__)
 
-/* FAMILY(name, list, number of members, plural, title): enum name, scheme_name_family. Families
- * whose members have a file and a descriptor each: gradient.h, viscosity.h; those of plain choices;
- * all. */
+/* FAMILY(name, list, number of members, plural, title) defines enum name and scheme_name_family.
+ * First the families whose members have a file and a descriptor each (gradient.h, viscosity.h),
+ * then those of plain choices, then all. */
 #define FAMILY_FILE_LIST(FAMILY)                                                                   \
     FAMILY(gradient, GRADIENT_LIST, GRADIENTS, "gradients",                                        \
            "gradients of the equations of motion")                                                 \

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Families: kernels, gradients, formulations, integrators ... Every member is a const descriptor
- * whose first field is a struct member; a family lists pointers to them. `sphproof list`, the
- * lookup by name, error messages and the checks all read these lists. */
+ * whose first field is a struct member; a family lists pointers to its members. `sphproof list`,
+ * lookup by name, error messages and checks all use these lists. */
 #ifndef SPHPROOF_FAMILY_H
 #define SPHPROOF_FAMILY_H
 
@@ -9,8 +9,8 @@
 
 struct member {
     const char *name;  /* key in cases, options and results */
-    const char *label; /* one line for a person */
-    const char *paper; /* source; "" where there is none */
+    const char *label; /* one line, for display */
+    const char *paper; /* source, or "" */
 };
 
 struct family {
@@ -20,10 +20,10 @@ struct family {
     size_t n;
 };
 
-/* The member called name, or NULL. Cast it back to its descriptor. */
+/* The member called name, or NULL. Cast it to its descriptor. */
 const struct member *family_find(const struct family *family, const char *name);
 
-/* Position of the member called name, or -1. */
+/* Index of the member called name, or -1. */
 int family_index(const struct family *family, const char *name);
 
 #endif

@@ -7,10 +7,10 @@
 #include "solver.h"
 #include "width.h"
 
-/* In place of a density: kept, but its own sums are complete. */
+/* In place of a density: the particle is fixed, but its density comes from its own sum. */
 #define HELD_BY_ITS_SUMS (-1.)
 
-/* Distance from the nearest end that is fixed, in smoothing lengths. */
+/* Distance from the nearest fixed end, in smoothing lengths. */
 static double from_end(const struct simulation *simulation, ptrdiff_t i)
 {
     const struct particles *a = &simulation->particles;

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Gradients of the equations of motion. A gradient is one file in gradient/ (its formula and its
- * descriptor) and one line in gradients.def. With x = r_j - r_i the gradient of a pair is G_i = x
- * times a weight, times either the inverse C_i of the moments sum_j V_j x x^T weight, or a number,
- * C_d h^-(d+2). Plan, sums, records and estimates read the descriptors: none of them names a
- * gradient. */
+ * descriptor) and one line in gradients.def. With x = r_j - r_i the pair gradient is G_i = x times
+ * a weight, times either the inverse C_i of the moments sum_j V_j x x^T weight, or the number C_d
+ * h^-(d+2). Plan, sums, records and estimates use only the descriptors and name no gradient. */
 #ifndef SPHPROOF_GRADIENT_H
 #define SPHPROOF_GRADIENT_H
 
@@ -11,19 +10,19 @@
 #include "family.h"
 #include "specialise.h"
 
-/* What the weight is made of. */
+/* Arguments of the weight. */
 enum gradient_weight {
     WEIGHT_NONE,  /* no matrix: the gradient of the kernel itself */
-    WEIGHT_W,     /* w(q) itself, with which velocity gradients share the moments */
+    WEIGHT_W,     /* w(q); velocity gradients can use the same moments */
     WEIGHT_SLOPE, /* a function of -w'(q)/q */
     WEIGHT_BOTH   /* a function of w(q) and -w'(q)/q */
 };
 
 struct gradient_descriptor {
     struct member member;
-    int least_dim; /* of space, that it has a form in */
+    int least_dim; /* lowest dimension that it is defined in */
     enum gradient_weight weight;
-    /* of the standard gradient at a particle where h has a gradient of this length; NULL: none */
+    /* Weight of the standard gradient at a particle, from steepness = |grad h|; NULL: none. */
     double (*share)(double steepness);
 };
 
@@ -31,14 +30,14 @@ struct gradient_descriptor {
 #include "gradient/gradients.def"
 #undef GRADIENT
 
-/* By enum gradient; constant for loops that are specialised. */
+/* By enum gradient; constant, for specialised loops. */
 static const struct gradient_descriptor gradient_of[GRADIENTS] = {
 #define GRADIENT(name, ...) {__VA_ARGS__},
 #include "gradient/gradients.def"
 #undef GRADIENT
 };
 
-/* The weight of x; slope: -w'(q)/q. What the descriptor does not ask for may be anything. */
+/* The weight of x; slope: -w'(q)/q. Arguments that the descriptor does not need may be anything. */
 ALWAYS_INLINE double gradient_weight(enum gradient gradient, double w, double slope)
 {
     switch (gradient) {

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* One pass over the list defines the descriptors, a second one lists them. */
+/* Reading the list once defines the descriptors; reading it again lists them. */
 #define KERNEL(name, ...)                                                                          \
     static const struct kernel kernel_##name = {.w = name##_w, .dw = name##_dw, __VA_ARGS__};
 #include "kernel/kernels.def"
@@ -102,7 +102,7 @@ enum status kernel_select(struct kernel *kernel, const char *name, int sinc_orde
             return error_set(error, STATUS_BAD_INPUT, "sinc_n = %d: allowed are %d to %d",
                              sinc_order, SINC_ORDER_MIN, SINC_ORDER_MAX);
         kernel->order = sinc_order;
-        /* below n = 5 the cut at q = 1 spoils the lattice sums at n/2 */
+        /* below n = 5 the cut-off at q = 1 spoils the lattice sums at n/2 */
         kernel->default_eta = fmax(2.5, 0.5 * sinc_order);
         /* declared for n = 5 */
         if (sinc_order != 5) kernel->stable_eta[0] = kernel->stable_eta[1] = 0;

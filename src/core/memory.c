@@ -25,7 +25,7 @@ double memory_bytes(const struct setup *setup)
 {
     struct simulation simulation = {.scheme = setup->scheme, .plan = plan_of_setup(setup)};
     const double n = (double)setup->n;
-    enum { OTHERS = 3 }; /* id, order, spare; and those of a snapshot */
+    enum { OTHERS = 3 }; /* id, order, spare; the wrapped positions of a snapshot are added below */
     const size_t arrays = particles_arrays(setup->dim, memory_uses(&simulation)) + OTHERS;
     return sizeof(double) * n * (double)(arrays + (size_t)setup->dim) +
            simulation.plan.sums->bytes(&simulation, n);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Memory in large pages. In pages of 4 kB what is read in no order has its address looked up nearly
- * each time. */
+ * Memory in large pages. With pages of 4 kB nearly every random access needs an address
+ * translation. */
 #ifndef SPHPROOF_PAGES_H
 #define SPHPROOF_PAGES_H
 
@@ -8,10 +8,11 @@
 
 enum { PAGES_LARGE = 1 << 21 /* bytes */ };
 
-/* Asks for large pages for what of the block lies on whole ones, where the system has them. */
+/* Requests large pages for the part of the block that fills whole ones, if the system has them. */
 void pages_ask_large(void *block, size_t bytes);
 
-/* Bytes for free(), at a cache line, in large pages if they fill one. NULL: none left. */
+/* Allocates memory aligned to a cache line, in large pages if it fills one; release with free().
+ * NULL: no memory. */
 void *pages_allocate(size_t bytes);
 
 #endif

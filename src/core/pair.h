@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The physics of one pair of particles, for every dimension. Geometry comes in as scalars:
+ * The physics of one pair of particles, for every dimension. The geometry is given by scalars:
  *
  *   r        distance |x_i - x_j|
- *   closing  -v_ij . e_ij with e_ij = (x_i - x_j)/r: positive where the pair approaches
- *   G        size of the pair gradient. With the gradient in use grad_i W = -G e_ij (standard; in
- *            1D also ia, where G > 0 as well) the terms below are forces along e_ij. Where the
- *            gradient is a vector of its own (ia in 2D and 3D), pass 1 and multiply by the vector.
+ *   closing  -v_ij . e_ij with e_ij = (x_i - x_j)/r: positive if the pair approaches
+ *   G        size of the pair gradient. If grad_i W = -G e_ij (standard; in 1D also ia, where
+ *            G > 0 as well) the terms below are forces along e_ij. If the gradient has a direction
+ *            of its own (ia in 2D and 3D), pass 1 and multiply by the vector.
  *
- * Terms come as a_i, a_j: what either particle contributes to the pair,
+ * Terms are returned as a_i, a_j, the contribution of each particle to the pair,
  *   m_i dv_i/dt = sum_j (a_i + a_j) e_ij,   dU_i/dt = sum_j a_i closing,
- * so that forces are antisymmetric and what leaves the kinetic energy arrives as heat. */
+ * so that forces are antisymmetric and lost kinetic energy becomes heat. */
 #ifndef SPHPROOF_PAIR_H
 #define SPHPROOF_PAIR_H
 
@@ -46,12 +46,12 @@ ALWAYS_INLINE struct pair_terms pair_pressure_lagrangian(const struct pair_side 
                                j->b * (i->Z - i->m * j->grad_h) * G_j};
 }
 
-/* Either of them; vanilla_ice has one gradient, G_i. */
+/* The pressure term of a formulation; vanilla_ice uses only G_i. */
 ALWAYS_INLINE struct pair_terms pair_pressure(enum formulation formulation,
                                               const struct pair_side *i, const struct pair_side *j,
                                               double G_i, double G_j)
 {
-    switch (formulation) { /* every member of the list: another one does not compile without */
+    switch (formulation) { /* without default, so that a missing member is a compile-time error */
     case FORMULATION_VANILLA_ICE:
         return pair_pressure_vanilla_ice(i, j, G_i);
     case FORMULATION_LAGRANGIAN:
@@ -62,7 +62,7 @@ ALWAYS_INLINE struct pair_terms pair_pressure(enum formulation formulation,
 
 /* --- viscosity -------------------------------------------------------------------------------- */
 
-/* hbar = (h_i + h_j)/4 as a quotient: who has only 1/h needs no division for it. */
+/* hbar = (h_i + h_j)/4 = over/under: computed from 1/h without a division. */
 struct pair_mean_width {
     double over, under;
 };
@@ -77,16 +77,16 @@ ALWAYS_INLINE struct pair_mean_width pair_mean_width_inverse(double h_inverse_i,
     return (struct pair_mean_width){h_inverse_i + h_inverse_j, 4 * (h_inverse_i * h_inverse_j)};
 }
 
-/* The term m_i m_j PI G/2 that viscosity adds to a_i and to a_j alike (heat in halves), in the form
- * of Monaghan 1992, CONVENTIONS eqs. 5.6 to 5.8: PI = (-alpha cbar mu + beta mu^2)/rhobar, mu =
- * -hbar closing r/(r^2 + 0.01 hbar^2), hbar = (h_i + h_j)/4, 0 where the pair recedes. G: mean of
- * both gradients. */
+/* The term m_i m_j PI G/2 that viscosity adds to both a_i and a_j (each particle gets half of the
+ * heat), in the form of Monaghan 1992, CONVENTIONS eqs. 5.6 to 5.8: PI = (-alpha cbar mu + beta
+ * mu^2)/rhobar, mu = -hbar closing r/(r^2 + 0.01 hbar^2), hbar = (h_i + h_j)/4; 0 if the pair
+ * recedes. G: mean of both gradients. */
 ALWAYS_INLINE double pair_viscous(struct viscosity_seen seen, const struct pair_side *i,
                                   const struct pair_side *j, struct pair_mean_width h_bar, double r,
                                   double G)
 {
-    /* mu = -t under/D2; cbar and rhobar are halves of sums: alpha_half goes with the sum of c, and
-     * the 1/2 of the heating with the sum of rho */
+    /* mu = -t under/D2. cbar and rhobar are half sums: one half is in alpha_half, and the sum of
+     * the densities absorbs the 1/2 of the heating. */
     const double over = h_bar.over, under = h_bar.under, t = over * r * seen.closing;
     const double D2 = (r * r * (under * under) + 0.01 * (over * over)) * seen.scale;
     return i->m * j->m * G * t * (seen.alpha_half * seen.c_sum * D2 + seen.beta * t * under) *
@@ -94,7 +94,7 @@ ALWAYS_INLINE double pair_viscous(struct viscosity_seen seen, const struct pair_
 }
 
 /* The same term with the signal velocity (Monaghan 1997, CONVENTIONS eq. 6.2), for closing = -w_ij
- * > 0: PI = (alpha cbar + (beta/2) closing) closing/rhobar. midpoint: the scale is not 1. */
+ * > 0: PI = (alpha cbar + (beta/2) closing) closing/rhobar. midpoint: scale differs from 1. */
 ALWAYS_INLINE double pair_viscous_signal(bool midpoint, struct viscosity_seen seen,
                                          const struct pair_side *i, const struct pair_side *j,
                                          double G)
@@ -108,16 +108,16 @@ ALWAYS_INLINE double pair_viscous_signal(bool midpoint, struct viscosity_seen se
 
 /* --- energy ----------------------------------------------------------------------------------- */
 
-/* Heating of either particle, CONVENTIONS eqs. 5.2 and 5.4: dU_i/dt = sum_j a_i closing (a_i = f_i
- * P_i V_i V_j G and half of the viscosity). */
+/* Heating of both particles, CONVENTIONS eqs. 5.2 and 5.4: dU_i/dt = sum_j a_i closing (a_i = f_i
+ * P_i V_i V_j G plus half of the viscosity). */
 ALWAYS_INLINE struct pair_terms pair_heating(struct pair_terms a, double closing)
 {
     return (struct pair_terms){a.i * closing, a.j * closing};
 }
 
-/* Total energy that passes from i to j along one axis, CONVENTIONS eq. 5.5 (v_i, v_j: velocities
- * along it, a: terms along it): the pressure of each with the velocity of the other, so that dE_i =
- * -dE_j = v_i . dp_i + dU_i. */
+/* Flux of total energy from i to j along one axis, CONVENTIONS eq. 5.5 (v_i, v_j: velocities along
+ * it, a: terms along it): the pressure of each particle times the velocity of the other, so that
+ * dE_i = -dE_j = v_i . dp_i + dU_i. */
 ALWAYS_INLINE double pair_energy_flux(struct pair_terms a, double v_i, double v_j)
 {
     return a.j * v_i + a.i * v_j;
@@ -125,8 +125,8 @@ ALWAYS_INLINE double pair_energy_flux(struct pair_terms a, double v_i, double v_
 
 /* --- time step -------------------------------------------------------------------------------- */
 
-/* Is a distance r inside the wider of two supports? By the widths that sums are taken at (1/h):
- * neighbours are looked for within those, so that every pair that counts is found. */
+/* True if r is inside the larger of two supports, with the smoothing lengths of the sums. The
+ * neighbour search uses the same, so it finds every pair that counts. */
 ALWAYS_INLINE bool pair_within(double r, double h_inverse_i, double h_inverse_j)
 {
     return r * least(h_inverse_i, h_inverse_j) < 1;
@@ -151,7 +151,8 @@ ALWAYS_INLINE double pair_conduction(double alpha_u, double alpha_s, double P_i,
     return (alpha_u + alpha_s * least(shock, 1)) * sqrt(jump * per_rho) * per_rho;
 }
 
-/* May alpha_s act between these? Where it may not, it is exactly 0: round-off has room. */
+/* True if alpha_s may act on this pair, with a margin for round-off; otherwise its term is exactly
+ * 0. */
 ALWAYS_INLINE bool pair_shocked(double P_i, double P_j)
 {
     return 5 * fabs(P_i - P_j) > 0.999 * (fabs(P_i) + fabs(P_j));

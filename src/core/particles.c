@@ -15,7 +15,7 @@ enum { ARRAYS_MAX = 0 PARTICLE_FIELDS(SCALAR, VECTOR) };
 #undef SCALAR
 #undef VECTOR
 
-/* Lists where the particles' pointers to arrays of these uses stand; returns their number. */
+/* Lists the addresses of the pointers to arrays of these uses; returns their number. */
 static size_t list_arrays(struct particles *particles, unsigned uses, double **arrays[ARRAYS_MAX])
 {
     size_t count = 0;
@@ -49,14 +49,14 @@ static enum status allocate(struct particles *particles, struct error *error)
     particles->ghosts = (particles->ghosts + LINE - 1) / LINE * LINE;
     const ptrdiff_t length = stride(particles->n, particles->ghosts);
     const size_t bytes = ((size_t)length * (count + 1) + LINE) * sizeof(double);
-    /* what a scheme has no use for stays untouched, and takes no room */
+    /* arrays that the scheme does not use stay untouched and take no memory */
     particles->block = calloc(1, bytes);
     if (!particles->block)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles (%zu MiB)",
                          particles->n, bytes >> 20);
-    /* A pass walks along a dozen arrays at once. In pages of 4 kB their addresses, and the fetching
-     * of what comes next, begin anew every 512 particles. Short arrays are left alone: those
-     * without use would share a page with others, and take room. */
+    /* A pass reads a dozen arrays at once; with pages of 4 kB it needs new address translations and
+     * restarts prefetching every 512 particles. Short arrays keep small pages: otherwise unused
+     * arrays would share a page with others and take memory. */
     if ((size_t)length * sizeof(double) >= PAGES_LARGE) pages_ask_large(particles->block, bytes);
     const size_t beyond = (uintptr_t)particles->block / sizeof(double) % LINE;
     double *next = particles->block + (LINE - (ptrdiff_t)beyond) % LINE + particles->ghosts;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Storage of the solver: structure of arrays, vectors by component. In 1D they are sorted by
- * position, with ghost copies of images at both ends, so that no inner loop knows of a boundary
- * (ghosts is 0 where none are kept). Every array has indices -ghosts .. n-1+ghosts.
- * Positions are unwrapped: x may leave the box. */
+ * Particle storage: structure of arrays, vectors by component. In 1D particles are sorted by
+ * position, with ghost copies of images at both ends, so that inner loops need no boundary
+ * conditions (otherwise ghosts is 0). Every array has indices -ghosts .. n-1+ghosts. Positions are
+ * unwrapped: x may leave the box. */
 #ifndef SPHPROOF_PARTICLES_H
 #define SPHPROOF_PARTICLES_H
 
@@ -12,11 +12,11 @@
 #include "serialiser.h"
 #include "status.h"
 
-/* What an array is for. One that a run has no use for stays as it was allocated: whoever reads it
- * may make it take memory, whoever writes to it loses what was written. */
+/* Uses of an array. An array that a run does not use is never touched, and so takes no memory:
+ * reading it may allocate memory, and written values are lost. */
 enum particle_use {
     USE_ALWAYS = 1 << 0,
-    USE_START = 1 << 1, /* of a step, which the integrator keeps */
+    USE_START = 1 << 1, /* the start of a step, kept by the integrator */
     USE_PREDICTED_WIDTH = 1 << 2,
     USE_GRAD_H = 1 << 3,
     USE_ALPHA = 1 << 4,
@@ -29,8 +29,9 @@ enum particle_use {
     USE_ALL = (1 << 11) - 1,
 };
 
-/* SCALAR(name, use, meaning) or VECTOR(name, use, meaning). The first group is the state, the rest
- * is derived in an evaluation or belongs to the integrator; a change of order permutes them all. */
+/* SCALAR(name, use, meaning) or VECTOR(name, use, meaning). The first group is the state; the
+ * others are computed in an evaluation or belong to the integrator. A change of order permutes all.
+ */
 #define PARTICLE_FIELDS(SCALAR, VECTOR)                                                            \
     VECTOR(x, USE_ALWAYS, "position")                                                              \
     VECTOR(x_old, USE_ALWAYS, "position kept by the integrator")                                   \
@@ -80,42 +81,42 @@ enum particle_use {
     SCALAR(de_shift, USE_SHIFT, "and energy, not in de")
 
 struct particles {
-    int dim; /* components of vectors; the others are NULL */
+    int dim; /* number of components of vectors; the other pointers are NULL */
     ptrdiff_t n;
     ptrdiff_t ghosts; /* images at each end */
-    unsigned uses;    /* of enum particle_use; at first all */
-    double period[3]; /* lengths of the box */
+    unsigned uses;    /* mask of enum particle_use; initially all */
+    double period[3]; /* side lengths of the box */
 #define SCALAR(name, use, meaning) double *name;
 #define VECTOR(name, use, meaning) double *name[3];
     PARTICLE_FIELDS(SCALAR, VECTOR)
 #undef SCALAR
 #undef VECTOR
     size_t *id;    /* index in the setup */
-    double *block; /* what the arrays live in */
-    double *spare; /* one array, for permutations and snapshots */
-    size_t *order; /* likewise: where the particle that belongs at place i stands */
+    double *block; /* memory of the arrays */
+    double *spare; /* work array, for permutations and snapshots */
+    size_t *order; /* work array: current index of the particle to be moved to index i */
 };
 
-/* Allocates everything (zeros). STATUS_ENVIRONMENT without memory. */
+/* Allocates all arrays, zeroed. STATUS_ENVIRONMENT: no memory. */
 enum status particles_create(struct particles *particles, int dim, ptrdiff_t n, ptrdiff_t ghosts,
                              struct error *error);
 void particles_destroy(struct particles *particles);
 
-/* How many arrays particles of these uses have. */
+/* Number of arrays with these uses. */
 size_t particles_arrays(int dim, unsigned uses);
 
-/* Makes room for more ghosts, keeping all values. Invalidates pointers to arrays. */
+/* Enlarges the space for ghosts and keeps all values. Invalidates pointers to arrays. */
 enum status particles_grow_ghosts(struct particles *particles, ptrdiff_t ghosts,
                                   struct error *error);
 
-/* All values that are of use, those of ghosts included. Back: to particles of the same uses; may
- * invalidate pointers to arrays; fails without memory for as many ghosts. */
+/* Serialises all values in use, including those of ghosts. Restoring needs particles with the same
+ * uses, may invalidate pointers to arrays, and fails without memory for the ghosts. */
 void particles_serialise(struct particles *particles, struct serialiser *serialiser);
 
-/* Puts the particle at place order[i] to place i, all of its values. Ghosts are not touched. */
+/* Moves the particle with index order[i] to index i, with all its values. Ghosts are not moved. */
 void particles_permute(struct particles *particles);
 
-/* Size of the vector of particle i; in 1D exactly |vector[0][i]|. */
+/* Length of the vector of particle i; in 1D exactly |vector[0][i]|. */
 static inline double particles_norm(const struct particles *particles, double *const vector[3],
                                     ptrdiff_t i)
 {

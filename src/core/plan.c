@@ -100,7 +100,7 @@ static void find_warnings(const struct scheme *scheme, int dim, char *text, size
              "energy=total: should the flow get cold (u << v^2), U = E - p^2/2m loses digits");
 }
 
-/* How particles find each other. */
+/* Explains the neighbour search. */
 static void explain_neighbours(const struct setup *setup, struct writer *writer)
 {
     static const char *const ghosts[] = {

@@ -18,13 +18,13 @@
 FAMILY_FILE_LIST(FAMILY_OF_FILES)
 FAMILY_CHOICE_LIST(FAMILY_OF_CHOICES)
 
-/* A choice of another key that one does not go together with. */
+/* An incompatible choice of another key. */
 struct exclusion {
     bool excluded;
     const char *key, *name, *why;
 };
 
-/* The first of them that is excluded. */
+/* Reports the first excluded combination. */
 static enum status refuse_first(const char *choice, const struct exclusion *list, size_t n,
                                 struct error *error)
 {
@@ -55,7 +55,7 @@ static enum status check_steps(const struct scheme *scheme, struct error *error)
     return refuse_first("steps=local", list, sizeof list / sizeof *list, error);
 }
 
-/* Shifting changes masses, and excludes all that takes them for constant. */
+/* Shifting changes masses, and excludes everything that assumes constant masses. */
 static enum status check_shifting(const struct scheme *scheme, struct error *error)
 {
     const struct exclusion list[] = {
@@ -79,8 +79,8 @@ static enum status check_shifting(const struct scheme *scheme, struct error *err
     return refuse_first(chosen, list, sizeof list / sizeof *list, error);
 }
 
-/* Of 2D: wide smooth kernel and ia, which repairs the error of a uniform pressure, with a viscosity
- * that damps noise and leaves shear alone: the only one that is among the best both for vortices
+/* In 2D and 3D: a wide smooth kernel, ia, which removes the error for uniform pressure, and a
+ * viscosity that damps noise but not shear: the only combination among the best both for vortices
  * and for Kelvin-Helmholtz (see the tables of cases/README.md). */
 static void default_choices(struct scheme *scheme, const struct scheme_open *open, bool line)
 {
@@ -121,14 +121,14 @@ void scheme_default(struct scheme *scheme, const struct scheme_open *open, int d
     const bool inviscid = viscosity->none || (scheme->alpha == 0 && scheme->beta == 0);
     if (open->shock_conductivity && inviscid) scheme->shock_conductivity = 0;
     if (!open->cfl) return;
-    /* long steps are stable with this much viscosity, and not needed without */
+    /* long steps are stable up to this viscosity, and not worthwhile without any */
     const double most_alpha = viscosity->evolve ? scheme->alpha_max : scheme->alpha;
     const bool long_steps =
         own && standard && kernel->predicted.cfl > 0 && scheme->eta == kernel->default_eta &&
         !viscosity->none && most_alpha <= kernel->predicted.alpha &&
         scheme->h_method == H_PREDICTED && scheme->volume_element == VOLUME_MASS;
-    /* mu grows as h/r where particles close: in a strong shock (sedov_2d) longer steps would leave
-     * cold gas ahead of it without internal energy */
+    /* mu grows as h/r when particles approach: in a strong shock (sedov_2d) longer steps would
+     * leave cold gas ahead of it without internal energy */
     const bool bounded = viscosity->none || scheme->viscosity_form == VISCOSITY_FORM_SIGNAL;
     const double cloud_cfl =
         scheme->shifting == SHIFTING_CLOSED ? integrator->closed_cfl : integrator->cloud_cfl;
@@ -158,7 +158,7 @@ size_t scheme_members(const struct family *family, int dim)
     return family->n;
 }
 
-/* Choices that need two dimensions. */
+/* Refuses choices that need two dimensions. */
 static enum status check_members(const struct scheme *scheme, int dim, struct error *error)
 {
     const struct {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The state of a simulation, carried out of it or back into one that was created of the same setup.
- * Each part hands its memory over in the same order both ways, so that what is kept and what is
- * restored cannot come apart. */
+ * Saves the state of a simulation, or restores it to one created from the same setup. Each part
+ * passes its memory in the same order in both directions, so that saving and restoring cannot
+ * disagree. */
 #ifndef SPHPROOF_SERIALISER_H
 #define SPHPROOF_SERIALISER_H
 
@@ -9,10 +9,10 @@
 #include <stddef.h>
 
 struct serialiser {
-    bool (*bytes)(void *context, void *bytes, size_t n); /* takes them, or fills them in */
+    bool (*bytes)(void *context, void *bytes, size_t n); /* saves or fills in n bytes */
     void *context;
-    bool back;   /* into the simulation */
-    bool failed; /* something could not be carried: what follows is left as it is */
+    bool back;   /* direction: true restores the simulation */
+    bool failed; /* a call of bytes failed; later calls do nothing */
 };
 
 static inline void serialise(struct serialiser *serialiser, void *bytes, size_t n)
@@ -21,7 +21,7 @@ static inline void serialise(struct serialiser *serialiser, void *bytes, size_t 
         serialiser->failed = !serialiser->bytes(serialiser->context, bytes, n);
 }
 
-/* Anything that has an address and no pointers in it. */
+/* For objects without pointers. */
 #define SERIALISE(serialiser, thing) serialise(serialiser, &(thing), sizeof(thing))
 
 #endif

@@ -13,7 +13,7 @@
 #include "solver.h"
 #include "width.h"
 
-/* A time step that is so much shorter than another of the same run will not get it anywhere. */
+/* Ratio of a time step to the longest one of the run below which the run makes no progress. */
 static const double collapse = 1e-9;
 
 static bool collapsed(const struct simulation *simulation, double dt)
@@ -21,9 +21,10 @@ static bool collapsed(const struct simulation *simulation, double dt)
     return !(dt > collapse * simulation->largest_dt && simulation->time + dt > simulation->time);
 }
 
-/* Nor will one whose particles have clumped while its steps have become short. A particle of a
- * healthy run visits all n at most, and longest steps are not a hundred times the usual ones:
- * LeBlanc's problem with equal numbers of particles has the most known, 2.8 n. */
+/* Stops a run whose particles have clumped and whose steps have become short. In a healthy run a
+ * particle has at most n interactions per evaluation, and the longest step is less than 100 times
+ * the usual one: the largest known work is 2.8 n per longest step, in LeBlanc's problem with equal
+ * numbers of particles. */
 static enum status check_work(const struct simulation *simulation, struct error *error)
 {
     const double n = (double)simulation->particles.n, most = 1e5 + 100 * n;
@@ -42,8 +43,8 @@ static double wall_seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Of all threads. CLOCK_PROCESS_CPUTIME_ID advances by whole ticks of 4 ms once a process has a
- * limit of its CPU time (ulimit -t). */
+/* CPU time of all threads. CLOCK_PROCESS_CPUTIME_ID advances in ticks of 4 ms once a process has a
+ * CPU time limit (ulimit -t). */
 static double cpu_seconds(void)
 {
     struct rusage usage;
@@ -72,8 +73,9 @@ static enum status check_particle(const struct setup *setup, size_t i, struct er
     return STATUS_OK;
 }
 
-/* Particles at a surface would shift into the vacuum, those that are kept give away what they keep,
- * and the potential energy of what is exchanged is in no flux. */
+/* Excludes open boundaries, where particles would shift into the vacuum, fixed ones, whose
+ * particles would give away their fixed values, and gravity, because the fluxes contain no
+ * potential energy. */
 enum status simulation_check_shifting(const struct setup *setup, struct error *error)
 {
     const char *chosen = scheme_shifting_family.members[setup->scheme.shifting]->name;
@@ -120,7 +122,7 @@ static enum status check_setup(const struct setup *setup, struct error *error)
     return shifting ? shifting : scheme_check(&setup->scheme, setup->dim, error);
 }
 
-/* The state of the setup, with a first guess of h. */
+/* Sets the state from the setup, with a first guess of h. */
 static void set_particles(struct simulation *simulation, const struct setup *setup)
 {
     struct particles *a = &simulation->particles;
@@ -143,7 +145,7 @@ static void set_particles(struct simulation *simulation, const struct setup *set
             a->p[k][i] = m * v;
             if (scheme->energy == ENERGY_TOTAL) a->e[i] += 0.5 * m * v * v;
         }
-        /* what is not written to takes no room */
+        /* an array that is never written takes no memory */
         if (varies || a->dim == 1)
             a->alpha[i] = a->alpha_old[i] = varies ? scheme->alpha_min : scheme->alpha;
         a->h[i] = width_of(&rule, m, rho);
@@ -163,7 +165,7 @@ static enum status allocate(struct simulation *simulation, ptrdiff_t n, struct e
                  : error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", n);
 }
 
-/* The state of the setup. */
+/* Copies the setup's state. */
 static enum status copy_setup(struct simulation *simulation, const struct setup *setup,
                               struct error *error)
 {
@@ -202,7 +204,7 @@ enum status simulation_take(const struct setup *setup, struct simulation **resul
     return status;
 }
 
-/* From the state to the rates of its first step. */
+/* Computes the rates of the first step. */
 enum status simulation_begin(struct simulation *simulation, struct error *error)
 {
     const struct sums *sums = simulation->plan.sums;
@@ -251,20 +253,20 @@ static void stop_clocks(struct simulation *simulation)
     simulation->cost.cpu_s = cpu_seconds() - simulation->cpu_start;
 }
 
-/* Signal speeds know velocities, and so nothing of light particles at rest beside a high pressure:
- * the first step is no longer than cfl sqrt(h/a): they move a quarter of h. A much
- * shorter one would leave the second, which knows only velocities, too long. */
+/* The first step is at most cfl sqrt(h/a), in which a particle moves a quarter of h: signal speeds
+ * depend on velocities, and so miss light particles at rest beside a high pressure. A much shorter
+ * step would leave the second one, which again depends only on velocities, too long. */
 static double first_time_step(const struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
     const double part = simulation->scheme.integrator->first_step;
-    double pull = 0; /* a/h */
+    double pull = 0; /* largest a/h */
     for (ptrdiff_t i = 0; i < a->n; i++)
         pull = fmax(pull, particles_norm(a, a->F, i) * a->m_inverse[i] * a->h_inverse[i]);
     return fmin((part > 0 ? part : 1) * simulation->time_step, simulation->scheme.cfl / sqrt(pull));
 }
 
-/* The particle that limits the time step. */
+/* Finds the particle that limits the time step. */
 static ptrdiff_t limiting_particle(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
@@ -280,7 +282,7 @@ double simulation_time_after(const struct simulation *simulation, double dt)
     return dt >= simulation->t_end - simulation->time ? simulation->t_end : simulation->time + dt;
 }
 
-/* t_end is met exactly: the last step is cut, and the last two are made equal. */
+/* The last step is shortened to end at t_end exactly, and the last two are made equal. */
 double simulation_next_step(const struct simulation *simulation, double time)
 {
     const double left = simulation->t_end - time;
@@ -289,8 +291,8 @@ double simulation_next_step(const struct simulation *simulation, double time)
     return 2 * dt > left ? 0.5 * left : dt;
 }
 
-/* Energy is kept to the order of the integrator; where half of it has come or gone, an instability
- * has run away with it. Layers that are kept give and take as much as gas that moves away does. */
+/* Energy is conserved to the order of the integrator; a change by half of it is an instability.
+ * Runs with fixed layers are not checked, because these exchange energy with the moving gas. */
 static enum status check_energy(const struct simulation *simulation, struct error *error)
 {
     struct conservation sums;
@@ -303,7 +305,7 @@ static enum status check_energy(const struct simulation *simulation, struct erro
                      simulation->time, sums.energy, simulation->start_energy);
 }
 
-/* One step. STATUS_BROKE_DOWN: the state is the last sound one. */
+/* Takes one step. STATUS_BROKE_DOWN: the state is the last valid one. */
 static enum status advance(struct simulation *simulation, struct error *error)
 {
     double dt = simulation_next_step(simulation, simulation->time);
@@ -312,7 +314,7 @@ static enum status advance(struct simulation *simulation, struct error *error)
         dt = steps_begin_block(simulation, dt, simulation->t_end - simulation->time);
     const bool local = simulation->plan.local && !simulation->steps.single;
     const bool last = simulation_time_after(simulation, dt) >= simulation->t_end;
-    /* in the last step t_end alone decides, however near it is */
+    /* the last step may be arbitrarily short */
     if (!last && collapsed(simulation, dt))
         return breakdown_of(simulation, limiting_particle(simulation), "collapsed time step", dt,
                             error);
@@ -326,8 +328,7 @@ static enum status advance(struct simulation *simulation, struct error *error)
     if (simulation->plan.signal_pass && simulation->time < simulation->t_end)
         evaluate_signal(simulation);
     if (!local)
-        simulation->plan.sums->sleep_update(
-            simulation); /* makes new ranges, whose reach is unknown */
+        simulation->plan.sums->sleep_update(simulation); /* creates new ranges without a reach */
     struct simulation_cost *cost = &simulation->cost;
     const uint64_t steps = local ? 1u << simulation->steps.depth : 1;
     const uint64_t all = steps * (uint64_t)simulation->particles.n;
@@ -448,7 +449,7 @@ void simulation_rates(const struct simulation *simulation, struct rates *rates)
     }
 }
 
-/* sum r x p, sum |r x p| and sum |r| m c. */
+/* Adds up r x p, |r x p| and |r| m c. */
 static void add_turning(const struct simulation *simulation, struct conservation *sums)
 {
     const struct particles *a = &simulation->particles;
@@ -477,7 +478,7 @@ static void add_straight(const struct simulation *simulation, struct conservatio
 {
     const struct particles *a = &simulation->particles;
     const bool total = simulation->scheme.energy == ENERGY_TOTAL;
-    /* long double: the sums themselves shall not be what is measured */
+    /* long double, so that round-off of the sums does not count as a lack of conservation */
     long double mass = 0, momentum[3] = {0}, momentum_scale = 0, sound = 0, energy = 0, kinetic = 0;
     for (ptrdiff_t i = 0; i < a->n; i++) {
         mass += a->m[i];
@@ -500,7 +501,7 @@ static void add_straight(const struct simulation *simulation, struct conservatio
     sums->kinetic = (double)kinetic;
 }
 
-/* Two threads, each with whole sums, so that these are added in the same order as by one. */
+/* Two threads compute whole sums each, so that the order of addition is the same as with one. */
 void simulation_conservation(const struct simulation *simulation, struct conservation *sums)
 {
     const struct particles *a = &simulation->particles;

@@ -6,14 +6,14 @@
 
 #include "solver.h"
 
-enum { DUE_EVERY = 16 /* steps: a look at every particle that is awake */ };
+enum { DUE_EVERY = 16 /* steps between two checks of all awake particles */ };
 
 bool sleep_due(const struct simulation *simulation)
 {
     return simulation->cost.steps % DUE_EVERY == DUE_EVERY - 1;
 }
 
-/* Positions of order 1 are known to eps, spacings to n^(1/d) eps. */
+/* Positions of order 1 are accurate to eps, spacings to n^(1/d) eps. */
 double sleep_least_tolerance(const struct simulation *simulation)
 {
     const double n = (double)simulation->particles.n;
@@ -39,7 +39,7 @@ static void find_sound(struct simulation *simulation)
     simulation->sleep.sound = energy > 0 ? sqrt(gamma * (gamma - 1) * energy / mass) : 0;
 }
 
-/* Of the largest rate at the start, in units of the state: 1 is a jump's. */
+/* Tolerance over the largest rate at the start, in units of the state; a jump has rate 1. */
 static const double of_start = 1e-8;
 
 void sleep_scale(struct simulation *simulation)
@@ -59,7 +59,7 @@ double sleep_disturbance(const struct simulation *simulation, ptrdiff_t first, p
     const double sound = simulation->sleep.sound, in_tolerances = 1 / simulation->sleep.tolerance;
     double worst = 0;
     for (ptrdiff_t i = first; i < first + len; i++) {
-        const double c = a->c[i] < sound ? sound : a->c[i]; /* NaN stays */
+        const double c = a->c[i] < sound ? sound : a->c[i]; /* keeps NaN */
         const double rate = c / a->h[i], force = a->m[i] * c * rate;
         const double rates[4] = {
             particles_norm(a, a->F, i) / force,
@@ -88,9 +88,10 @@ void sleep_begin(struct simulation *simulation, ptrdiff_t first, ptrdiff_t len)
     }
 }
 
-/* Sums over all awake particles: the rates of mass, momentum and total energy whose opposite would
- * go to sleepers, and what they are shared out by. In long double, so that rounding is not shared
- * out. Over sleepers: the most that they would get, the tolerance of each. */
+/* Sums over all awake particles: the rates of mass, momentum and total energy, whose opposites the
+ * sleeping particles lack, and the weights for distributing these. In long double, so that
+ * round-off is not distributed. The maxima are sums over sleeping particles: the tolerance of each.
+ */
 struct leak {
     long double flow, force[3], power, mass, momentum[3], kinetic, heat;
     double most_flow, most_force, most_power;
@@ -133,14 +134,14 @@ static struct leak find_leak(const struct simulation *simulation)
     return leak;
 }
 
-/* What sleep explains of it; the rest stays in the sums, where faults of forces are looked for. NaN
- * stays. */
+/* The part of a leak that sleep can explain; the rest remains visible in the sums, where errors of
+ * forces are detected. Keeps NaN. */
 static long double within(long double leak, double most)
 {
     return leak > most ? most : leak < -most ? -most : leak;
 }
 
-/* Uniform velocity stays uniform: who gives mass gives its momentum and kinetic energy, too. */
+/* Mass carries its momentum and kinetic energy, so that uniform velocity stays uniform. */
 void sleep_balance(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
@@ -152,12 +153,12 @@ void sleep_balance(struct simulation *simulation)
     long double power = within(leak.power, leak.most_power) + flow * leak.kinetic;
     double g[3] = {0};
     for (int k = 0; k < a->dim; k++) {
-        if (simulation->boundary[k] == BOUNDARY_FIXED) return; /* layers take what they get */
-        if (simulation->boundary[k] == BOUNDARY_REFLECTING) continue; /* so do walls */
+        if (simulation->boundary[k] == BOUNDARY_FIXED) return;        /* layers absorb both */
+        if (simulation->boundary[k] == BOUNDARY_REFLECTING) continue; /* walls absorb momentum */
         g[k] = (double)(-within(leak.force[k], leak.most_force) / leak.mass);
         power += g[k] * leak.momentum[k];
     }
-    const double part = (double)(power / leak.heat); /* of internal energy, which stays positive */
+    const double part = (double)(power / leak.heat); /* of U, which stays positive */
     for (ptrdiff_t i = 0; i < a->n; i++) {
         if (simulation->plan.sums->sleeps(simulation, i)) continue;
         a->de[i] -= part * a->U[i];

@@ -1,43 +1,44 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Particles that no signal has reached sleep: on an undisturbed lattice the rates vanish to
- * round-off, so density, forces and time step are left out there. A sleeper keeps its velocity.
+ * round-off, so density, forces and time step are skipped there. A sleeping particle keeps its
+ * velocity.
  *
- * A particle is disturbed by |dp/dt| / (tol m c^2/h) or |de/dt| / (tol m c^2 (c + |v|)/h), where c
- * is its sound speed or the setup's mean one, whichever is more (c_s: all energy but that of the
- * common motion taken for heat); with particle shifting by |shift| / (tol c) as well, as cold gas
- * in disorder feels hardly any force. In 2D and 3D a sleeper wakes when what neighbours disturbed
- * by more than 1 make of its rates in a step comes to more than 1: the sum of K V h |dW/dr| times
- * their disturbance, as pressure acts in the equation of motion. K = 4 stands for viscosity,
- * matrices and growth within the step as well. In 1D whole ranges wake around a particle disturbed
- * by more than 1. Everywhere a sleeper wakes for a neighbour that moves against it at more than
- * tol c. A particle that is calm, to a quarter of these limits, falls asleep (again).
+ * The disturbance of a particle is |dp/dt| / (tol m c^2/h) or |de/dt| / (tol m c^2 (c + |v|)/h),
+ * where c is its sound speed or the setup's mean one c_s, whichever is larger (c_s: all energy
+ * except that of the common motion counted as heat); with particle shifting also |shift| / (tol c),
+ * because disordered cold gas has hardly any force. In 2D and 3D a sleeping particle wakes when the
+ * effect of neighbours with a disturbance above 1 on its rates within a step exceeds 1: the sum of
+ * K V h |dW/dr| times their disturbance, as pressure acts in the equation of motion. K = 4 also
+ * covers viscosity, matrices and growth within the step. In 1D whole ranges wake around a particle
+ * with a disturbance above 1. In every dimension a sleeping particle wakes if a neighbour moves
+ * relative to it at more than tol c. A particle that is below a quarter of these limits falls
+ * asleep (again).
  *
- * tol is 1e-8 of the largest rate at the start in 2D and 3D, at least 1e-11, but 1e-11 in 1D, where
- * strong fronts amplify any change by 1e7. In weak waves it is smaller in proportion.
+ * tol is 1e-8 of the largest rate at the start in 2D and 3D, at least 1e-11; in 1D it is 1e-11,
+ * because strong fronts amplify any change by 1e7. In weak waves it is smaller in proportion.
  *
- * What the left-out rates could do until t_end: they are at most about tol c^2/h. Over a time T
- * that changes velocities by tol c (c T/h) and distances, and so densities, by tol (c T/h)^2/2 of
- * h. Rates fall by orders of magnitude from reach to reach ahead of a wave and stand for h/c only
- * before the gas wakes: then both changes are about tol, of the part of the gas that is a
- * precursor, and means of fields change by 1e-10 to 1e-9 (errors L1, of 1e-4 and more, by 1e-8 of
- * themselves). With c_s for c they are compared with the fields that the setup's energy makes, not
- * with those of a cold gas that a blast will run over. A flow that amplifies round-off amplifies
- * this as well: skips act as a change of the start by the tolerance does.
+ * Effect of the skipped rates until t_end: they are at most about tol c^2/h. Over a time T this
+ * changes velocities by tol c (c T/h), and distances, and so densities, by tol (c T/h)^2/2 of h.
+ * Ahead of a wave, rates fall by orders of magnitude within one support radius, and they last only
+ * about h/c before the gas wakes: then both changes are about tol, in the precursor of the wave
+ * only, and means of fields change by 1e-10 to 1e-9 (L1 errors, of 1e-4 and more, by 1e-8 of
+ * themselves). With c_s in place of c the changes are relative to the fields that the setup's
+ * energy makes, not to a cold gas that a blast will run over. A flow that amplifies round-off
+ * amplifies these changes as well: sleep acts like a change of the start by the tolerance.
  *
- * Mass, momentum and energy that sleepers do not get are shared out among those awake
- * (sleep_balance), so that sums stay to round-off, but no more than the tolerance of each sleeper:
- * a force that is not antisymmetric still shows in the sums.
+ * The mass, momentum and energy that sleeping particles lack are distributed among the awake ones
+ * (sleep_balance), so that sums are conserved to round-off, but no more than the tolerance of each
+ * sleeping particle: a force that is not antisymmetric still shows in the sums.
  *
- * Of particles that are awake, what vanishes of their pairs is left out, too (plan.quiet):
- * - in 2D and 3D viscosity, where all neighbours move with the particle to a hundredth of tol c and
- *   have no velocity gradients above that over h, and velocity gradients, where they move together
- *   like this; not of viscosity=projected, whose direction the smallest gradient has, nor of
- *   cullen_dehnen, which sees the sign of a divergence;
- * - in 1D viscosity and velocity gradients of viscosity=reconstructed, in ranges all of whose pairs
+ * For awake particles, vanishing terms of pairs are skipped as well (plan.quiet):
+ * - in 2D and 3D viscosity, if the velocities of all neighbours agree within a hundredth of tol c
+ *   and no velocity gradient exceeds this over h, and velocity gradients, if the velocities agree
+ *   likewise; not with viscosity=projected, which uses the direction of the smallest gradients, nor
+ *   with cullen_dehnen, which uses the sign of the divergence;
+ * - in 1D viscosity and velocity gradients of viscosity=reconstructed, in ranges where all pairs
  *   recede: there they are exactly 0.
- * Tried and dropped, as looking cost as much as was saved: keeping the matrices of particles whose
- * neighbours have not moved, and leaving out viscosity of constant alpha in 1D.
- */
+ * Tried and dropped, because the tests cost as much as they saved: keeping the matrices of
+ * particles whose neighbours have not moved, and skipping viscosity with constant alpha in 1D. */
 #ifndef SPHPROOF_SLEEP_H
 #define SPHPROOF_SLEEP_H
 
@@ -52,36 +53,37 @@ struct span {
 };
 
 struct sleep {
-    bool on;            /* some particles sleep, and spans leave them out */
-    bool at_rest;       /* all sleepers have no velocity: integrators may leave them out, too */
-    double rate;        /* largest signal speed / h of the sleepers */
-    double sound;       /* c_s; 0 before sleep_scale */
-    double tolerance;   /* tol; likewise */
-    struct span *spans; /* of awake particles; all particles where none sleeps */
+    bool on;          /* some particles sleep; spans exclude them */
+    bool at_rest;     /* all sleeping particles have zero velocity, so integrators may skip them */
+    double rate;      /* largest signal speed / h of the sleeping particles */
+    double sound;     /* c_s; 0 before sleep_scale */
+    double tolerance; /* tol; 0 before sleep_scale */
+    struct span *spans; /* of awake particles; one span of all if none sleeps */
     ptrdiff_t span_count, awake_count;
 };
 
-/* In units of the tolerance: an active particle below it may become inactive. */
+/* Disturbance below which an awake particle may fall asleep. */
 #define SLEEP_CALM 0.25
 
-/* Whether it is time, now and then, to look for particles that may fall asleep again. */
+/* True in those steps that look for particles that may fall asleep. */
 bool sleep_due(const struct simulation *simulation);
 
-/* The least tolerance there is, above the rounding of a lattice. */
+/* Lower bound of the tolerance, above the round-off of a lattice. */
 double sleep_least_tolerance(const struct simulation *simulation);
 
 /* Sets sleep.sound and sleep.tolerance from the state and its rates. */
 void sleep_scale(struct simulation *simulation);
 
-/* The largest rate of these particles, in tolerances; NaN where one is no number. */
+/* The largest disturbance of these particles; NaN if a rate is NaN. */
 double sleep_disturbance(const struct simulation *simulation, ptrdiff_t first, ptrdiff_t len);
 
-/* They fall asleep: they have no rates any more. */
+/* Sets the rates of these particles, which fall asleep, to 0. */
 void sleep_begin(struct simulation *simulation, ptrdiff_t first, ptrdiff_t len);
 
-/* After the rates of a state have been found: shares out among those awake what sleepers do not
- * get, up to the tolerance of each sleeper, so that momentum and total energy stay to round-off.
- * Where walls or fixed layers take momentum or energy, too, these are left alone. */
+/* Distributes among awake particles the rates that sleeping particles lack, up to the tolerance of
+ * each sleeping particle, so that momentum and total energy are conserved to round-off. To be
+ * called after the rates have been computed. Where walls or fixed layers absorb momentum or energy,
+ * these are not changed. */
 void sleep_balance(struct simulation *simulation);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The inside of a simulation, shared by its passes and the integrators and by no other code. */
+ * The internals of a simulation, used only by its passes and the integrators. */
 #ifndef SPHPROOF_SOLVER_H
 #define SPHPROOF_SOLVER_H
 
@@ -14,24 +14,24 @@
 #include "sums.h"
 #include "team.h"
 
-enum { WORTH_A_THREAD = 32 }; /* batches: with fewer of them threads cost more than they save */
+enum { WORTH_A_THREAD = 32 }; /* batches per thread: with fewer, threads cost more than they save */
 
 struct simulation {
     struct scheme scheme;
     struct plan plan;
     struct particles particles;
-    void *workspace;        /* what the sums keep; theirs */
-    void *integrator_state; /* what the integrator keeps; its own */
+    void *workspace;        /* owned by struct sums */
+    void *integrator_state; /* owned by the integrator */
     double lo[3];           /* of the box */
     enum boundary boundary[3];
     double gravity[3];
-    double *held; /* by id, see fixed.c: 0 for particles that move; NULL: all do */
+    double *held; /* by id, see fixed.c: 0 for moving particles; NULL: all move */
     double gamma, time, t_end;
-    double time_step;     /* limit found by the last signal speeds */
-    double dt, dt_before; /* of the step in progress or the last one, and the one before; 0: none */
+    double time_step;     /* limit from the last signal speeds */
+    double dt, dt_before; /* current or last step, and the one before; 0: none */
     double largest_dt;    /* of all steps */
     double start_energy;  /* total */
-    struct team team;     /* threads that work together */
+    struct team team;     /* threads */
     struct sleep sleep;
     struct steps steps;
     struct simulation_cost cost;
@@ -39,7 +39,7 @@ struct simulation {
     double *wrapped[3]; /* positions of the snapshot, n each */
 };
 
-/* Does the evaluation in progress find the rates of particle i? */
+/* True if the current evaluation computes the rates of particle i. */
 static inline bool simulation_evaluates(const struct simulation *simulation, ptrdiff_t i)
 {
     const int level = simulation->steps.level;
@@ -48,23 +48,23 @@ static inline bool simulation_evaluates(const struct simulation *simulation, ptr
 
 /* --- the evaluation (evaluate.c) -------------------------------------------------------------- */
 
-/* Order, density and smoothing length, equation of state: everything that a state implies. */
+/* Computes order, density, smoothing length and equation of state from the state. */
 enum status evaluate_state(struct simulation *simulation, struct error *error);
-/* And the rates dp/dt, de/dt, dalpha/dt with the time-step limit. */
+/* Computes these and the rates dp/dt, de/dt, dalpha/dt and the time-step limit. */
 enum status evaluate_rates(struct simulation *simulation, struct error *error);
-/* The same where x, v and U are there already (an integrator that predicts them directly). */
+/* As evaluate_rates, with given x, v and U (for an integrator that predicts them directly). */
 enum status evaluate_rates_of_primitives(struct simulation *simulation, struct error *error);
-/* The same rates as evaluate_rates after a change of p, e and alpha alone: neighbours and widths
- * are those of the evaluation before. */
+/* As evaluate_rates, after a change of p, e and alpha only: neighbours and smoothing lengths are
+ * those of the previous evaluation. */
 enum status evaluate_rates_in_place(struct simulation *simulation, struct error *error);
-/* The time-step limit alone, where velocities have changed since the last rates. */
+/* Recomputes only the time-step limit, from velocities that have changed since the last rates. */
 void evaluate_signal(struct simulation *simulation);
 
 /* --- the step (simulation.c) ------------------------------------------------------------------ */
 
-/* The step that begins at time, from the last limit; 0 where none is to follow. */
+/* The length of the step that begins at `time`, from the last limit; 0 if no step follows. */
 double simulation_next_step(const struct simulation *simulation, double time);
-/* The time after a step dt from the present time. */
+/* The time after a step dt from the current time. */
 double simulation_time_after(const struct simulation *simulation, double dt);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* Where the stretch in order that begins at first ends. */
+/* The end of the sorted run that begins at first. */
 static size_t stretch_end(const double *x, size_t n, const size_t *order, size_t first)
 {
     size_t end = first + 1;
@@ -12,8 +12,8 @@ static size_t stretch_end(const double *x, size_t n, const size_t *order, size_t
     return end;
 }
 
-/* Merges a stretch with the one behind it, first..middle and middle..end of from, into to. Returns
- * the number of comparisons. */
+/* Merges two adjacent sorted runs, first..middle and middle..end of from, into to. Returns the
+ * number of comparisons. */
 static size_t merge(const double *x, const size_t *from, size_t first, size_t middle, size_t end,
                     size_t *to)
 {

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A stable merge sort of the stretches that are in order already: n comparisons where there is one,
- * about n log2(stretches) otherwise, whatever the order that is given. Asks for no memory. */
+ * A stable merge sort of the sorted runs that exist: n comparisons for one run, otherwise about n
+ * log2(runs), for any initial order. Allocates no memory. */
 #ifndef SPHPROOF_SORT_H
 #define SPHPROOF_SORT_H
 
 #include <stddef.h>
 
-/* Puts order (n indices into x) into rising order of x; equal values keep theirs. Values are not
- * NaN. other: room for n. Returns the number of comparisons. */
+/* Sorts order (n indices into x) by ascending x; equal values keep their order. x contains no NaN.
+ * other: work array of n. Returns the number of comparisons. */
 size_t sort_indices(const double *x, size_t n, size_t *order, size_t *other);
 
 #endif

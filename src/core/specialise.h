@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What every specialised loop is made of: bodies that are always inlined with their choices as
- * constants, the dispatch over instruction sets, and arithmetic that vectorises. */
+ * Tools for specialised loops: bodies that are always inlined with constant choices, dispatch over
+ * instruction sets, and arithmetic that vectorises. */
 #ifndef SPHPROOF_SPECIALISE_H
 #define SPHPROOF_SPECIALISE_H
 
@@ -10,15 +10,15 @@
 
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
 
-/* Feature names: names of architectures would silently run the default here. */
+/* Names of features: with names of architectures the default would run here silently. */
 #if SPHPROOF_CLONES
 #define CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define CLONES
 #endif
 
-/* Trip count in whole vectors: no remainder loop. What is computed beyond count goes into scratch
- * and is dropped. */
+/* Rounds a trip count up to whole vectors, so that there is no remainder loop. Results beyond count
+ * go to spare elements and are not used. */
 ALWAYS_INLINE int whole_vectors(int count)
 {
     return (count + 7) & ~7;
@@ -34,18 +34,18 @@ ALWAYS_INLINE double least(double a, double b)
     return a < b ? a : b;
 }
 
-/* Before the loop over the eight lanes of sums: clang unrolls it before it looks for vectors, and
- * then finds none. */
+/* Before the loop over the eight lanes of a sum: clang would unroll the loop before vectorising,
+ * and then not vectorise. */
 #ifdef __clang__
 #define SIMD_LANES _Pragma("clang loop vectorize(enable) vectorize_width(8) unroll(disable)")
 #else
 #define SIMD_LANES _Pragma("omp simd")
 #endif
 
-/* Eight lanes, then in pairs: the same order for every instruction set. */
+/* Adds eight lanes in pairs: the same order for every instruction set. */
 #define TREE(s) (((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7])))
 
-/* The largest of count = whole vectors of positive values, by lanes: clang does not vectorise
+/* The largest of count positive values, count a multiple of 8, by lanes: clang does not vectorise
  * reduction(max). */
 ALWAYS_INLINE double largest_of(const double *restrict values, ptrdiff_t count)
 {

@@ -7,8 +7,8 @@
 #include "specialise.h"
 #include "viscosity.h"
 
-/* Stamped functions are static here, and the public ones call them: clang 14 gives the dispatched
- * symbol a name of its own, so that another file would not find it. */
+/* CLONES functions are static, and public functions call them: clang 14 renames the dispatched
+ * symbol, so that other files would not find it. */
 
 ALWAYS_INLINE double primitives(const struct particles *particles, double kinetic, int dim)
 {
@@ -60,7 +60,7 @@ ALWAYS_INLINE double root(double x, int dim)
     return dim == 1 ? x : dim == 2 ? sqrt(x) : cube_root(x);
 }
 
-/* The slope of eq. 3.10 near the existence limit of h, where Newton's step has no length. */
+/* Lower bound of the slope of eq. 3.10: near the existence limit of h Newton's step diverges. */
 static const double least_slope = 0.25;
 
 ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first, int len,
@@ -80,8 +80,8 @@ ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first
     for (int i = 0; i < len; i++) {
         const double s = h_inverse[i], scale = constant * power(s, dim), sum = scale * sums->m[i];
         const double u = U[i] * m_inverse[i], asked = root(sum * m_inverse[i], dim) * eta_inverse;
-        /* 1/h as one step of CONVENTIONS eq. 3.10 finds it, no further than a factor of 2 away;
-         * its division serves the volume, too: share = 1/(slope sum) */
+        /* 1/h by one step of CONVENTIONS eq. 3.10, changed by at most a factor of 2. The same
+         * division gives the volume: share = 1/(slope sum). */
         const double at = dim * (s * sums->m[i]);
         const double slope = largest(at - asked * sums->m_dh[i], least_slope * at);
         const double share = 1 / (slope * sum);
@@ -95,7 +95,7 @@ ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first
         } else {
             V[i] = m[i] * (slope * share);
             rho[i] = sum;
-            h[i] = dim == 1 ? gas->eta * V[i] : 1 / asked; /* the same */
+            h[i] = dim == 1 ? gas->eta * V[i] : 1 / asked; /* equal to 1/asked */
             P[i] = gamma_1 * sum * u * largest(0.5, 1 + follow * (1 - power(h[i] * s, dim)));
         }
         c[i] = sqrt(gas->gamma * gamma_1 * u);
@@ -103,7 +103,7 @@ ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first
     }
 }
 
-/* Nearly all batches are full: a constant trip count has no remainder loop. */
+/* Nearly all batches are full, and a constant trip count needs no remainder loop. */
 #define BODY(energy_sum, own_gradient, dim)                                                        \
     CLONES static void close_##energy_sum##_##own_gradient##_##dim(                                \
         const struct particles *particles, ptrdiff_t first, int len, const struct gas *gas,        \

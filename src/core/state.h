@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a state implies without any neighbours: velocity and internal energy, equation of state,
- * what the pair terms need of it, limits of the time step. Plain loops over particles, specialised
- * over instruction sets like the sums. */
+ * Derived fields that need no neighbours: velocity and internal energy, equation of state, inputs
+ * of the pair terms, limits of the time step. Plain loops over particles, specialised over
+ * instruction sets like the sums. */
 #ifndef SPHPROOF_STATE_H
 #define SPHPROOF_STATE_H
 
 #include "plan.h"
 #include "width.h"
 
-/* v = p/m and U = e (- p^2/2m where kinetic = 1/2; 0 where e is U already) of all particles.
- * Returns how many have no positive U (NaN counts). */
+/* Computes v = p/m and U = e (- p^2/2m with kinetic = 1/2; 0 if e is U) of all particles. Returns
+ * the number of particles whose U is not positive (NaN counts). */
 double state_primitives(const struct particles *particles, double kinetic);
 
-/* The numbers of the equation of state: constant = C_d of the kernel; follow = how strongly the
- * pressure follows a volume that was predicted too small or too large (integrator.h). */
+/* Parameters of the equation of state: constant = C_d of the kernel; follow = how strongly the
+ * pressure follows the difference of the volume from its prediction (integrator.h). */
 struct gas {
     double gamma, constant, eta, follow;
 };
@@ -24,7 +24,7 @@ struct gas {
 void state_close(const struct particles *particles, ptrdiff_t first, int len,
                  const struct plan *plan, const struct gas *gas, const struct density_sums *sums);
 
-/* dalpha/dt by the scheme's viscosity, of those that let alpha evolve. */
+/* Computes dalpha/dt; only for viscosities with an evolving alpha. */
 void state_dalpha(const struct particles *particles, ptrdiff_t first, int len,
                   const struct scheme *scheme);
 

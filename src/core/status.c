@@ -3,12 +3,12 @@
 
 #include <stddef.h>
 
-/* Length of the UTF-8 character at text if it is one to print, else 0. */
+/* Length of the UTF-8 character at text if it is printable, otherwise 0. */
 static size_t printable(const unsigned char *text)
 {
     static const struct {
-        unsigned char first, last; /* of leading bytes */
-        unsigned char low, high;   /* what the second byte may be */
+        unsigned char first, last; /* range of the leading byte */
+        unsigned char low, high;   /* range of the second byte */
         size_t length;
     } forms[] = {{' ', '~', 0, 0, 1},         {0xc2, 0xc2, 0xa0, 0xbf, 2},
                  {0xc3, 0xdf, 0x80, 0xbf, 2}, {0xe0, 0xe0, 0xa0, 0xbf, 3},

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * One list of outcomes: the exit status of the program, a name for messages and results. */
+ * One list of outcomes: exit status of the program, name for messages and results. */
 #ifndef SPHPROOF_STATUS_H
 #define SPHPROOF_STATUS_H
 
@@ -16,18 +16,18 @@ enum status {
 #undef STATUS
 };
 
-/* What went wrong, for a person: filled where a function returns anything but STATUS_OK. */
+/* An error message for the user; set if a function returns anything but STATUS_OK. */
 struct error {
     enum status status;
     char message[512];
 };
 
-/* Makes one line of valid UTF-8 of text that a stranger wrote: what cannot be printed becomes '?'.
- * No escape sequence shall reach a terminal, and JSON takes nothing else. */
+/* Turns untrusted text into one line of valid UTF-8: unprintable characters become '?'. This keeps
+ * escape sequences from terminals, and JSON requires it. */
 void status_clean(char *text);
 
-/* Formats the message, sets the status and returns it: `return error_set(error, STATUS_X, ...)`.
- * error may be NULL (the message is dropped). The message is cleaned. */
+/* Formats and cleans the message, sets the status and returns it: `return error_set(error,
+ * STATUS_X, ...)`. error may be NULL. */
 enum status error_set(struct error *error, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -8,15 +8,15 @@
 #include "specialise.h"
 #include "width.h"
 
-/* A particle's pace is at least this part of its fastest neighbour's, so that a shock finds short
- * steps when it arrives (Saitoh & Makino 2009). */
+/* A particle's pace is at least this fraction of its fastest neighbour's, so that a shock meets
+ * short steps (Saitoh & Makino 2009). */
 static const double close_to = 0.5;
 
-/* Inside a block a particle keeps the finest planned level while its step is this much too long:
- * the next block will have shorter ones. */
+/* Inside a block a particle keeps the finest planned level while its step is too long by at most
+ * this factor: the next block will have shorter steps. */
 static const double patience = 1.1;
 
-/* Single steps from one look at whether blocks pay to the next; and after blocks that did not. */
+/* Number of single steps between two tests whether blocks pay, and after blocks that did not. */
 enum { LOOK_EVERY = 4, REST = 32 };
 
 static long length_of(const struct steps_clock *clock, int level)
@@ -24,7 +24,7 @@ static long length_of(const struct steps_clock *clock, int level)
     return clock->end >> level;
 }
 
-/* The coarsest level with a step that ends now. */
+/* The coarsest level with a step that ends at the current tick. */
 static int coarsest_at(const struct steps_clock *clock)
 {
     int level = 0;
@@ -32,7 +32,7 @@ static int coarsest_at(const struct steps_clock *clock)
     return level;
 }
 
-/* The level that has the middle of a step now; beyond the finest: none. */
+/* The level with the middle of a step at the current tick; finest + 1: none. */
 static int middle_at(const struct steps_clock *clock)
 {
     int level = 0;
@@ -47,7 +47,7 @@ static double pace_of(const struct particles *a, ptrdiff_t i)
     return largest(a->signal[i] * a->h_inverse[i], close_to * a->near_pace[i]);
 }
 
-/* The level of a particle among those down to `depth` of a block. */
+/* The level of a particle for its pace, up to `depth` or, if that is too coarse, a spare level. */
 static int level_for(const struct simulation *simulation, double pace, double block, int depth)
 {
     const double cfl = simulation->scheme.cfl * (1 + 1e-9);
@@ -58,7 +58,7 @@ static int level_for(const struct simulation *simulation, double pace, double bl
     return level;
 }
 
-/* Work of a block of that depth, in evaluations of a particle for each finest step. */
+/* Work of a block of this depth: evaluations per particle for each finest step. */
 static double work_of(const struct simulation *simulation, double dt, int depth)
 {
     const struct particles *a = &simulation->particles;
@@ -68,15 +68,15 @@ static double work_of(const struct simulation *simulation, double dt, int depth)
     return work / (double)a->n;
 }
 
-/* Is a block of this depth cheaper than single steps of the active particles? */
+/* True if a block of this depth is cheaper than single steps of the awake particles. */
 static bool pays(const struct simulation *simulation, double dt, int depth)
 {
     const double awake = (double)simulation->sleep.awake_count / (double)simulation->particles.n;
     return work_of(simulation, dt, depth) <= simulation->steps.worth * awake;
 }
 
-/* Single steps, which keep nothing for local ones, have led up to here. Rates are their midpoint's.
- */
+/* Prepares the first block after single steps, which do not set the fields of local steps. The
+ * rates are those of the last midpoint. */
 static void take_over(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
@@ -93,7 +93,7 @@ static void take_over(struct simulation *simulation)
     }
 }
 
-/* Without what neighbours ask for. */
+/* Sets the paces without those of the neighbours. */
 static void find_own_paces(const struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
@@ -103,8 +103,8 @@ static void find_own_paces(const struct simulation *simulation)
     }
 }
 
-/* The depth of the next block. One level more than the last one at most: paces of neighbours'
- * neighbours have come no further. */
+/* The depth of the next block, at most one more than the last: paces spread by one neighbour in
+ * each block. */
 static int find_depth(const struct simulation *simulation, double dt, double left)
 {
     const struct particles *a = &simulation->particles;
@@ -132,12 +132,12 @@ double steps_begin_block(struct simulation *simulation, double dt, double left)
         find_own_paces(simulation);
         if (2 * dt > left || !pays(simulation, dt, 1)) return dt;
         take_over(simulation);
-        steps->single = false; /* this step still has one level, and finds neighbours' paces */
+        steps->single = false; /* this step has one level; it sets paces */
         return dt;
     }
     const int before = steps->depth;
     steps->depth = find_depth(simulation, dt, left);
-    /* widths of single steps are predicted from the last step that all particles took */
+    /* in single steps h is predicted from the last step, which all particles must have taken */
     if (steps->depth == 0 && before == 0) {
         steps->single = true;
         steps->rest = REST;
@@ -147,14 +147,14 @@ double steps_begin_block(struct simulation *simulation, double dt, double left)
 
 /* --- prediction ------------------------------------------------------------------------------- */
 
-/* Where the particles of a batch are in their steps. */
+/* Time of the particles of a batch within their steps. */
 struct places {
-    double s[BATCH_MAX], half[BATCH_MAX]; /* since the step began; half of the step */
-    double active[BATCH_MAX];             /* 1: at the middle of the level that is evaluated */
+    double s[BATCH_MAX], half[BATCH_MAX]; /* time since the step began; half of the step */
+    double active[BATCH_MAX]; /* 1: on the level being evaluated, at the middle of the step */
 };
 
-/* 1/h from the last two sums (CONVENTIONS eq. 3.11), by a quarter at most. Between them lies the
- * span, or, beyond the middle of the step, half of the last two steps. */
+/* Extrapolates 1/h from the last two sums (CONVENTIONS eq. 3.11), by at most a quarter. The time
+ * between these is span, or, beyond the middle of the step, half of the last two steps. */
 ALWAYS_INLINE void predict_widths(const struct particles *a, ptrdiff_t first, int len,
                                   const struct places *at)
 {
@@ -175,8 +175,8 @@ ALWAYS_INLINE void predict_widths(const struct particles *a, ptrdiff_t first, in
     }
 }
 
-/* What an inactive particle's neighbours see of it: volume from the width, CONVENTIONS eq. 3.4, and
- * the equation of state. Of active ones it is found from their sums. */
+/* Sets the volume from h, CONVENTIONS eq. 3.4, and the equation of state. The sums of active
+ * particles replace these values later. */
 ALWAYS_INLINE void predict_gas(int dim, const struct simulation *simulation, ptrdiff_t first,
                                int len)
 {
@@ -201,8 +201,8 @@ ALWAYS_INLINE void predict_gas(int dim, const struct simulation *simulation, ptr
     }
 }
 
-/* Position, velocity, internal energy and width of a batch. At the middle of a particle's own step,
- * as predicted_midpoint has it; elsewhere with the mean rates that are known by now. */
+/* Predicts position, velocity, internal energy and h of a batch: at the middle of a particle's own
+ * step as predicted_midpoint does, otherwise with the known mean rates. */
 ALWAYS_INLINE void predict_body(int dim, const struct simulation *simulation, ptrdiff_t first,
                                 int len, const struct places *at)
 {
@@ -247,7 +247,7 @@ CLONES static void predict_3(const struct simulation *simulation, ptrdiff_t firs
     predict_body(3, simulation, first, len, at);
 }
 
-/* All particles now. */
+/* Predicts all particles to the current tick. */
 static void predict(const struct simulation *simulation)
 {
     const struct steps_clock *clock = &simulation->steps.clock;
@@ -274,8 +274,8 @@ static void predict(const struct simulation *simulation)
 
 /* --- evaluation ------------------------------------------------------------------------------- */
 
-/* The mean rates of the step that active particles are in the middle of: those of their own pairs,
- * and what finer pairs have given in the first half. */
+/* Sets the mean rates of the current step of active particles: rates of their own pairs, plus
+ * impulses of finer pairs in the first half. */
 static void find_mean_rates(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
@@ -313,8 +313,8 @@ void steps_begin_sums(struct simulation *simulation)
 
 /* --- steps ------------------------------------------------------------------------------------ */
 
-/* Moves a particle by dt, to the end of its step, with its own rates for a time `own`; its impulse
- * is that of a time `all`. Returns its internal energy. */
+/* Moves a particle by dt, to the end of its step, with its own rates over the time `own` and the
+ * mean of all impulses over the time `all`. Returns its internal energy. */
 static double end_step(const struct simulation *simulation, double dt, double own, double all,
                        ptrdiff_t i)
 {
@@ -336,7 +336,8 @@ static double end_step(const struct simulation *simulation, double dt, double ow
     return U;
 }
 
-/* Ends the steps that end now, and chooses the next levels of their particles. */
+/* Completes the steps that end at the current tick, and chooses the next levels of their particles.
+ */
 static enum status end_steps(struct simulation *simulation, double block, struct error *error)
 {
     const struct particles *a = &simulation->particles;
@@ -358,8 +359,8 @@ static enum status end_steps(struct simulation *simulation, double block, struct
 
 /* --- waking ----------------------------------------------------------------------------------- */
 
-/* When the step of the level began in which the active particles' step did, and up to when its
- * pairs have had their impulses by then. */
+/* began: start of the level's step that contains the start of the active particles' step. covered:
+ * time up to which the level's pairs had given their impulses by then. */
 static long began(const struct steps *steps, int level)
 {
     const long then = steps->clock.now - length_of(&steps->clock, steps->level) / 2;
@@ -390,7 +391,7 @@ bool steps_uncovered(const struct simulation *simulation, double *spans)
     return some;
 }
 
-/* Ends the step of a woken particle where its new one has begun. Returns its internal energy. */
+/* Ends the step of a woken particle where its new step has begun. Returns its internal energy. */
 static double wake(const struct simulation *simulation, int to, ptrdiff_t i)
 {
     const struct particles *a = &simulation->particles;
@@ -404,11 +405,11 @@ static double wake(const struct simulation *simulation, int to, ptrdiff_t i)
     double U = a->U[i];
     if (dt > 0) {
         U = end_step(simulation, dt, given, mean_of, i);
-        /* the last density sum lies as far back as if the last step had been so long */
+        /* the time since the last density sum is that of a last step of this length */
         if (given > 0) a->span[i] = 0.5 * (a->before[i] + given);
         a->before[i] = given > 0 ? 2 * dt - given : a->before[i] + 2 * dt;
     }
-    /* pairs whose middle lies behind have been corrected */
+    /* pairs whose midpoint has passed have been corrected */
     for (int k = 0; k < a->dim; k++) a->F[k][i] = 0;
     a->de[i] = 0;
     a->level[i] = to;

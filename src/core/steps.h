@@ -1,27 +1,27 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Local time steps, steps=local: each particle has a step of its own, a power of two shorter than
- * that of the block that all particles begin and end together. Level b takes 2^b steps in a block.
- * A pair belongs to the finer level of its two particles and is evaluated at the middle of that
- * level's steps, where both particles receive the same impulse and the same energy with opposite
- * signs: momentum and total energy are conserved to round-off, whatever the levels are
- * (Pelupessy, Janes & Portegies Zwart 2012 split the Hamiltonian of gravity so).
+ * Local time steps, steps=local: all particles begin and end a block together; in it each particle
+ * takes steps that are shorter by its own power of two. Level b takes 2^b steps in a block. A pair
+ * belongs to the finer level of its two particles and is evaluated at the middle of that level's
+ * steps, where both particles receive the same impulse and the same energy with opposite signs:
+ * momentum and total energy are conserved to round-off for any levels (Pelupessy, Janes & Portegies
+ * Zwart 2012 split the Hamiltonian of gravity this way).
  *
- * The middles of two levels never coincide, so that an evaluation serves one level. A particle of
- * that level is active: it has sums over all of its neighbours, and forces of those that are not on
- * a finer level. A particle of a coarser level receives the impulses of its active neighbours
- * and takes part with its predicted state. All steps are those of predicted_midpoint; with all
- * particles on one level they are so to the last bit.
+ * The middles of two levels never coincide, so that an evaluation is for one level. The particles
+ * of that level are active: they have sums over all neighbours, and forces from those that are not
+ * on a finer level. A particle of a coarser level receives the impulses of its active neighbours
+ * and enters with its predicted state. All steps are those of predicted_midpoint; if all particles
+ * are on one level the results are identical to it.
  *
- * A particle's level follows from its pace, the inverse of its Courant time. It is at least half of
- * its fastest neighbour's pace, so that neighbours start one level apart at most. Where paces rise
- * or neighbours change inside a block, no two of them are evaluated more than two levels apart
- * (steps that differ by 4: Saitoh & Makino 2009): before that, the coarser one wakes to the level
- * below the finer one's. Its step ends where that of its new level has begun, and the pairs that
- * change levels are evaluated once more, over the time that they have been given too little or too
- * much, with the same impulse and energy for both sides.
+ * A particle's level follows from its pace, the inverse of its Courant time, which is at least half
+ * of its fastest neighbour's pace, so that neighbours start at most one level apart. If paces rise
+ * or neighbours change inside a block, no two neighbours are evaluated more than two levels apart
+ * (steps that differ by 4: Saitoh & Makino 2009): before that, the coarser particle wakes to the
+ * level below the finer one's. Its step ends where the step of its new level began, and the pairs
+ * that change level are evaluated once more, over the time for which they have given too little or
+ * too much, with the same impulse and energy for both particles.
  *
- * While blocks do not pay, steps are the integrator's own, and particles may sleep; in blocks all
- * are awake. */
+ * While blocks do not pay, steps are the integrator's own, and particles may sleep; in blocks
+ * all particles are awake. */
 #ifndef SPHPROOF_STEPS_H
 #define SPHPROOF_STEPS_H
 
@@ -34,55 +34,57 @@
 struct simulation;
 
 enum {
-    STEPS_DEPTH = 5, /* levels of a block beyond the first that are planned */
-    STEPS_SPARE = 3, /* and those that particles may flee to when a block has begun */
+    STEPS_DEPTH = 5, /* planned levels of a block beyond the first */
+    STEPS_SPARE = 3, /* finer levels for particles that need them inside a block */
     STEPS_LEVELS = STEPS_DEPTH + STEPS_SPARE + 1,
-    STEPS_APART = 2 /* levels of neighbours differ by no more at any evaluation */
+    STEPS_APART = 2 /* largest difference of the levels of neighbours at any evaluation */
 };
 
-/* Time inside a block in ticks, two of which are a step of the finest level of all. */
+/* Time inside a block in ticks: a step of the finest level has two. */
 struct steps_clock {
-    int finest;    /* that level */
+    int finest;    /* the finest level */
     long now, end; /* ticks */
     double tick;
 };
 
-/* Evaluations of few particles search and predict for all, and find the pairs beside them twice. */
+/* Limit of steps.worth: an evaluation of few particles searches and predicts all particles, and
+ * finds the surrounding pairs twice. */
 #define STEPS_WORTH 0.55
 
 struct steps {
-    int depth;        /* the finest planned level of the block */
-    int level;        /* being evaluated; -1: all particles are */
-    double span;      /* step of that level */
-    uint64_t updates; /* of active particles in the block */
-    uint64_t woken;   /* particles inside blocks, so far */
-    int rest;         /* single steps before the next look at whether blocks pay */
-    bool single;      /* the integrator's own steps, as with steps=global: blocks do not pay */
-    double worth;     /* blocks pay where no more than this part of the work is left */
+    int depth;        /* finest planned level of the block */
+    int level;        /* level being evaluated; -1: all particles */
+    double span;      /* length of that level's step */
+    uint64_t updates; /* evaluations of active particles in the block */
+    uint64_t woken;   /* number of particles woken inside blocks so far */
+    int rest;         /* single steps until the next test whether blocks pay */
+    bool single;      /* the integrator's own steps are taken, as blocks do not pay */
+    double worth;     /* blocks pay if their work is at most this fraction */
     struct steps_clock clock;
 };
 
-/* The length of the block that begins with finest steps of dt, no longer than what is left. Chooses
- * its depth, or a single step. */
+/* Chooses the depth of the next block, whose finest steps are dt and which is not longer than left,
+ * or a single step. Returns its length. */
 double steps_begin_block(struct simulation *simulation, double dt, double left);
 
-/* Advances the state by the block, and sets the time-step limit for the next one. */
+/* Advances the state by a block of length dt, and sets the time-step limit for the next one. */
 enum status steps_block(struct simulation *simulation, double dt, struct error *error);
 
-/* What the sums ask for in the evaluation of a level. */
+/* The following functions are for the sums, in the evaluation of a level. */
 
-/* The density sums of active particles are about to be found anew. */
+/* To be called before the density sums of active particles are computed. */
 void steps_begin_sums(struct simulation *simulation);
 
-/* The level that neighbours of active particles wake to. */
+/* The level to which neighbours of active particles wake. */
 int steps_woken_level(const struct simulation *simulation);
 
-/* What pairs of each coarser level have been given too little of (< 0: too much) if they go over to
- * the level that particles wake to. Returns whether there is any. spans: STEPS_LEVELS. */
+/* spans: for each coarser level, the time for which its pairs have given too little (< 0: too much)
+ * if they change to the level to which particles wake; STEPS_LEVELS values. Returns whether any is
+ * not 0. */
 bool steps_uncovered(const struct simulation *simulation, double *spans);
 
-/* Wakes particles whose pairs have been corrected, and predicts all anew; woken: the level that
- * each goes to, 0: none. STATUS_BROKE_DOWN: one has no internal energy. */
+/* Wakes particles whose pairs have been corrected, and predicts all particles again; woken: new
+ * level of each, 0: stays. STATUS_BROKE_DOWN: a particle has no internal energy. */
 enum status steps_wake(struct simulation *simulation, const unsigned char *woken,
                        struct error *error);
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The sums over neighbours that an evaluation is made of, as one descriptor per way to find
- * neighbours: line/ (1D: sorted particles, ranges) and whatever serves 2D and 3D. The plan chooses
- * one for the dimension; evaluate.c, simulation.c and sleep.c call through it and know no geometry.
+ * The neighbour sums of an evaluation, one descriptor for each way to find neighbours: line/ (1D:
+ * sorted particles, ranges) and cells/ (2D and 3D: grid, lists). The plan chooses one for the
+ * dimension; evaluate.c, simulation.c and sleep.c call it and contain no geometry.
  *
- * What the sums keep for themselves (order, reach, ghosts, lists, scratch) hangs on
- * simulation->workspace. No function asks for memory in a step unless neighbours have come closer
- * than what reserve has set aside for. Results do not depend on the number of threads. */
+ * The data of an implementation (order, reach, ghosts, lists, work arrays) are in
+ * simulation->workspace. Steps allocate no memory unless neighbours come closer than `reserve`
+ * has provided for. Results do not depend on the number of threads. */
 #ifndef SPHPROOF_SUMS_H
 #define SPHPROOF_SUMS_H
 
@@ -20,22 +20,22 @@ struct simulation;
 
 struct sums {
     const char *name;
-    int dim_min, dim_max; /* the dimensions that it serves */
+    int dim_min, dim_max; /* supported dimensions */
 
-    /* Allocates the workspace and simulation->particles (n, dim, empty). */
+    /* Allocates the workspace and simulation->particles (n, dim, zeroed). */
     enum status (*create)(struct simulation *simulation, ptrdiff_t n, struct error *error);
-    void (*free)(struct simulation *simulation); /* the workspace; after a failed create, too */
-    /* What a workspace for n particles comes to, in bytes, by scheme and plan alone (the rest of
-     * the simulation is 0); see memory_bytes. */
+    void (*free)(struct simulation *simulation); /* also after a failed create */
+    /* Memory of a workspace for n particles in bytes; reads only scheme and plan. See memory_bytes.
+     */
     double (*bytes)(const struct simulation *simulation, double n);
 
-    /* Once, after the state has been set, with h a first guess: orders it, and moves apart
-     * particles in one place that have no h. */
+    /* Called once after the state and a first guess of h have been set: sorts the particles, and
+     * separates coincident particles that have no h. */
     void (*begin)(struct simulation *simulation);
-    /* After the first rates: sets memory aside for what a run may come to. */
+    /* Called after the first rates: allocates what the run may need. */
     enum status (*reserve)(struct simulation *simulation, struct error *error);
 
-    /* Call it after positions have changed: restores the order and finds neighbours.
+    /* Called after positions have changed: restores the order and finds neighbours.
      * STATUS_BROKE_DOWN: a position is not finite. */
     enum status (*arrange)(struct simulation *simulation, struct error *error);
     /* Computes density, smoothing length and equation of state (h, h_inverse, h_inverse_found, V,
@@ -43,35 +43,36 @@ struct sums {
      * Newton's method; otherwise 1/h is extrapolated by ratio times its last change. */
     enum status (*widths)(struct simulation *simulation, bool newton, double ratio,
                           struct error *error);
-    /* Computes what widths does, of particles that are where they were then, with other U, where
-     * density is no sum of U: h and rho stay. NULL: widths has to be called again. */
+    /* Repeats widths for unchanged positions and a changed U, if density is not a sum of U: h and
+     * rho are kept. NULL: widths has to be called again. */
     void (*close)(struct simulation *simulation);
     /* Computes moment matrices and velocity gradients; called if the plan needs either. */
     void (*matrix)(struct simulation *simulation);
-    /* Computes F, de and, if the plan needs it, dalpha. *rate becomes at least the largest signal
-     * speed / h. */
+    /* Computes F, de and, if the plan needs it, dalpha. Raises *rate to the largest signal speed /
+     * h. */
     enum status (*forces)(struct simulation *simulation, double *rate, struct error *error);
-    /* signal of every awake particle from v, c, h; returns the largest signal speed / h. */
+    /* Computes signal of every awake particle from v, c, h; returns the largest signal speed / h.
+     */
     double (*signal)(struct simulation *simulation);
     /* The switch of viscosity=cullen_dehnen, called if the plan needs it. find_switch, after the
      * rates, computes the values that alpha jumps up to and decays to; apply_switch, after the
      * step, sets alpha. */
     void (*find_switch)(struct simulation *simulation);
     void (*apply_switch)(struct simulation *simulation, double dt);
-    /* Visits each particle after the matrices are known; see description_each. */
+    /* Calls visit for each particle once the matrices are known; see description_each. */
     void (*describe)(const struct simulation *simulation, description_visit *visit, void *context);
 
-    /* Choose the inactive particles, from the first rates and after every step. They fill
+    /* Choose the sleeping particles, after the first rates and after every step. They set
      * simulation->sleep. */
     enum status (*sleep_begin)(struct simulation *simulation, struct error *error);
     void (*sleep_update)(struct simulation *simulation);
-    /* Whether particle i sleeps. */
+    /* True if particle i sleeps. */
     bool (*sleeps)(const struct simulation *simulation, ptrdiff_t i);
 
-    /* No evaluation is to follow: frees what is as large as lists. NULL: there is nothing. */
+    /* Called after the last evaluation: frees large memory such as lists. NULL: nothing to free. */
     void (*end)(struct simulation *simulation);
 
-    /* What the workspace keeps from one step to the next. */
+    /* Saves or restores the data that the workspace keeps from step to step. */
     void (*serialise)(struct simulation *simulation, struct serialiser *serialiser);
 };
 

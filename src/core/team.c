@@ -4,16 +4,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A trial is longer than the slice of time that schedulers give to one of two programs on a core;
- * stretches between trials last so many times as long, in time and in steps, at first and in the
- * end: a trial of the wrong size costs no more than its part of this. */
+/* Minimum length of a trial in seconds: longer than the time slice of schedulers. A stretch between
+ * trials is STRETCH_MIN to STRETCH_MAX times as long, in time and in steps, so that a trial of the
+ * worse size costs little. */
 static const double trial = 4e-3;
 enum { STRETCH_MIN = 16, STRETCH_MAX = 256 };
 
-/* A change must be worth it, or noise would decide. */
+/* The ratio of paces below which the size changes; otherwise noise would decide. */
 static const double worth = 0.95;
 
-/* So much slower than it has been, a size of the team is no longer taken for granted. */
+/* A stretch slower than the last one by this factor ends early, with a trial of the other size. */
 static const double slower = 1.5;
 
 void team_begin(struct team *team, int most)
@@ -34,8 +34,8 @@ static void begin_stretch(struct team *team, int size, bool trying, double now)
     team->steps = 0;
 }
 
-/* Both sizes have a pace: the better one gets the next stretch, a longer one each time that it is
- * the same as before. */
+/* Both sizes have been measured: the faster one gets the next stretch, which doubles in length each
+ * time the answer is the same. */
 static void choose(struct team *team, double now)
 {
     const int tried = team->size, other = tried == 1 ? team->most : 1;
@@ -58,7 +58,7 @@ void team_step(struct team *team, double now)
     if (!((double)team->steps >= times && taken >= times * trial)) return;
     *pace = present;
     const int other = team->size == 1 ? team->most : 1;
-    if (team->trying && team->pace[0] > 0) /* the first trial is of all threads */
+    if (team->trying && team->pace[0] > 0) /* the first trial uses all threads */
         choose(team, now);
     else
         begin_stretch(team, other, true, now);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Chooses how many of a run's threads work. If other programs use the same processors, threads wait
- * for each other at the end of every pass for longer than sharing the work saves, and one thread
- * alone can be several times faster. Results do not depend on the number of threads, so both are
- * timed now and then for a few milliseconds, and less often the longer the answer has been the
- * same. */
+ * Chooses how many of a run's threads work. If other programs use the same processors, threads may
+ * wait for each other at the end of every pass for longer than sharing the work saves, and a single
+ * thread can be several times faster. Results do not depend on the number of threads, so both are
+ * timed from time to time for a few milliseconds, less often the longer the answer stays the same.
+ */
 #ifndef SPHPROOF_TEAM_H
 #define SPHPROOF_TEAM_H
 
@@ -16,26 +16,26 @@
 #endif
 
 struct team {
-    int most;       /* threads there are, >= 1 */
-    int size;       /* at work: most or 1 */
-    double pace[2]; /* seconds a step that were measured last: of one thread, of most; 0: none */
-    double begun;   /* when the present stretch of steps did; 0: none has */
-    double stretch; /* until the other size is tried: in trials */
-    uint64_t steps; /* of the present stretch */
-    bool trying;    /* the present stretch is a trial */
+    int most;       /* maximum number of threads, >= 1 */
+    int size;       /* threads in use: most or 1 */
+    double pace[2]; /* last measured seconds per step, with one thread and with most; 0: none */
+    double begun;   /* start of the current stretch of steps; 0: none */
+    double stretch; /* length of a stretch between trials, in trials */
+    uint64_t steps; /* in the current stretch */
+    bool trying;    /* the current stretch is a trial */
 };
 
-/* Begins with all threads at work; later steps try whether fewer are faster. */
+/* Starts with all threads; later steps try whether one is faster. */
 void team_begin(struct team *team, int most);
 
-/* A step ends at `now`, in seconds of a clock that never goes back. Decides on the size of the team
- * for the next one. */
+/* To be called at the end of a step; now: seconds of a monotonic clock. Chooses the size for the
+ * next step. */
 void team_step(struct team *team, double now);
 
 /* Excludes the time from here to the next step from the measurement. */
 void team_pause(struct team *team);
 
-/* The number of the calling thread among those of a parallel region, from 0. */
+/* Number of the calling thread in a parallel region, from 0. */
 static inline int team_thread(void)
 {
 #ifdef _OPENMP
@@ -45,20 +45,20 @@ static inline int team_thread(void)
 #endif
 }
 
-/* Zeroed memory, for free(), of a struct of `size` bytes for each thread; its first member is
- * aligned to TEAM_APART. NULL: there is none left. */
+/* Allocates a zeroed struct of `size` bytes for each thread, aligned to TEAM_APART, in one array;
+ * release with free(). NULL: no memory. */
 void *team_allocate(int threads, size_t size);
 
-/* How the threads of a parallel region share `parts` pieces of work. Each has a range of its own,
- * in order and the same in every region, so that its core's cache still has what it wrote before;
- * with that done it takes what others have not begun. */
+/* Shares `parts` pieces of work among the threads of a parallel region. Each thread has its own
+ * range, in order and the same in every region, so that its core's cache still holds the data it
+ * wrote before; after that it takes pieces that others have not begun. */
 enum {
-    TEAM_SHARES = 64, /* further threads have no range of their own */
-    TEAM_APART = 128  /* alignment of what one thread writes: no two ever share a cache line */
+    TEAM_SHARES = 64, /* maximum number of ranges; further threads have none */
+    TEAM_APART = 128  /* alignment that keeps threads from sharing cache lines */
 };
 
 struct team_shares {
-    size_t count; /* of ranges */
+    size_t count; /* number of ranges */
     struct team_share {
         _Alignas(TEAM_APART) size_t next, end;
     } share[TEAM_SHARES];
@@ -72,7 +72,7 @@ static inline void team_share(struct team_shares *shares, int team, size_t parts
         shares->share[t].next = parts * t / count, shares->share[t].end = parts * (t + 1) / count;
 }
 
-/* Hands the next piece of work to the calling thread. Returns false when there is none left. */
+/* Gives the calling thread its next piece of work. Returns false when there is none left. */
 static inline bool team_next(struct team_shares *shares, size_t *part)
 {
     const size_t own = (size_t)team_thread();

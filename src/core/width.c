@@ -25,12 +25,12 @@ struct width_rule width_rule_of(const struct simulation *simulation)
 
 double width_of(const struct width_rule *rule, double m, double rho)
 {
-    /* no pow: it gives other bits on processors with and without FMA */
+    /* not pow, whose result differs between processors with and without FMA */
     if (rule->dim == 1) return rule->eta * m / rho;
     return rule->eta * (rule->dim == 2 ? sqrt(m / rho) : cbrt(m / rho));
 }
 
-/* What the sum at 1/h asks for. */
+/* The smoothing length that belongs to the density sum at 1/h. */
 static double target_of(const struct width_rule *rule, double m, double sum, double h_inverse)
 {
     double scale = rule->constant * h_inverse;
@@ -67,7 +67,7 @@ bool width_step(const struct width_rule *rule, int len, const double *m,
         double next = h[i] - residual / slope;
         if (!(slope > 0 && next > low[i] && next < high[i]))
             next = isinf(high[i]) ? 2 * h[i] : 0.5 * (low[i] + high[i]);
-        /* a bracket of two neighbouring numbers is a root, too */
+        /* a bracket of two adjacent doubles counts as a root */
         if (next == low[i] || next == high[i]) low[i] = high[i] = next;
         h[i] = least(next, 2 * h[i]);
         h_inverse[i] = 1 / h[i];
@@ -99,9 +99,9 @@ ALWAYS_INLINE void predict(const struct particles *particles, ptrdiff_t first, i
     }
 }
 
-/* Stamped functions are static, and the public ones call them: clang 14 gives the dispatched symbol
- * a name of its own, so that another file would not find it. Nearly all batches are full: a
- * constant trip count has no remainder loop. */
+/* CLONES functions are static, and public functions call them: clang 14 renames the dispatched
+ * symbol, so that other files would not find it. Nearly all batches are full, and a constant trip
+ * count needs no remainder loop. */
 CLONES static void predict_specialised(const struct particles *particles, ptrdiff_t first, int len,
                                        double ratio)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * ia, but the standard gradient where h changes steeply, CONVENTIONS eq. 4.8: of each pair the mean
- * b of both particles' shares of the standard gradient and 1 - b of ia. */
+ * ia, blended with the standard gradient where h changes steeply, CONVENTIONS eq. 4.8: a pair has b
+ * of the standard gradient and 1 - b of ia, b the mean of both particles' weights. */
 #ifndef GRADIENT_BLENDED_H
 #define GRADIENT_BLENDED_H
 

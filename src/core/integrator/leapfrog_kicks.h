@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The step of a leapfrog: half kick, drift, the rest of the state predicted to the end of the step
- * for the evaluation, then the second half kick from the half-kicked values. Both leapfrogs are
- * made of it. */
+ * The step of both leapfrogs: half kick, drift, prediction of the rest of the state to the end of
+ * the step for the evaluation, then the second half kick from the half-kicked values. */
 #ifndef INTEGRATOR_LEAPFROG_KICKS_H
 #define INTEGRATOR_LEAPFROG_KICKS_H
 
 #include "solver.h"
 
-/* Half-kicked values go to *_old, predicted ones to the state. */
+/* Writes half-kicked values to *_old and predicted ones to the state. */
 static inline void leapfrog_kick_drift(struct simulation *simulation, double dt)
 {
     struct particles *a = &simulation->particles;

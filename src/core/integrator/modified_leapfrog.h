@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Leapfrog that evaluates once more after the second kick, where particles have not moved since the
- * evaluation before, so that a step begins with rates of its own state. */
+ * Leapfrog with a second evaluation after the second kick, at unchanged positions, so that each
+ * step begins with the rates of its own state. */
 #ifndef INTEGRATOR_MODIFIED_LEAPFROG_H
 #define INTEGRATOR_MODIFIED_LEAPFROG_H
 

@@ -1,22 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Predicted midpoint: the state is predicted to the middle of the step with the rates of the last
  * midpoint, evaluated there once, and advanced over the whole step. A predicted internal energy is
- * kept above half of its start (strong tubes); one that turns negative at the end of a step is a
- * breakdown.
+ * kept above half of its initial value (strong tubes); one that is negative at the end of a step is
+ * a breakdown.
  *
- * x moves as in a leapfrog, but v and U are extrapolated, and alone that is unstable without
- * viscosity (quadratic_spline: beyond c dt/dx = 0.16). Where h is predicted, too, the density sum
- * knows better: V differs from its prediction by what the prediction of U cannot know either.
- * The pressure follows on the adiabat, P = P(rho, U) (1 - w (gamma - 1)(V/V_predicted - 1)).
- * w = 1/2 would give U the volume's second difference; 3/2 also damps the shortest waves, with an
- * error O(dt^2), and is stable up to c dt/dx = 0.80 without and 0.52 with all of the viscosity
- * (alpha 0.75). Wider kernels, with larger alpha, keep to 0.8 spacings.
+ * x moves as in a leapfrog, but v and U are extrapolated, which alone is unstable without viscosity
+ * (quadratic_spline: beyond c dt/dx = 0.16). If h is predicted as well, the density sum provides
+ * the missing information: V differs from its prediction by the same error that the prediction of U
+ * has. The pressure is corrected along the adiabat, P = P(rho, U) (1 - w (gamma - 1)(V/V_predicted
+ * - 1)). w = 1/2 would correct U by the second difference of the volume; 3/2 also damps the
+ * shortest waves, with an error O(dt^2), and is stable up to c dt/dx = 0.80 without and 0.52 with
+ * full viscosity (alpha 0.75). Wider kernels, with larger alpha, are stable up to 0.8 spacings.
  *
- * Particle shifting is no part of the prediction: what particles shift and exchange in a step
- * follows from the middle without it. With it a shift would be stable in steps half as long.
+ * The prediction excludes particle shifting: shifts and exchanges follow from the midpoint without
+ * them. If included, they would be stable only in steps half as long.
  *
- * The rates of the start know no velocities: at an impulsive start a first step of full length can
- * leave cold gas without internal energy (strong_shock with mass_ratio=1.4), so it is a quarter. */
+ * The rates of the start do not depend on velocities: with an impulsive start a first step of
+ * full length can leave cold gas without internal energy (strong_shock with mass_ratio=1.4), so
+ * the first step is a quarter of it. */
 #ifndef INTEGRATOR_PREDICTED_MIDPOINT_H
 #define INTEGRATOR_PREDICTED_MIDPOINT_H
 
@@ -28,13 +29,14 @@
 #include "width.h"
 
 struct predicted_midpoint {
-    double ahead; /* the step whose middle x, v, U and alpha are at already; 0: none */
+    double ahead; /* length of the step to whose middle x, v, U and alpha have been predicted; 0:
+                     none */
 };
 
-/* Advances the state by dt from its middle, predicts it for the first half of the step ahead, or
- * both in one walk over memory. Predicted x, v and U go where the evaluation reads them, x_old is
- * the position of the state; p and e stay those of the state. Returns how many particles are left
- * without internal energy. */
+/* Advances the state by dt with the rates of the midpoint, predicts it over the first half of the
+ * next step `ahead`, or does both in one loop. Predicted x, v and U go to these arrays, where the
+ * evaluation reads them; x_old is the position of the state; p and e remain those of the state.
+ * Returns the number of particles without positive internal energy. */
 ALWAYS_INLINE double move_body(int dim, bool advance, bool predict, bool shifts,
                                const struct simulation *simulation, const struct span *span,
                                double dt, double ahead)
@@ -106,7 +108,7 @@ typedef double move(const struct simulation *simulation, const struct span *span
     {                                                                                              \
         return move_body(dim, advance, predict, shifts, simulation, span, dt, ahead);              \
     }
-/* by dimension; then those that shift */
+/* by dimension; then with shifting */
 #define MOVES(name, advance, predict)                                                              \
     MOVE(name, advance, predict, false, 1)                                                         \
     MOVE(name, advance, predict, false, 2)                                                         \
@@ -121,8 +123,9 @@ MOVES(advance_and_predict, true, true)
 #undef MOVES
 #undef MOVE
 
-/* One of them (specialised for each dimension) over all that moves: sleepers in moving gas drift,
- * those at rest are left alone. A count of particles: its sum does not depend on the order. */
+/* Applies a move (specialised for each dimension) to all particles that move: sleeping particles in
+ * moving gas drift, those at rest are skipped. Returns a count of particles, so the order of
+ * summation does not matter. */
 static double move_all(const struct simulation *simulation, move *const *walks, double dt,
                        double ahead)
 {
@@ -158,7 +161,7 @@ static enum status name_unsound(const struct simulation *simulation, struct erro
     }
 }
 
-/* Back from the middle of a step that does not follow. */
+/* Returns from the predicted midpoint to the state, if no step follows. */
 static void predicted_midpoint_synchronise(struct simulation *simulation)
 {
     struct predicted_midpoint *state = simulation->integrator_state;
@@ -170,14 +173,14 @@ static void predicted_midpoint_synchronise(struct simulation *simulation)
     state->ahead = 0;
 }
 
-/* While steps follow each other, the end of one is joined with the prediction of the next. A
- * particle that wakes in between has x_old = x, alpha_old = alpha and no rates, which is what the
- * prediction would have left. */
+/* Between consecutive steps the end of one is combined with the prediction of the next. A particle
+ * that wakes in between has x_old = x, alpha_old = alpha and no rates, as the prediction would have
+ * left it. */
 static enum status predicted_midpoint_step(struct simulation *simulation, double dt,
                                            struct error *error)
 {
     struct predicted_midpoint *state = simulation->integrator_state;
-    /* t_end has come nearer: another step than was predicted for */
+    /* t_end has changed, and with it the step that was predicted */
     if (state->ahead > 0 && state->ahead != dt) predicted_midpoint_synchronise(simulation);
     if (state->ahead <= 0) move_all(simulation, predict_midpoint, 0, dt);
     const enum status status = evaluate_rates_of_primitives(simulation, error);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Two-register Runge-Kutta stages (Ketcheson 2010, algorithm 3): a stage combines the current
- * state, the state at the start of the step and the rates. RK2 (Heun), VL2 and RK3 are made of
- * them. */
+ * state, the state at the start of the step and the rates. RK2 (Heun), VL2 and RK3 consist of such
+ * stages. */
 #ifndef INTEGRATOR_RUNGE_KUTTA_H
 #define INTEGRATOR_RUNGE_KUTTA_H
 
@@ -9,7 +9,7 @@
 
 #include "solver.h"
 
-/* state = g1 state + g2 old + step rates, then the rates of the new state. */
+/* Sets state = g1 state + g2 old + step rates, then computes the rates of the new state. */
 static inline enum status runge_kutta_stage(struct simulation *simulation, double g1, double g2,
                                             double step, struct error *error)
 {

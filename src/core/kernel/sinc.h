@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Sinc family (Cabezon, Garcia-Senz & Relano 2008), w = (sin(pi q)/(pi q))^n, n = kernel->order.
- * Without the cut at q = 1 its transform ends at k h = n pi, so that lattice sums are exact from
- * eta = n/2 on; the cut leaves biases that fall with n. sin(pi q) is taken from the nearer zero,
- * which keeps the relative accuracy up to the edge. */
+ * Without the cut-off at q = 1 its transform ends at k h = n pi, so that lattice sums are exact for
+ * eta >= n/2; the cut-off leaves biases that decrease with n. sin(pi q) is computed from the nearer
+ * zero, which keeps the relative accuracy up to the edge. */
 #ifndef KERNEL_SINC_H
 #define KERNEL_SINC_H
 

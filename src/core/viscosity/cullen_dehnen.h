@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Each particle has an alpha that a switch sets once a step (Cullen & Dehnen 2010), CONVENTIONS
- * eqs. 6.6 and 6.7: it jumps up to alpha_loc where div v falls and decays to it behind. h is the
- * support radius, about twice what the paper writes h for. A pair has the mean of both particles'
- * alpha, and beta/alpha stays as set. */
+ * Each particle has an alpha that a switch sets once per step (Cullen & Dehnen 2010), CONVENTIONS
+ * eqs. 6.6 and 6.7: it jumps up to alpha_loc where div v decreases, and decays to it afterwards. h
+ * is the support radius, about twice the h of the paper. A pair has the mean alpha of both
+ * particles; beta/alpha is constant. */
 #ifndef VISCOSITY_CULLEN_DEHNEN_H
 #define VISCOSITY_CULLEN_DEHNEN_H
 
@@ -20,7 +20,7 @@ ALWAYS_INLINE struct viscosity_seen cullen_dehnen_viscous(const struct pair_numb
                                    .factor = pair->factor};
 }
 
-/* xi of eq. 6.7: 1 where compression rules, 0 in shear. */
+/* xi of eq. 6.7: 1 in compression, 0 in shear. */
 static inline double cullen_dehnen_limiter(const struct viscosity_flow *flow)
 {
     const int dim = flow->dim;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * constant, but quadratic in slow compression (von Neumann & Richtmyer 1950), CONVENTIONS eq. 5.13:
- * the linear term sees the speed of sound only where a pair closes faster than a hundredth of it,
- * and a proportionally smaller one below. Smooth flow is left alone, to second order, while shocks
- * (0.1 c and more a pair) do not notice. */
+ * As constant, but quadratic in slow compression (von Neumann & Richtmyer 1950), CONVENTIONS
+ * eq. 5.13: the linear term contains the sound speed only if a pair closes at more than a hundredth
+ * of it, and a proportionally smaller speed below. Smooth flow is unaffected to second order,
+ * shocks (0.1 c and more in a pair) are damped as before. */
 #ifndef VISCOSITY_FADING_H
 #define VISCOSITY_FADING_H
 

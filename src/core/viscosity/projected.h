@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * reconstructed in shocks, with alpha f^2 and beta f^2 (f Balsara's factor), and a linear term that
- * damps noise but not along the local shear, CONVENTIONS eqs. 6.3 to 6.5. The latter has both
- * signs: PI = -nu cbar e . (1 - P_ij) u_ij/rhobar, u_ij = v_ij + (L_i + L_j) x/2, e = -x/r, times
- *   1 - (v_ij . e/cbar)^2 or 0: what is as fast as sound is no noise, and to damp it may cool. */
+ * As reconstructed in shocks, with alpha f^2 and beta f^2 (f: Balsara factor), plus a linear term
+ * that damps noise except along the local shear, CONVENTIONS eqs. 6.3 to 6.5. The linear term has
+ * both signs: PI = -nu cbar e . (1 - P_ij) u_ij/rhobar, u_ij = v_ij + (L_i + L_j) x/2, e = -x/r,
+ * times
+ *   max(0, 1 - (v_ij . e/cbar)^2): speeds like that of sound are not noise, and damping may
+ *   cool. */
 #ifndef VISCOSITY_PROJECTED_H
 #define VISCOSITY_PROJECTED_H
 
@@ -13,7 +15,7 @@ ALWAYS_INLINE struct viscosity_seen projected_viscous(const struct pair_numbers 
 {
     struct viscosity_seen seen = reconstructed_viscous(numbers, i, j, pair);
     seen.factor = pair->factor * pair->factor;
-    /* m_i m_j PI/2; fading towards the speed of sound */
+    /* m_i m_j PI/2, vanishing towards the sound speed */
     const double c_sum = i->c + j->c, rho_sum = i->rho + j->rho, half_nu = 0.5 * numbers->noise;
     const double inverse = 1 / (c_sum * rho_sum), mach = 2 * pair->closing * rho_sum * inverse;
     const double still_noise = largest(1 - mach * mach, 0);
@@ -32,8 +34,8 @@ ALWAYS_INLINE void projected_square(int dim, const double *A, double *product)
         }
 }
 
-/* P = kappa M^2/tr M^2, symmetric, with M = L L^T and kappa = smoothstep((s - 0.7)/0.25),
- * s = 2 tr M^2/(tr M)^2 - 1: 1 for simple shear, 0 for rotation. Where M is 0 so is P. */
+/* P = kappa M^2/tr M^2, symmetric, with M = L L^T and kappa = smoothstep((s - 0.7)/0.25), s = 2 tr
+ * M^2/(tr M)^2 - 1: 1 for simple shear, 0 for rotation. If M = 0, P = 0. */
 ALWAYS_INLINE void projected_projector(int dim, const double *L, double *projector)
 {
     double M[9], M2[9], trace = 0, trace2 = 0;

@@ -6,8 +6,8 @@
 #ifndef VISCOSITY_RECONSTRUCTED_H
 #define VISCOSITY_RECONSTRUCTED_H
 
-/* exp(-z) for 0 <= z <= 7, to 8e-7 relative: (exp(-z/16))^16 by the series, in pairs of terms, as
- * the length of the chain of operations is what costs. */
+/* exp(-z) for 0 <= z <= 7, relative error 8e-7: (exp(-z/16))^16 by the series, with terms in pairs
+ * to shorten the chain of dependent operations. */
 ALWAYS_INLINE double reconstructed_damping(double z)
 {
     const double t = -0.0625 * z, t2 = t * t;
@@ -20,8 +20,8 @@ ALWAYS_INLINE double reconstructed_damping(double z)
     return s * s;
 }
 
-/* The closing speed is a numerator over scale, so that the pair needs one division. Zero where the
- * pair itself recedes: the heating uses v_ij, and viscosity never cools. */
+/* The closing speed is closing/scale, so that the pair needs one division. It is 0 if the pair
+ * itself recedes: heating uses v_ij, and viscosity must not cool. */
 ALWAYS_INLINE struct viscosity_seen reconstructed_viscous(const struct pair_numbers *numbers,
                                                           const struct pair_side *i,
                                                           const struct pair_side *j,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Each particle has an alpha (Morris & Monaghan 1997), CONVENTIONS eq. 5.9: it grows in compression
- * and decays behind, dalpha/dt = max(-div v, 0) (alpha_max - alpha) - (alpha - alpha_min)/tau, tau
- * = h/(0.2 c). A pair has the mean of both, and beta/alpha stays as set. */
+ * and decays afterwards, dalpha/dt = max(-div v, 0) (alpha_max - alpha) - (alpha - alpha_min)/tau,
+ * tau = h/(0.2 c). A pair has the mean alpha of both particles; beta/alpha is constant. */
 #ifndef VISCOSITY_TIME_DEPENDENT_H
 #define VISCOSITY_TIME_DEPENDENT_H
 
