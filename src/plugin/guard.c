@@ -24,11 +24,11 @@
 #include "output.h"
 #include "result.h"
 
-/* ---- in the other process ---- */
+/* ---- in the child process ---- */
 
 enum { TICKS = 4, MEMORY = 1 << 29 };
 
-/* Several times a second of the processor's time: has a call gone on for too long? */
+/* Called several times per second of CPU time; ends the process if a call takes too long. */
 static void tick(int number)
 {
     static long calls;
@@ -42,8 +42,8 @@ static void tick(int number)
     raise(SIGKILL);
 }
 
-/* What it has now and half a GiB more (sanitizers have reserved a lot by now); nothing where that
- * cannot be read. */
+/* Limits memory to current use plus half a GiB (sanitizers have reserved much by now). Does nothing
+ * if current use is unknown. */
 static void limit_memory(void)
 {
     unsigned long pages = 0;
@@ -68,7 +68,7 @@ static void prepare(pid_t parent, int printed)
 #ifdef __linux__
     prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
-    if (getppid() != parent) _exit(0); /* it has gone already */
+    if (getppid() != parent) _exit(0); /* the parent has already ended */
     for (size_t i = 0; i < sizeof usual / sizeof *usual; i++) signal(usual[i], SIG_DFL);
     setrlimit(RLIMIT_CORE, &no_core);
     limit_memory();
@@ -102,9 +102,9 @@ static _Noreturn void child(guard_work *work, const void *context, pid_t parent,
     _exit(0);
 }
 
-/* ---- in this one ---- */
+/* ---- in the parent process ---- */
 
-/* What has come through a pipe; beyond most bytes only their number is kept. */
+/* Data received through a pipe; beyond `most` bytes only counted. */
 struct stream {
     int file;
     char *text;
@@ -126,7 +126,7 @@ static void take(struct stream *stream, const char *bytes, size_t n)
     stream->length += n;
 }
 
-/* Reads what there is; false when there was nothing. */
+/* Reads the available data; false if there was none. */
 static bool drain(struct stream *stream)
 {
     static char bytes[1 << 16];
@@ -145,7 +145,7 @@ static double now(void)
 enum ending { ENDED, TOO_LATE, TOO_MUCH };
 enum { PRINTED_MAX = 1 << 26 };
 
-/* Listens until the process has ended, or ends it; the pipes may be held open by others. */
+/* Reads both pipes until the process ends, or ends it; other processes may hold the pipes open. */
 static enum ending listen_to(pid_t pid, double limit, struct stream *streams, int *outcome)
 {
     enum { WAIT_MS = 20 };
@@ -156,7 +156,7 @@ static enum ending listen_to(pid_t pid, double limit, struct stream *streams, in
         for (int i = 0; i < 2; i++)
             polls[i] = (struct pollfd){.fd = streams[i].file, .events = POLLIN};
         if (poll(polls, 2, WAIT_MS) > 0 && (polls[0].revents | polls[1].revents) & POLLHUP) {
-            const struct timespec pause = {0, 2000000}; /* no more waiting on such a pipe */
+            const struct timespec pause = {0, 2000000}; /* poll no longer waits on such a pipe */
             nanosleep(&pause, NULL);
         }
         const pid_t done = waitpid(pid, outcome, WNOHANG | WUNTRACED);
@@ -167,14 +167,14 @@ static enum ending listen_to(pid_t pid, double limit, struct stream *streams, in
         over = done == pid && !WIFSTOPPED(*outcome);
         const bool much = streams[1].seen > PRINTED_MAX, late = now() >= until;
         if (over || (done != pid && !much && !late)) continue;
-        ending = done == pid ? ENDED : much ? TOO_MUCH : TOO_LATE; /* ENDED: stopped */
+        ending = done == pid ? ENDED : much ? TOO_MUCH : TOO_LATE; /* ENDED: it was stopped */
         kill(-pid, SIGKILL);
         kill(pid, SIGKILL);
         int ignored;
         while (waitpid(pid, &ignored, 0) < 0 && errno == EINTR) continue;
         over = true;
     }
-    kill(-pid, SIGKILL); /* what it has started itself */
+    kill(-pid, SIGKILL); /* its own child processes */
     return ending;
 }
 
@@ -202,7 +202,7 @@ static void explain(struct guard_verdict *verdict, const struct watch *seen, enu
     status_clean(text);
 }
 
-/* The reply, if it is one; sets the status of the work. */
+/* Parses the reply, if valid; sets the status of the work. */
 static bool take_answer(struct guard_verdict *verdict, const struct stream *answer,
                         enum status *status, struct error *error)
 {

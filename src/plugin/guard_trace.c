@@ -46,7 +46,7 @@ void guard_begun(void)
     if (guard_watched) guard_watched->begun = 1;
 }
 
-/* A process of one thread has just been made. */
+/* Called in a new process, which has one thread. */
 static void forget_trace(void)
 {
     trace = NULL;

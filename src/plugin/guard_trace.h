@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What foreign code is at, in memory that the process it runs in shares with the one that watches:
- * for guard.c and guard_watch.c. */
+ * Records of running foreign functions in memory shared by the process that runs them and the
+ * process that watches it. Internal to guard.c and guard_watch.c. */
 #pragma once
 
 #include <stdatomic.h>
@@ -8,7 +8,8 @@
 
 #include "status.h"
 
-/* What one thread is at. Names of functions are literals, at the same address in both processes. */
+/* The current call of one thread. Function names are literals, which have the same address in both
+ * processes. */
 struct trace {
     _Alignas(64) const char *volatile function;
     volatile double a, b;
@@ -17,20 +18,20 @@ struct trace {
     volatile int inside;
 };
 
-/* Threads, and processes that the watched one starts itself, take the next trace at their first
- * call; in a ring, so that many short-lived ones may follow each other. */
+/* Each thread, also of a child process, takes the next trace at its first call. Traces are reused
+ * in turn, so that any number of short-lived threads may follow each other. */
 enum { GUARD_TRACES = 256 };
 struct watch {
     volatile int begun, stuck, complete;
-    char subject[300]; /* of guard_watch */
+    char subject[300]; /* named by guard_watch */
     atomic_uint taken;
     struct trace traces[GUARD_TRACES];
 };
 
-/* Where this process writes its traces; NULL: no other process reads them. */
+/* Where this process records calls; NULL: nobody reads them. */
 extern struct watch *guard_watched;
 
-/* NULL: no memory. Unmap it. */
+/* Creates the shared memory; unmap it after use. NULL: no memory. */
 struct watch *guard_watch_make(struct error *error);
 
 /* " in FUNCTION(a, b, dim), call 7", " after ..." or "". */

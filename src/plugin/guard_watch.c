@@ -19,7 +19,7 @@
 
 static volatile sig_atomic_t watched_process;
 
-/* Interrupts are for the process that works: it removes its temporaries and ends of it. */
+/* Forwards a signal to the working process, which removes its temporary files and ends. */
 static void pass_on(int number)
 {
     kill((pid_t)watched_process, number);
@@ -39,7 +39,7 @@ static void say(const struct watch *watch, const struct trace *seen, const char 
     fprintf(stderr, "sphproof: %s %s%s\n", watch->subject, what, place);
 }
 
-/* The thread that is in foreign code, if there is one. */
+/* The call of a thread in foreign code; NULL: none. */
 static const struct trace *inside(const struct watch *watch)
 {
     for (int t = 0; t < GUARD_TRACES; t++)
@@ -47,7 +47,7 @@ static const struct trace *inside(const struct watch *watch)
     return NULL;
 }
 
-/* The process has ended: so does this one, in the same way, unless foreign code was the reason. */
+/* Ends this process in the same way as the child, unless foreign code is to blame. */
 static _Noreturn void end_as(const struct watch *watch, int outcome)
 {
     char what[120];
@@ -71,7 +71,7 @@ static _Noreturn void end_as(const struct watch *watch, int outcome)
     _exit(WIFEXITED(outcome) ? WEXITSTATUS(outcome) : STATUS_ENVIRONMENT);
 }
 
-/* Time at which each thread's call was first seen, which still goes on. */
+/* For each thread the running call and the time at which it was first seen. */
 struct calls {
     long number[GUARD_TRACES];
     double since[GUARD_TRACES];
@@ -92,7 +92,7 @@ static const struct trace *find_stuck(const struct watch *watch, struct calls *c
     return NULL;
 }
 
-/* First with a chance to remove its temporaries. */
+/* Ends the process, first with SIGTERM so that it can remove its temporary files. */
 static _Noreturn void end_stuck(const struct watch *watch, const struct trace *stuck, pid_t pid)
 {
     enum { ROUNDS = 100, ROUND_MS = 10 };
@@ -107,7 +107,7 @@ static _Noreturn void end_stuck(const struct watch *watch, const struct trace *s
     _exit(STATUS_CHECK_FAILED);
 }
 
-/* pipe: held open by the process. */
+/* pipe: closed when the process ends. */
 static _Noreturn void watch_over(const struct watch *watch, pid_t pid, int pipe)
 {
     enum { ROUND_MS = 250, CLOSED_MS = 2 };
@@ -128,7 +128,7 @@ static _Noreturn void watch_over(const struct watch *watch, pid_t pid, int pipe)
     }
 }
 
-/* What is started from here on ends when the process that started it does. */
+/* Makes this process end when its parent ends. */
 static void end_with_parent(void)
 {
 #ifdef __linux__
@@ -140,7 +140,7 @@ enum status guard_watch(const char *what, const char *path, struct error *error)
 {
     static struct watch *mine;
     int ends[2];
-    if (mine) { /* it is watched already */
+    if (mine) { /* already watched */
         const size_t used = strlen(mine->subject);
         snprintf(mine->subject + used, sizeof mine->subject - used, ", %s %s", what, path);
         return STATUS_OK;

@@ -10,10 +10,11 @@
 struct h5 h5;
 static char failure[300];
 
-/* The address of a function, or the value of a variable, of that many bytes. */
+/* Finds a function (size = 0), or copies the value of a variable of `size` bytes. */
 static void find(void *library, const char *symbol, void *result, size_t size)
 {
-    void *address = dlsym(RTLD_DEFAULT, symbol); /* a program that is linked with it has copies */
+    void *address = dlsym(RTLD_DEFAULT,
+                          symbol); /* a program linked with HDF5 has its own copies of variables */
     if (!address) address = dlsym(library, symbol);
     if (!address)
         snprintf(failure, sizeof failure, "%s is not in %s", symbol, H5_SONAME);
@@ -24,7 +25,7 @@ static void find(void *library, const char *symbol, void *result, size_t size)
 static void load(void)
 {
 #define TEXT(name)       #name
-#define SYMBOL(name)     TEXT(name) /* some names are macros, for that of a version */
+#define SYMBOL(name)     TEXT(name) /* some names are macros for a versioned name */
 #define CALL(name)       find(library, SYMBOL(H5##name), &h5.name, 0);
 #define IDENTIFIER(name) find(library, SYMBOL(H5##name), &h5.name, sizeof h5.name);
     void *library = dlopen(H5_SONAME, RTLD_NOW | RTLD_LOCAL);
@@ -34,7 +35,7 @@ static void load(void)
     }
     H5_CALLS(CALL)
     if (failure[0]) return;
-    h5.open(); /* gives the identifiers */
+    h5.open(); /* initialises the identifiers */
     H5_IDENTIFIERS(IDENTIFIER)
     h5.Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }

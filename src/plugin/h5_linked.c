@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A program that is linked with HDF5, for h5_soname.py to look at. */
+ * A program linked with HDF5, examined by h5_soname.py. */
 #include <hdf5.h>
 
 int main(void)

@@ -81,8 +81,8 @@ void measure_moments(const struct pieces *pieces, struct measure_moments *moment
 
 const double measure_significant = 30;
 
-/* Of a table of n intervals the spline's slope and curvature are off by (1/n)^3 and (1/n)^2, which
- * shows at its ends only: there w is continued as if they were 0. */
+/* A table of n intervals gives slope and curvature of the spline with errors of (1/n)^3 and
+ * (1/n)^2. They appear only at its ends, where w is continued with zero slope and curvature. */
 static double end_error(const struct pieces *pieces, int i, int k)
 {
     enum { FEW = 8 };
@@ -105,8 +105,8 @@ static struct measure_jump plain_jump(const struct pieces *pieces, int i, int k)
                                  left_floor + right_floor + end_error(pieces, i, k)};
 }
 
-/* Beside a break point that is off by delta, derivative k differs by delta times the jump of the
- * next one. */
+/* If a break point is off by delta, derivative k differs by delta times the jump of derivative k +
+ * 1. */
 static struct measure_jump jump_at(const struct pieces *pieces, int i, int k)
 {
     struct measure_jump jump = plain_jump(pieces, i, k);
@@ -119,8 +119,8 @@ int measure_class_limit(const struct pieces *pieces)
     return pieces->terms.single || pieces_look_single(pieces) ? 2 : MEASURE_CLASS_MAX;
 }
 
-/* A few jumps of w, w' or w'' by a part of 1e-4 are a mistake: no kernel is meant to have them. The
- * many points of a table do jump so little. */
+/* Records jumps of w, w' or w'' by less than 1e-4 as mistakes if there are few, since no kernel has
+ * them intentionally. Tables with many points do have such small jumps. */
 static void note_accident(const struct pieces *pieces, int i, int k, double jump,
                           struct measure_class *result)
 {
@@ -150,7 +150,7 @@ void measure_class(const struct pieces *pieces, struct measure_class *result)
                 result->class = k - 1;
                 result->at = jump.at;
             }
-            break; /* derivatives above the first that jumps say nothing more */
+            break; /* higher derivatives give no more information */
         }
 }
 
@@ -167,5 +167,5 @@ void measure_lattice(const struct kernel *kernel, int dim, double eta, double *d
                 slope += r * kernel_dr(kernel, r, eta, dim);
             }
     *density = rho - 1;
-    *gradient = -slope / dim - 1; /* the mean over the axes, which are alike */
+    *gradient = -slope / dim - 1; /* mean over the equivalent axes */
 }

@@ -10,10 +10,10 @@
 #include <gsl/gsl_integration.h>
 #include <gsl/gsl_roots.h>
 
-/* 32 points resolve the integrand on 0.2: at most 20 radians of the wave to each side. */
+/* 32 points resolve the integrand on an interval of 0.2: at most 20 radians to either side. */
 enum { NODES = 32 };
 static const double width = 0.2;
-static const double step = 0.25; /* of the scan in kappa: a fraction of the narrowest lobe, pi */
+static const double step = 0.25; /* in kappa: a fraction of the width of the narrowest lobe, pi */
 
 static void add_nodes(struct measure_spectrum *spectrum, const struct pieces *pieces, double a,
                       double b, const gsl_integration_glfixed_table *table)
@@ -97,7 +97,7 @@ void measure_fourier(const struct measure_spectrum *spectrum, struct measure_fou
 {
     *result = (struct measure_fourier){
         .least = (double)INFINITY, .first_negative = (double)NAN, .floor = 1e-13};
-    double last = 1, last_kappa = 0; /* where the transform was positive for the last time */
+    double last = 1, last_kappa = 0; /* last kappa with a positive transform */
     for (double kappa = step; kappa <= MEASURE_KAPPA_MAX; kappa += step) {
         const double value = measure_transform(spectrum, kappa);
         if (isnan(value)) result->least = value;

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Pairing by energy. On the densest lattice (hexagonal, face-centred cubic) compare single
- * particles with pairs of coincident ones on the same lattice, 2^(1/d) times wider. Energy grows
- * with the estimated density, and the pairs' one is that of single particles at a support narrower
- * by 2^(1/d): pairs win where the lattice sum at eta exceeds that at eta/2^(1/d). The kernels whose
- * transform is nowhere negative never allow it. Agrees with what relaxation runs find (Dehnen & Aly
- * 2012). */
+ * Pairing instability by energy. On the densest lattice (hexagonal, face-centred cubic) single
+ * particles are compared with coincident pairs on the same lattice, 2^(1/d) times wider. Energy
+ * increases with the estimated density. The density of the pairs equals that of single particles
+ * with a support smaller by 2^(1/d), so that pairs have less energy if the lattice sum at eta
+ * exceeds that at eta/2^(1/d). This never happens for kernels without a negative transform. Agrees
+ * with relaxation runs (Dehnen & Aly 2012). */
 #include "measure.h"
 
 #include <math.h>
 
-/* Sum of W over the densest lattice with one particle in a unit volume, h = eta. */
+/* Sum of W over the densest lattice with unit volume per particle, h = eta. */
 static double densest_sum(const struct kernel *kernel, int dim, double eta)
 {
     const double nearest = dim == 1 ? 1 : dim == 2 ? sqrt(2 / sqrt(3)) : pow(2, 1. / 6);
@@ -28,7 +28,7 @@ static double densest_sum(const struct kernel *kernel, int dim, double eta)
 double measure_pairing(const struct kernel *kernel, int dim)
 {
     const double ball = measure_sphere(dim) / dim, narrower = pow(2, -1. / dim);
-    const double first = dim == 1 ? 4 : dim == 2 ? 8 : 12; /* the nearest ones at least */
+    const double first = dim == 1 ? 4 : dim == 2 ? 8 : 12; /* at least the nearest neighbours */
     for (double n = first; n <= MEASURE_NEIGHBOURS_MAX; n *= 1.01) {
         const double eta = pow(n / ball, 1. / dim);
         if (densest_sum(kernel, dim, eta) > densest_sum(kernel, dim, eta * narrower) + 1e-9)

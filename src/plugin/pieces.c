@@ -11,8 +11,8 @@ enum { N = PIECES_NODES, TAIL = N / 4, LEAVES_MAX = 1 << 15 };
 
 const struct terms pieces_terms_usual = {.samples = 1 << 13, .seed = 1};
 
-/* A series is resolved when its tail is below this part of the largest value; intervals with a
- * singularity are bisected down to this width: double precision, single precision. */
+/* For double and single precision: a series is resolved when its tail is below this fraction of the
+ * largest value; intervals with a singularity are bisected down to this width. */
 static const double tolerances[] = {4e-14, 4e-6}, widths[] = {1e-11, 1e-3};
 
 struct leaves {
@@ -36,13 +36,13 @@ void pieces_fit(const struct pieces *pieces, const double values[PIECES_NODES],
     }
     for (int k = 0; k < N; k++) {
         fit->c[k] = (k ? 2. : 1.) / N * sum[k];
-        if (!(largest <= DBL_MAX)) fit->c[k] = (double)NAN; /* an Inf or a NaN is passed on */
+        if (!(largest <= DBL_MAX)) fit->c[k] = (double)NAN; /* propagate Inf and NaN */
         if (k >= N - TAIL) tail = fmax(tail, fabs(fit->c[k]));
     }
     fit->noise = isnan(fit->c[0]) ? fit->c[0] : fmax(tail, 0.5 * pieces->epsilon * largest);
     fit->n = N;
     while (fit->n > 1 && fabs(fit->c[fit->n - 1]) <= 2 * fit->noise) fit->n--;
-    /* a tail above round-off is the trace of a break point that was found only nearly */
+    /* a tail above round-off indicates a break point that is only nearly right */
     fit->reach = tail > 4 * pieces->epsilon * largest ? N : fit->n + 2;
 }
 
@@ -101,7 +101,7 @@ static bool resolved(const struct pieces *pieces, double a, double b)
     return resolved_nearly(pieces, a, b, 1);
 }
 
-/* Bisects ]a, b[ until every leaf is resolved or too narrow; appends the leaves' right ends. */
+/* Bisects ]a, b[ until every interval is resolved or too narrow; appends their right ends. */
 static void bisect(struct leaves *leaves, double a, double b)
 {
     if (leaves->pieces->n + leaves->n >= LEAVES_MAX) return;
@@ -113,8 +113,8 @@ static void bisect(struct leaves *leaves, double a, double b)
     }
 }
 
-/* Joins neighbouring leaves that are resolved together, and shrinks those too narrow to be a piece
- * (a singular point) to that point; returns the number of pieces on ]a, b[. */
+/* Joins adjacent intervals that are resolved together, and shrinks intervals too narrow to be a
+ * piece (a singular point) to that point. Returns the number of pieces on ]a, b[. */
 static int join(const struct pieces *pieces, double a, double *edge, int n)
 {
     int m = 0;
@@ -133,7 +133,7 @@ static int join(const struct pieces *pieces, double a, double *edge, int n)
     return m;
 }
 
-/* Derivative m of the series at x, also somewhat outside [-1, 1], by differentiating the
+/* Derivative m of the series at x, which may be slightly outside [-1, 1], by differentiating the
  * coefficients m times. */
 static double series_derivative(const struct series_fit *fit, double x, int m)
 {
@@ -163,14 +163,14 @@ static double end_slope(int j, int k)
     return product;
 }
 
-/* The series to the left and to the right of a break point; their difference is a power of the
- * distance from the true one. */
+/* The series to the left and right of a break point. Their difference is a power of the distance
+ * from the exact break point. */
 struct junction {
     struct series_fit left, right;
-    double at, margin, half; /* series on at -+ (margin ... margin + 2 half) */
+    double at, margin, half; /* the series cover at -+ (margin ... margin + 2 half) */
 };
 
-/* What the noise of a series makes of derivative m at its end. */
+/* Error of derivative m at the end of a series due to its noise. */
 static double end_noise(const struct series_fit *fit, int m)
 {
     double amplified = 0;
@@ -186,9 +186,9 @@ static double difference(const struct junction *junction, double q, int m)
            pow(junction->half, -m);
 }
 
-/* A break point found by bisection is off by as much as the tolerance lets pass. With D the
- * difference of the two series, D/D' = (q - break)/s where s is the order of the first derivative
- * of dw that jumps; the derivative s - 1 of D has a simple zero there. */
+/* Refines a break point found by bisection, whose error is limited only by the tolerance. With D
+ * the difference of the two series, D/D' = (q - break)/s, where s is the order of the first
+ * derivative of dw that jumps; derivative s - 1 of D has a simple zero at the break. */
 static double refine(const struct pieces *pieces, double before, double at, double after,
                      double margin, double *doubt)
 {
@@ -226,20 +226,20 @@ static void find_scale(struct pieces *pieces)
     }
 }
 
-/* What the same arguments must give ever after. */
+/* Stores values that the same arguments must give later. */
 static void remember(struct pieces *pieces)
 {
     const struct kernel *kernel = pieces->kernel;
     for (int i = 0; i < PIECES_FIRST; i++) {
-        const double q = 1.02 * (i + 0.385) / PIECES_FIRST; /* the last one lies beyond the edge */
+        const double q = 1.02 * (i + 0.385) / PIECES_FIRST; /* the last one is beyond the edge */
         pieces->first[i] = (struct pieces_first){q, kernel->w(kernel, q, pieces->dim),
                                                  kernel->dw(kernel, q, pieces->dim),
                                                  kernel_dh(kernel, q, 1, pieces->dim)};
     }
 }
 
-/* Second differences over a step in which a smooth function bends by 1e-13 only; a knot or a fault
- * here and there does not move their upper quartile. */
+/* Measures rounding errors by second differences over a step on which a smooth function bends only
+ * by 1e-13. Their upper quartile is insensitive to a few knots or faults. */
 static void find_grain(struct pieces *pieces)
 {
     enum { SAMPLES = 256 };
@@ -261,7 +261,7 @@ bool pieces_look_single(const struct pieces *pieces)
     return pieces->grain > 1e-10 && pieces->grain < 1e-5;
 }
 
-/* The plateaus of all pieces; whether all are resolved. */
+/* Finds the noise of all pieces, and whether all are resolved. */
 static void find_noise(struct pieces *pieces)
 {
     pieces->resolved = true;
@@ -276,7 +276,7 @@ static void find_noise(struct pieces *pieces)
                        pieces->noise_dw <= pieces->tolerance * pieces->max_dw;
 }
 
-/* Noise everywhere: nothing to be found, even pieces will do. */
+/* Equal pieces, for a kernel that is noisy everywhere. */
 static int even(double a, double b, double *edge)
 {
     enum { EVEN = 32 };
@@ -284,8 +284,8 @@ static int even(double a, double b, double *edge)
     return EVEN;
 }
 
-/* Puts the break point where the function has it, if both pieces are resolved then: nearly, since
- * the other ends of the pieces may still be off. */
+/* Moves the break point to its refined position if both pieces are then resolved. They need only be
+ * nearly resolved, since their other ends may still be off. */
 static bool settle(const struct pieces *pieces, double before, double *at, double after,
                    double margin, double factor)
 {
@@ -297,8 +297,8 @@ static bool settle(const struct pieces *pieces, double before, double *at, doubl
     return sound;
 }
 
-/* Settles the break points of n pieces; two of them close together, the debris of bisection around
- * one, become one where that works out. */
+/* Refines the break points between n pieces. Two close ones, which bisection left around one, are
+ * merged if that resolves the pieces. */
 static int sharpen(const struct pieces *pieces, double *edge, int n)
 {
     int m = 0;
@@ -387,14 +387,14 @@ double pieces_derivative(const struct pieces *pieces, double at, double to, int 
     const int m = k ? k - 1 : 0;
     double best = (double)NAN;
     *floor = (double)INFINITY;
-    /* the noise falls with wide windows, the truncation with narrow ones: take the best */
+    /* noise decreases with the width of the window, truncation increases: take the best */
     for (double length = to - at; fabs(length) > fabs(to - at) / 1000; length /= 2) {
         struct series_fit fit;
         sample(pieces, shape, at, at + length, &fit); /* x = -1 at `at` */
         double sum = 0, amplified = 0;
         const double stretch = pow(2 / length, m);
         const int terms =
-            fit.reach > m + 2 ? fit.reach : m + 2; /* the chopped ones are errors as well */
+            fit.reach > m + 2 ? fit.reach : m + 2; /* include the errors of chopped terms */
         for (int j = 0; j < terms && j < N; j++) {
             const double slope = end_slope(j, m) * ((j + m) % 2 ? -1 : 1);
             if (j < fit.n) sum += fit.c[j] * slope;

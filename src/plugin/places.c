@@ -19,7 +19,7 @@ double places_random(uint64_t seed, uint64_t i)
     return (double)(z >> 11) * 0x1p-53;
 }
 
-/* Sorts, and drops what is there twice. */
+/* Sorts, and removes duplicates. */
 static int distinct(double *q, int n)
 {
     int kept = 0;
@@ -76,7 +76,7 @@ void places_free(struct places *places)
     *places = (struct places){0};
 }
 
-/* Its size: a compiler may add the opposite of what the source subtracts. */
+/* Stores the absolute value, since a compiler may add the negative of what the source subtracts. */
 static int keep(double value, double *list, int n)
 {
     const double q = fabs(value);
@@ -85,8 +85,8 @@ static int keep(double value, double *list, int n)
     return n + 1;
 }
 
-/* Where compilers put them, in the constants' section (aligned), first; then any place, as in the
- * midst of an instruction. */
+/* First aligned numbers, which compilers put into the section for constants, then any others, such
+ * as operands of instructions. */
 static int scan(const unsigned char *bytes, size_t size, double *list)
 {
     int n = 0;

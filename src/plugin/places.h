@@ -1,25 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Places in [0, 1[ where a formula is likely to change, and their neighbours down to the last
- * digit: the ends of the pieces, short decimals, fractions, and the numbers that stand in a
- * plug-in's own code (with those that follow from a comparison of 1 - q or of q^2). A fault of any
- * width that begins or ends there is met, however narrow. */
+ * Positions in [0, 1[ where a formula is likely to change, and their neighbours down to the last
+ * digit: ends of the pieces, short decimals, fractions, and numbers in the code of a plug-in (and
+ * those that follow from a comparison of 1 - q or q^2). They find a fault that begins or ends
+ * there, however narrow. */
 #pragma once
 
 #include "pieces.h"
 
 struct places {
-    double *q; /* n of them, ascending */
+    double *q; /* n, increasing */
     int n, centres;
 };
 
-/* Without memory there are none (n = 0). Release with places_free. */
+/* n = 0 if there is no memory. Free with places_free. */
 void places_make(struct places *places, const struct pieces *pieces);
 void places_free(struct places *places);
 
-/* A number in [0, 1[, the i-th of the sequence that seed names (splitmix64, Steele et al. 2014). */
+/* The i-th random number in [0, 1[ of the sequence for seed (splitmix64, Steele et al. 2014). */
 double places_random(uint64_t seed, uint64_t i);
 
-/* The numbers in ]0, 1[ among the constants of a compiled file, doubles and floats, malloced; their
- * number is returned, at most PLACES_CONSTANTS_MAX. 0: none, or the file cannot be read. */
+/* Finds the numbers in ]0, 1[ among the constants of a compiled file, doubles and floats; the
+ * caller frees them. Returns their number, at most PLACES_CONSTANTS_MAX. 0: none, or the file
+ * cannot be read. */
 enum { PLACES_CONSTANTS_MAX = 4096 };
 int places_constants(const char *path, double **constants);

@@ -21,12 +21,12 @@ enum { HASH_DIGITS = 16, PATH_SIZE = 200, NAME_SIZE = PATH_SIZE + 1 + HASH_DIGIT
 struct plugin {
     char path[PATH_SIZE], name[NAME_SIZE];
     struct kernel kernel;
-    struct user_kernel user[KERNEL_DIM_MAX + 1]; /* loaded once for each dimension */
+    struct user_kernel user[KERNEL_DIM_MAX + 1]; /* loaded once per dimension */
 };
 
 static struct plugin plugins[KERNEL_PLUGINS_MAX];
 static int plugin_count;
-static plugin_certify *certificate; /* NULL: no plug-in is allowed */
+static plugin_certify *certificate; /* NULL: plug-ins are not allowed */
 static bool any_certificate;
 
 void plugin_allow(plugin_certify *certify, bool uncertified)
@@ -35,7 +35,7 @@ void plugin_allow(plugin_certify *certify, bool uncertified)
     any_certificate = uncertified;
 }
 
-/* The hash that stands behind a path, or NULL. */
+/* The hash at the end of PATH@HASH, or NULL. */
 static const char *hash_of(const char *word)
 {
     const char *at = strrchr(word, '@');
@@ -58,7 +58,7 @@ bool plugin_is_path(const char *word)
     return certificate && user_kernel_is_path(path);
 }
 
-/* The hash of the file's content. */
+/* Computes the hash of the file's content. */
 static enum status hash_file(const char *path, char digits[HASH_DIGITS + 1], struct error *error)
 {
     struct stat is;
@@ -101,7 +101,7 @@ enum status plugin_find(const char *word, int *index, struct error *error)
     return STATUS_OK;
 }
 
-/* --- the certificate, in another process ------------------------------------------------------ */
+/* --- the certificate, in a child process ------------------------------------------------------ */
 
 struct errand {
     const char *path;
@@ -122,7 +122,7 @@ static enum status certify(const void *context, json_t **reply, struct error *er
     return status;
 }
 
-/* Why the plug-in is refused, or "" if it is not. */
+/* The reason for refusing the plug-in, or "". */
 static void find_faults(const struct guard_verdict *verdict, char *text, size_t size)
 {
     size_t k;
@@ -162,7 +162,7 @@ static enum status check(const struct plugin *plugin, int dim, struct error *err
 
 /* --- in this process -------------------------------------------------------------------------- */
 
-/* Its standard deviation over its support radius, along one direction. */
+/* Standard deviation along one direction over the support radius. */
 static double deviation(const struct kernel *kernel, int dim)
 {
     struct pieces pieces;
@@ -174,8 +174,8 @@ static double deviation(const struct kernel *kernel, int dim)
     return sqrt(moments.second);
 }
 
-/* The default eta: it gives the kernel the standard deviation of the cubic spline at the spline's
- * own eta (Dehnen & Aly 2012, section 2.4), rounded to three places. */
+/* The default eta gives the kernel the same standard deviation as the cubic spline at its default
+ * eta (Dehnen & Aly 2012, section 2.4), rounded to three decimals. */
 static double usual_eta(const struct kernel *kernel, int dim)
 {
     struct kernel cubic;
@@ -194,7 +194,7 @@ static enum status load(struct plugin *plugin, int dim, struct error *error)
     kernel->dw = loaded->dw;
     kernel->plugin_w = loaded->plugin_w;
     kernel->plugin_dw = loaded->plugin_dw;
-    kernel->plugin_dw_dh = NULL; /* if it does not agree with w and dw, the certificate says so */
+    kernel->plugin_dw_dh = NULL; /* the certificate reports whether it agrees with w and dw */
     kernel->knot_count = loaded->knot_count;
     kernel->knots = loaded->knots;
     kernel->constant[dim] = loaded->constant[dim];

@@ -16,7 +16,7 @@
 
 enum { KNOTS_ROOM = 1 << 16 };
 
-/* The functions of the plug-in; w and dw are there, the others may be NULL. */
+/* Functions of the plug-in; w and dw are required, the others may be NULL. */
 static struct functions {
     double (*w)(double q, int dim);
     double (*dw)(double q, int dim);
@@ -28,7 +28,7 @@ static struct functions {
     const char *(*name)(void);
 } functions;
 
-/* Each call is announced: a process that guards this one tells where it ended. */
+/* Each call is recorded so that a guarding process can report the call that failed. */
 static double shape_w(const struct kernel *kernel, double q, int dim)
 {
     guard_call("sphproof_kernel_w", q, (double)NAN, dim);
@@ -73,7 +73,7 @@ static enum status open_library(struct user_kernel *user, const char *path, stru
     if (S_ISDIR(info.st_mode))
         return error_set(error, STATUS_BAD_INPUT,
                          "kernel '%.200s' is a directory; allowed: a shared object", path);
-    /* without a slash dlopen would look in the system's directories */
+    /* without a slash dlopen would search the system directories */
     snprintf(plain, sizeof plain, "%s%s", strchr(path, '/') ? "" : "./", path);
     announce("dlopen", 0);
     user->library = dlopen(plain, RTLD_NOW | RTLD_LOCAL);
@@ -84,7 +84,7 @@ static enum status open_library(struct user_kernel *user, const char *path, stru
     return STATUS_OK;
 }
 
-/* Stores the function's address; POSIX promises that a data pointer can hold it. */
+/* Stores the address of a function; POSIX guarantees that a data pointer can hold it. */
 static void find(void *library, const char *symbol, void *function)
 {
     void *address = dlsym(library, symbol);
@@ -129,7 +129,7 @@ static void take_name(struct user_kernel *user, const char *path, const struct f
     user->kernel.member = (struct member){user->name, "user's kernel", ""};
 }
 
-/* Adds the knots of one dimension to the user's list; 0 and 1 are break points anyway. */
+/* Adds the knots of one dimension to the list; 0 and 1 are break points anyway. */
 static enum status take_knots(struct user_kernel *user, const struct functions *f, int dim,
                               double *room, struct error *error)
 {
@@ -154,7 +154,7 @@ static enum status take_knots(struct user_kernel *user, const struct functions *
     return STATUS_OK;
 }
 
-/* The knots of all dimensions in one list: a superfluous one does no harm. */
+/* Collects the knots of all dimensions in one list; superfluous knots are harmless. */
 static enum status take_all_knots(struct user_kernel *user, const struct functions *f,
                                   const int range[2], struct error *error)
 {
@@ -177,7 +177,7 @@ static enum status take_all_knots(struct user_kernel *user, const struct functio
     return STATUS_OK;
 }
 
-/* Finite everywhere, and something in it. */
+/* Checks that values are finite and not all zero. */
 static enum status probe_values(const struct kernel *kernel, int dim, struct error *error)
 {
     enum { SAMPLES = 257 };
@@ -196,7 +196,7 @@ static enum status probe_values(const struct kernel *kernel, int dim, struct err
                      kernel->member.name, dim);
 }
 
-/* The class where none is declared; an undeclared jump of w itself counts against C0. */
+/* Sets the class if it is not declared; an undeclared jump of w itself counts against C0. */
 static enum status take_class(struct user_kernel *user, const struct functions *f,
                               const struct pieces *pieces, struct error *error)
 {
@@ -227,7 +227,7 @@ static enum status check_constant(const struct user_kernel *user, int dim, struc
                      user->name, dim, constant, user->found_constant ? " by quadrature" : "");
 }
 
-/* What the plug-in says of itself in dim dimensions. */
+/* Asks the plug-in for its declarations in dim dimensions. */
 static enum status ask(struct user_kernel *user, const struct functions *f, int dim,
                        struct error *error)
 {
@@ -244,7 +244,7 @@ static enum status ask(struct user_kernel *user, const struct functions *f, int 
     return check_constant(user, dim, error);
 }
 
-/* What it leaves to be found. */
+/* Determines what the plug-in does not declare. */
 static enum status complete(struct user_kernel *user, const struct functions *f, int dim,
                             struct error *error)
 {

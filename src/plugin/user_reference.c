@@ -12,7 +12,7 @@ static const char symbol[] = "sphproof_reference";
 enum status user_reference_load(struct user_reference *user, const char *path, struct error *error)
 {
     char plain[4096];
-    /* without a slash dlopen would look in the system's directories */
+    /* without a slash dlopen would search the system directories */
     snprintf(plain, sizeof plain, "%s%s", strchr(path, '/') ? "" : "./", path);
     guard_call("dlopen", (double)NAN, (double)NAN, 0);
     user->library = dlopen(plain, RTLD_NOW | RTLD_LOCAL);

@@ -12,7 +12,7 @@
 #define RATIO_MOST  4.6
 enum { RATIO_STEPS = 60, GOLDEN_STEPS = 44, NEIGHBOURS_MAX = 4096 };
 
-/* Particles near one of the sample: distance over its h, mass. */
+/* A particle of the sample and its neighbours, each with distance over h and mass. */
 struct near {
     double rho, m, h;
     size_t i;
@@ -25,7 +25,8 @@ struct near {
 struct sample {
     int dim;
     size_t n;
-    double reach; /* over h: so far neighbours of all are known */
+    double
+        reach; /* over h: distance up to which the neighbour lists of all particles are complete */
     struct near near[CONVENTIONS_SAMPLE];
 };
 
@@ -46,7 +47,7 @@ static int nearer(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* No code sums over more than NEIGHBOURS_MAX neighbours: the reach ends before them. */
+/* Truncates the list, since no code sums over more than NEIGHBOURS_MAX neighbours. */
 static void limit_reach(struct sample *sample, struct near *near)
 {
     if (near->count) qsort(near->neighbour, near->count, sizeof *near->neighbour, nearer);
@@ -55,7 +56,7 @@ static void limit_reach(struct sample *sample, struct near *near)
     sample->reach = fmin(sample->reach, near->neighbour[NEIGHBOURS_MAX - 1].s);
 }
 
-/* Further than margin h from the ends of what is not periodic. */
+/* True if the particle is more than margin h from non-periodic ends. */
 static bool inside(const struct snapshot_file *file, const double box[3], const double ends[3][2],
                    size_t i, double margin)
 {
@@ -66,7 +67,7 @@ static bool inside(const struct snapshot_file *file, const double box[3], const 
     return true;
 }
 
-/* Picks particles at odd places, so that they keep no step with a lattice, and well inside. */
+/* Picks particles well inside at odd intervals, to be independent of the period of a lattice. */
 static void choose(const struct snapshot_file *file, const double box[3], struct sample *sample)
 {
     static const double margins[] = {3, 1, 0};
@@ -129,7 +130,7 @@ static double residual(const struct sample *sample, const struct kernel *kernel,
     return sqrt(squares / (double)sample->n);
 }
 
-/* The ratio at which the residual is least: along a scale, then by golden section. */
+/* Finds the ratio with the smallest residual: by a scan, then by golden section. */
 static struct convention fit(const struct sample *sample, const struct kernel *kernel,
                              enum density_sum sum, double given)
 {
@@ -175,7 +176,7 @@ static void insert(struct conventions *found, const struct convention *candidate
     found->count++;
 }
 
-/* One kernel is the other, whatever their names: a plug-in may be a built-in one written again. */
+/* True if the kernels are equal, whatever their names: a plug-in may repeat a built-in kernel. */
 static bool same_kernel(const struct kernel *a, const struct kernel *b, int dim)
 {
     enum { POINTS = 64 };
@@ -189,7 +190,8 @@ static bool same_kernel(const struct kernel *a, const struct kernel *b, int dim)
     return same;
 }
 
-/* The best fit of another kernel, or (other_sum) of the same kernel by another sum; NULL: none. */
+/* The best fit of another kernel or, with other_sum, of the same kernel by another sum; NULL:
+ * none. */
 static const struct convention *second(const struct conventions *found, int dim, bool other_sum)
 {
     const struct convention *best = &found->candidate[0];
@@ -284,7 +286,7 @@ enum status conventions_find(const struct snapshot_file *file, const double box[
 
 double conventions_deviation(const struct kernel *kernel, int dim)
 {
-    enum { STEPS = 2000 }; /* of Simpson's rule */
+    enum { STEPS = 2000 }; /* for Simpson's rule */
     double moment = 0, volume = 0;
     for (int k = 0; k <= STEPS; k++) {
         const double q = (double)k / STEPS;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Files that Fortran wrote without format: records, each between two counts of its bytes, and
- * numbers in either byte order. */
+ * Unformatted Fortran files: records enclosed by their byte counts, with numbers in either byte
+ * order. */
 #pragma once
 
 #include <stdbool.h>
@@ -14,12 +14,12 @@ struct fortran_record {
     size_t size;
 };
 
-/* swapped: not in this machine's order. size: 1, 2, 4 or 8 bytes; of a real 4 or 8. */
+/* swapped: opposite to native byte order. size: 1, 2, 4 or 8 bytes; for a real 4 or 8. */
 uint64_t fortran_unsigned(const unsigned char *bytes, size_t size, bool swapped);
 double fortran_integer(const unsigned char *bytes, size_t size, bool swapped);
 double fortran_real(const unsigned char *bytes, size_t size, bool swapped);
 
-/* The record at *at, which is then behind it; number: for messages, from 1. STATUS_BAD_INPUT: the
- * file ends before, or the counts differ. */
+/* Reads the record at *at and advances *at past it; number: for messages, from 1. STATUS_BAD_INPUT:
+ * the file is truncated, or the counts differ. */
 enum status fortran_next(const struct snapshot_source *source, bool swapped, size_t number,
                          size_t *at, struct fortran_record *record, struct error *error);

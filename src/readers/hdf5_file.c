@@ -41,7 +41,7 @@ void hdf5_close(struct snapshot_source *source)
     source->file = NULL;
 }
 
-/* H5Oexists_by_name fails where a group on the way is missing. */
+/* H5Oexists_by_name fails if a parent group is missing. */
 bool hdf5_has(const struct snapshot_source *source, const char *path)
 {
     char part[strlen(path) + 1];
@@ -58,7 +58,7 @@ struct names {
     char *text;
     size_t size, length;
     const char *prefix; /* NULL: all */
-    double number;      /* of the last one */
+    double number;      /* of the last name */
 };
 
 static herr_t add_name(hid_t group, const char *name, const H5L_info_t *info, void *context)
@@ -77,7 +77,7 @@ static herr_t add_name(hid_t group, const char *name, const H5L_info_t *info, vo
     }
     names->length += (size_t)snprintf(names->text + names->length, names->size - names->length,
                                       "%s%s", names->length ? " " : "", name);
-    return names->length + 1 >= names->size; /* full: stops */
+    return names->length + 1 >= names->size; /* full: stop the iteration */
 }
 
 void hdf5_names(const struct snapshot_source *source, const char *group, char *text, size_t size)
@@ -106,7 +106,7 @@ static bool is_number(hid_t type)
     return (class == H5T_INTEGER || class == H5T_FLOAT) && h5.Tget_size(type) <= 8;
 }
 
-/* An attribute, or a dataset that a code has in its place, with its type and space. */
+/* An attribute, or a dataset used in its place, with its type and space. */
 struct entry {
     bool attribute;
     hid_t self, type, space;
@@ -120,7 +120,7 @@ static void close_entry(struct entry *e)
     if (e->self >= 0) e->attribute ? h5.Aclose(e->self) : h5.Dclose(e->self);
 }
 
-/* False: there is none, or it has more numbers than a header. Close with close_entry. */
+/* False: missing, or more numbers than a header has. Close with close_entry. */
 static bool open_entry(const struct snapshot_source *source, const char *group, const char *name,
                        struct entry *e)
 {

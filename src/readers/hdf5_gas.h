@@ -1,27 +1,27 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What the HDF5 layouts have in common: a group with a dataset for each quantity, a header. */
+ * Shared by the HDF5 layouts: a group with a dataset for each quantity, and a header. */
 #pragma once
 
 #include "hdf5_file.h"
 
-/* Names of a quantity, the first that is there counts. */
+/* Names of a quantity; the first that exists is used. */
 struct hdf5_names {
     enum snapshot_column column;
-    const char *names[4]; /* ends with NULL */
+    const char *names[4]; /* NULL-terminated */
     bool needed;
 };
 
 /* Reads the datasets of a group; positions come first in the list and give the number of rows.
- * STATUS_BAD_INPUT: one is missing that is needed (and what there is), or cannot be read. */
+ * STATUS_BAD_INPUT: a required one is missing (the message lists what exists), or unreadable. */
 enum status hdf5_gas(const struct snapshot_source *source, const char *group,
                      const struct hdf5_names *names, size_t n, struct snapshot_file *file,
                      struct error *error);
 
-/* The first of the attributes "group:name" that is there. */
+/* The first attribute "group:name" that exists. */
 struct snapshot_value hdf5_first(const struct snapshot_source *source, const char *const *from,
                                  const char **used);
 
-/* "Header": time, box, number of files, mass of the gas where a table holds it.
- * STATUS_BAD_INPUT: comoving units, counts that do not agree. */
+/* Reads "Header": time, box, number of files, and the mass of gas particles if a table has it.
+ * STATUS_BAD_INPUT: comoving units, or inconsistent counts. */
 enum status hdf5_header(const struct snapshot_source *source, struct snapshot_file *file,
                         struct error *error);

@@ -21,7 +21,7 @@ static enum status check_header(const char *path, const struct phantom_header *h
                      path, mass, hfact);
 }
 
-/* Orders the rows as they are stored: gas that is alive first, then all other live particles. */
+/* Orders the rows: live gas first, then the other live particles. */
 static void sort_rows(struct snapshot_file *file, const double *type, size_t *row)
 {
     const double *h = file->column[SNAPSHOT_H];
@@ -34,7 +34,7 @@ static void sort_rows(struct snapshot_file *file, const double *type, size_t *ro
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++) {
         double *column = file->column[c];
         if (!column) continue;
-        double *sorted = column + file->n; /* there is room for both */
+        double *sorted = column + file->n; /* second half of the memory */
         for (size_t k = 0; k < n; k++) sorted[k] = column[row[k]];
         for (size_t k = 0; k < n; k++) column[k] = sorted[k];
     }

@@ -12,8 +12,8 @@
 const char *const snapshot_column_names[SNAPSHOT_COLUMNS] = {
     "x", "y", "z", "vx", "vy", "vz", "m", "rho", "u", "P", "h", "ax", "ay", "az", "du"};
 
-/* Usual names of each column in lower case, without characters that are neither letter nor digit,
- * and without a unit in brackets. */
+/* Usual names of each column in lower case, reduced to letters and digits, without a unit in
+ * brackets. */
 static const char *const called[SNAPSHOT_COLUMNS] = {
     "x pos posx position positionx positions coordinates coordinatesx",
     "y posy positiony coordinatesy",
@@ -93,7 +93,7 @@ bool snapshot_take_box(const char *text, struct snapshot_file *file)
 
 double snapshot_period(const struct snapshot_file *file, int d)
 {
-    const char *word = file->boundary; /* one for all directions, or one each */
+    const char *word = file->boundary; /* one word, or one per direction */
     for (int k = 0; k < d; k++) {
         const char *next = strchr(word, ' ');
         if (!next) break;

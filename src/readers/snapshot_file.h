@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Snapshots of any code: the contents of a file in the file's own units. Readers are a family: each
- * is one file in reader/ and one line in readers.def. Where a file does not state something, the
- * reader records what it assumed and the evidence for it. */
+ * Snapshots of any code: the contents of a file in the units of the file. Readers are a family:
+ * each is one file in reader/ and one line in readers.def. What a file does not state is assumed,
+ * and recorded with the evidence. */
 #pragma once
 
 #include <stdbool.h>
@@ -17,7 +17,7 @@ enum snapshot_column {
     SNAPSHOT_RHO,
     SNAPSHOT_U,
     SNAPSHOT_P,
-    SNAPSHOT_H, /* as the code writes it: support radius, scale length, 2 sigma ... */
+    SNAPSHOT_H, /* as in the file: support radius, scale length, 2 sigma ... */
     SNAPSHOT_AX,
     SNAPSHOT_DU = 14, /* du/dt */
     SNAPSHOT_COLUMNS
@@ -26,7 +26,7 @@ extern const char *const snapshot_column_names[SNAPSHOT_COLUMNS];
 
 enum { SNAPSHOT_ROWS_MAX = 1 << 28, SNAPSHOT_NOTES_MAX = 24, SNAPSHOT_PARTS_MAX = 512 };
 
-/* What was taken for true, and why. */
+/* An assumption and its evidence. */
 struct snapshot_note {
     char what[32], value[80], evidence[240];
 };
@@ -42,72 +42,71 @@ struct snapshot_value {
 
 struct snapshot_file {
     char layout[64], code[80];
-    size_t n;                         /* all rows: gas first */
+    size_t n;                         /* all rows, gas first */
     size_t gas;                       /* rows of gas */
-    int dim;                          /* as the file says it, or as its positions vary */
-    double *column[SNAPSHOT_COLUMNS]; /* n each; NULL: the file has none */
-    double precision[2];              /* relative, of positions and of what is stored besides */
+    int dim;                          /* from the file, or from the variation of the positions */
+    double *column[SNAPSHOT_COLUMNS]; /* n each; NULL: missing */
+    double precision[2];              /* relative precision of positions and of other quantities */
     struct snapshot_value time, gamma;
-    bool impossible; /* it was refused for a value that no gas has: not finite, or not positive */
-    bool boxed;      /* the file says how large its box is */
-    bool placed;     /* the file says where its box begins: at corner[] */
-    double box[3];   /* > 0 along the dimensions that it has */
+    bool impossible; /* refused for an impossible value: not finite, or not positive */
+    bool boxed;      /* the file gives the size of the box */
+    bool placed;     /* the file gives the lower corner of the box, corner[] */
+    double box[3];   /* > 0 along the dimensions of the file */
     double corner[3];
-    char case_name[256], boundary[64], keys[1024]; /* what snapshots of ours say; "" */
-    int parts, part; /* files that the snapshot is spread over; this one's number */
-    char kernel[48]; /* what the file calls its kernel; "" */
-    double ratio;    /* support radius over h as the file says it; 0 */
+    char case_name[256], boundary[64], keys[1024]; /* from snapshots of ours, else "" */
+    int parts, part; /* number of files of the snapshot; index of this file */
+    char kernel[48]; /* name of the kernel in the file, or "" */
+    double ratio;    /* support radius over h if stated in the file, else 0 */
     struct snapshot_notes notes;
 };
 
 struct snapshot_options {
-    const char *map; /* column names of the user's, "rho=Density,u=Energy"; NULL: none */
-    bool here;       /* HDF5 is read in this process, because the caller guards it already */
+    const char *map; /* column names from the user, "rho=Density,u=Energy"; NULL: none */
+    bool here;       /* read HDF5 in this process, which the caller guards already */
 };
 
 struct snapshot_source;
 
 struct snapshot_reader {
     struct member member;
-    /* Is it such a file? By its first bytes, or by what it has inside. */
+    /* True if the file has this format, judged by its first bytes or its contents. */
     bool (*recognises)(const struct snapshot_source *source);
-    /* Fills file, which is empty; status and message as those of snapshot_read. */
+    /* Fills file, which is empty; status and message as for snapshot_read. */
     enum status (*read)(const struct snapshot_source *source,
                         const struct snapshot_options *options, struct snapshot_file *file,
                         struct error *error);
 };
 extern const struct family snapshot_reader_family;
 
-/* Reads path (and the other files of the same snapshot). STATUS_BAD_INPUT: what was found, and what
- * would help; a file that is none of these, is cut off or hostile; values that are not finite, and
- * masses, densities, widths and energies that are not positive (pressures may be below 0, and both
- * u and P may be missing: in liquids, see snapshot_check_gas). STATUS_ENVIRONMENT: no memory. Free
- * with snapshot_file_free, also after a failure. */
+/* Reads path (and the other files of the same snapshot). STATUS_BAD_INPUT: unknown format;
+ * truncated or malicious file; values that are not finite; masses, densities, smoothing lengths or
+ * energies that are not positive. Pressures may be negative, and u and P may both be missing, for
+ * liquids; see snapshot_check_gas. The message says what was found and what would help.
+ * STATUS_ENVIRONMENT: no memory. Free with snapshot_file_free, also after a failure. */
 enum status snapshot_read(const char *path, const struct snapshot_options *options,
                           struct snapshot_file *file, struct error *error);
 void snapshot_file_free(struct snapshot_file *file);
 
-/* What the comments before the rows of a text table say: time, gamma, box, case, boundary, keys. No
- * columns, so that there is nothing to be freed. Errors as source_open's. */
+/* Reads the comments before the rows of a text table: time, gamma, box, case, boundary, keys. Reads
+ * no columns, so that nothing must be freed. Errors as for source_open. */
 enum status csv_comments(const char *path, struct snapshot_file *said, struct error *error);
 
-/* STATUS_BAD_INPUT: it has neither u nor P, or a pressure below 0, which no gas has. */
+/* STATUS_BAD_INPUT: neither u nor P, or a negative pressure. */
 enum status snapshot_check_gas(const char *path, struct snapshot_file *file, struct error *error);
 
 /* ---- for readers ---- */
 
-/* n zeros for a column; false: no memory, or more rows than SNAPSHOT_ROWS_MAX. */
+/* Allocates a column of n zeros; false: no memory, or more rows than SNAPSHOT_ROWS_MAX. */
 bool snapshot_file_make(struct snapshot_file *file, enum snapshot_column column);
 
 void snapshot_note(struct snapshot_notes *notes, const char *what, const char *value,
                    const char *format, ...) __attribute__((format(printf, 4, 5)));
 
-/* Reads a box: one length for all directions, a length each, or LO:HI for each; false: none of
- * these. */
+/* Parses a box: one length for all directions, a length each, or LO:HI each; false: invalid. */
 bool snapshot_take_box(const char *text, struct snapshot_file *file);
 
-/* The length of the box along d where it is known and periodic, else 0. */
+/* Length of the box along d if known and periodic, else 0. */
 double snapshot_period(const struct snapshot_file *file, int d);
 
-/* The column that a usual name stands for ("density", "v_x", "particle mass"), or -1. */
+/* The column for a usual name ("density", "v_x", "particle mass"), or -1. */
 int snapshot_column_of(const char *name);

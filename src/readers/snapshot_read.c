@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Finds the reader that a file belongs to, joins the files of one snapshot, and refuses what no
- * snapshot may hold. HDF5 files are read in a process of their own, which hands over the columns
- * through a file without a name. */
+ * Selects the reader for a file, joins the files of one snapshot, and rejects invalid values. HDF5
+ * files are read in a child process, which returns the columns through an unnamed file. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -64,7 +63,7 @@ static enum status read_here(struct snapshot_source *source, const struct snapsh
     return status;
 }
 
-/* ---- HDF5, in the other process ---- */
+/* ---- HDF5, in the child process ---- */
 
 struct errand {
     struct snapshot_source *source;
@@ -136,7 +135,7 @@ static enum status read_one(const char *path, const struct snapshot_options *opt
     struct snapshot_source source;
     *file = (struct snapshot_file){0};
     enum status status = source_open(&source, path, error);
-    /* here once, and not in each of the other processes */
+    /* once here, not in each child process */
     if (!status && source.hdf5) status = hdf5_load(path, error);
     if (!status)
         status = (!source.hdf5    ? read_source
@@ -152,7 +151,7 @@ static enum status read_one(const char *path, const struct snapshot_options *opt
 
 /* ---- several files ---- */
 
-/* Makes snap_007.3.hdf5 of snap_007.0.hdf5. False if the name has no such number. */
+/* Makes snap_007.3.hdf5 from snap_007.0.hdf5. False if the name has no such number. */
 static bool part_path(const char *path, int part, char *text, size_t size)
 {
     const char *base = strrchr(path, '/');
@@ -241,7 +240,7 @@ static void list_columns(const struct snapshot_file *file, char *text, size_t si
             snprintf(text + strlen(text), size - strlen(text), " %s", snapshot_column_names[c]);
 }
 
-/* ---- what no snapshot may hold ---- */
+/* ---- checks of values ---- */
 
 static enum status check_values(const char *path, struct snapshot_file *file, struct error *error)
 {

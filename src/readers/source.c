@@ -14,7 +14,7 @@
 
 static const unsigned char hdf5_signature[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
 
-/* HDF5's signature stands at byte 0 or, behind a user's block, at 512, 1024 ... */
+/* The signature of HDF5 is at byte 0 or, after a user block, at 512, 1024 ... */
 static bool is_hdf5(int file, size_t size)
 {
     unsigned char start[sizeof hdf5_signature];

@@ -20,7 +20,7 @@ bool text_table_is_text(const struct snapshot_source *source)
     return true;
 }
 
-/* ---- what columns mean ---- */
+/* ---- meaning of the columns ---- */
 
 static int column_called(const struct text_table *table, const char *name, size_t length)
 {
@@ -104,8 +104,8 @@ static void skip_blanks(const char **at, const char *end)
     while (*at < end && (**at == ' ' || **at == '\t' || **at == '\r')) ++*at;
 }
 
-/* Takes one number of a line that ends at `end`, with the separator before it unless the number is
- * the first. */
+/* Reads one number of a line that ends at `end`, after its separator unless it is the first
+ * number. */
 static bool take_number(const char **at, const char *end, char separator, bool first, double *value)
 {
     char word[48];
@@ -144,7 +144,7 @@ static size_t count_rows(const struct text_table *table, size_t from)
     return rows;
 }
 
-/* Refuses what stands from `at` to the next separator, because it is not a number. */
+/* Reports that the text from `at` to the next separator is not a number. */
 static enum status no_number(const struct text_table *table, size_t line, size_t column,
                              const char *at, const char *end, struct snapshot_file *file,
                              struct error *error)
@@ -199,7 +199,7 @@ static enum status take_rows(const struct text_table *table, size_t from, size_t
     return STATUS_OK;
 }
 
-/* Type 1 is gas. */
+/* Moves gas, type 1, to the front. */
 static void gas_first(struct snapshot_file *file, const double *type, double *sorted)
 {
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++) {

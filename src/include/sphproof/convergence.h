@@ -10,7 +10,7 @@
 extern "C" {
 #endif
 
-/** Norms of value - exact, in the unit of value; a NaN among the values makes each NaN. */
+/** Norms of value - exact, in the unit of value; any NaN makes all of them NaN. */
 struct sphproof_norms {
     double l1;   /**< sum V |value - exact| / sum V */
     double l2;   /**< sqrt(sum V (value - exact)^2 / sum V) */
@@ -18,8 +18,8 @@ struct sphproof_norms {
     double mean; /**< sum |value - exact| / n */
 };
 
-/** Of n values and the exact ones at their places; volume: n weights V, or NULL for equal ones.
- * SPHPROOF_BAD_INPUT: n = 0. */
+/** Norms of n values against the exact values at the same positions; volume: n weights V, or NULL
+ * for equal weights. SPHPROOF_BAD_INPUT: n = 0. */
 enum sphproof_status sphproof_convergence_norms(size_t n, const double *volume, const double *value,
                                                 const double *exact, struct sphproof_norms *norms,
                                                 struct sphproof_error *error);
@@ -34,22 +34,23 @@ struct sphproof_order {
         *kind; /**< "asymptotic", "floor-limited", "pre-asymptotic", "oscillating", "diverging" */
 };
 
-/** Of n >= 4 errors, coarsest first; spacing (a length: n^(-1/d), h, dt) falls strictly.
- * SPHPROOF_BAD_INPUT: too few, or they do not fall. */
+/** Fits the order of n >= 4 errors, coarsest first; spacing (a length: n^(-1/d), h, dt) must
+ * decrease strictly. SPHPROOF_BAD_INPUT: too few errors, or spacings that do not decrease. */
 enum sphproof_status sphproof_convergence_order(size_t n, const double *spacing,
                                                 const double *error_at,
                                                 struct sphproof_order *order,
                                                 struct sphproof_error *error);
 
-/** What is asked of an order. */
+/** Requirements on an order. */
 struct sphproof_gate {
-    double low;   /**< order at least */
-    double high;  /**< order at most: too good is suspicious, too */
-    double bound; /**< of the error at the finest level */
+    double low;   /**< least order */
+    double high;  /**< largest order, since an order that is too high is suspicious */
+    double bound; /**< largest error at the finest level */
 };
 
-/** Is the order inside the gate, its 95 % interval no wider than 0.15 either way and the finest
- * error within its bound? SPHPROOF_CHECK_FAILED: no; the error says which condition fails first. */
+/** Checks that the order is inside the gate, that its 95 % interval is at most 0.15 wide to either
+ * side, and that the finest error is within its bound. SPHPROOF_CHECK_FAILED: the error names the
+ * first condition that fails. */
 enum sphproof_status sphproof_convergence_gate(const struct sphproof_order *order,
                                                const struct sphproof_gate *gate,
                                                struct sphproof_error *error);

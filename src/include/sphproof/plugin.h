@@ -13,7 +13,8 @@
  * value, however often they are called. They run in a process of their own: one that crashes, ends
  * the process or does not return within a second is a kernel that fails (exit status 1), or no
  * kernel (2) if it does so in its first calls; what it prints is kept apart from results. If w and
- * dw are computed in single precision, say so: sphproof kernel F.so --precision single. In runs with
+ * dw are computed in single precision, say so: sphproof kernel F.so --precision single. In runs
+ * with
  * --threads several threads call w and dw at once. */
 #ifndef SPHPROOF_PLUGIN_H
 #define SPHPROOF_PLUGIN_H
@@ -22,7 +23,7 @@
 extern "C" {
 #endif
 
-/** Knots that there may be in a dimension. */
+/** Most knots in one dimension. */
 enum { SPHPROOF_KERNEL_KNOTS_MAX = 4096 };
 
 /** Required: the shape w(q) for q >= 0, exactly 0 for q >= 1. */

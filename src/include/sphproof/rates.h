@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** @file
- * One evaluation of forces: nothing moves. */
+ * One evaluation of the rates, without motion. */
 #ifndef SPHPROOF_PUBLIC_RATES_H
 #define SPHPROOF_PUBLIC_RATES_H
 
@@ -10,17 +10,17 @@
 extern "C" {
 #endif
 
-/** Where rates go: n values each, in the order of the setup; NULL: not wanted. */
+/** Output arrays: n values each, in the order of the setup; NULL: not needed. */
 struct sphproof_rates {
     double *h;          /**< support radii; by default to a relative 1e-14, see key h_tolerance */
     double *rho;        /**< densities */
     double *P;          /**< pressures */
     double *force[3];   /**< dp/dt = m dv/dt */
     double *dU;         /**< dU/dt of U = m u */
-    double *neighbours; /**< particles within h, itself and images included */
+    double *neighbours; /**< particles within h, including itself and images */
 };
 
-/** Evaluates the setup once. SPHPROOF_BAD_INPUT: as sphproof_simulations_create. */
+/** Evaluates the setup once. Errors as for sphproof_simulations_create. */
 enum sphproof_status sphproof_rates_evaluate(const struct sphproof_setup *setup,
                                              const struct sphproof_rates *rates,
                                              struct sphproof_error *error);

@@ -26,7 +26,7 @@
 extern "C" {
 #endif
 
-/** What the case says, in code units; arrays have dim entries. */
+/** The case, in code units; arrays have dim entries. */
 struct sphproof_reference_case {
     int dim;                           /**< 1, 2 or 3 */
     double gamma;                      /**< ratio of specific heats */
@@ -37,19 +37,19 @@ struct sphproof_reference_case {
     const double *parameter_value;     /**< parameter_count numbers */
 };
 
-/** The gas at one place and time, in code units. All are not a number (NaN) at the call, and what
- * stays so is unknown: a field that is unknown everywhere is not compared. With rho and P known, u
- * that is left out is P/((gamma - 1) rho). */
+/** State of the gas at one position and time, in code units. All members are NaN at the call; a
+ * member left as NaN is unknown, and a field that is unknown everywhere is not compared. If rho and
+ * P are known and u is not, u is P/((gamma - 1) rho). */
 struct sphproof_reference_state {
     double rho, v[3], P, u;
 };
 
-/** Required: the state at x (dim coordinates in the box) and t >= 0. Returns 0; anything else says
- * that nothing is known there, which is an error inside of the window where errors are measured. */
+/** Required: the state at x (dim coordinates in the box) and t >= 0. Returns 0, or another value if
+ * the state is unknown, which is an error inside the window where errors are measured. */
 int sphproof_reference(const double *x, double t, const struct sphproof_reference_case *of,
                        struct sphproof_reference_state *state);
 
-/** The parameter called name, or fallback where the case file gives none. */
+/** The value of a parameter, or fallback if the case file does not give it. */
 static inline double sphproof_reference_parameter(const struct sphproof_reference_case *of,
                                                   const char *name, double fallback)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** @file
- * The solver: particles and keys of a scheme in, their state at a later time out. */
+ * The solver: advances particles with a given scheme to a later time. */
 #ifndef SPHPROOF_PUBLIC_SIMULATIONS_H
 #define SPHPROOF_PUBLIC_SIMULATIONS_H
 
@@ -10,7 +10,7 @@
 extern "C" {
 #endif
 
-/** What is to be computed. All is copied. Zeros and NULL where nothing is said below. */
+/** The input, copied by the library. Members may be zero or NULL unless stated otherwise. */
 struct sphproof_setup {
     int dim;                 /**< 1, 2, 3 */
     size_t n;                /**< particles, 2 or more */
@@ -31,18 +31,18 @@ struct sphproof_setup {
 /** A simulation. */
 struct sphproof_simulation;
 
-/** Makes one. SPHPROOF_BAD_INPUT: a particle, the box, gamma or a key is out of range; the message
- * names it. Free it with sphproof_simulations_free. */
+/** Creates a simulation. SPHPROOF_BAD_INPUT: a particle, the box, gamma or a key is out of range;
+ * the message names it. Free with sphproof_simulations_free. */
 enum sphproof_status sphproof_simulations_create(const struct sphproof_setup *setup,
                                                  struct sphproof_simulation **simulation,
                                                  struct sphproof_error *error);
 
-/** Steps until t, which must not lie before the present time. SPHPROOF_BROKE_DOWN: the message
- * names particle, time and quantity; the state is the last sound one. */
+/** Advances to t, which must not be before the current time. SPHPROOF_BROKE_DOWN: the message names
+ * particle, time and quantity; the state is the last valid one. */
 enum sphproof_status sphproof_simulations_run(struct sphproof_simulation *simulation, double t,
                                               struct sphproof_error *error);
 
-/** Where a state goes: n values each, in the order of the setup; NULL: not wanted. */
+/** Output arrays: n values each, in the order of the setup; NULL: not needed. */
 struct sphproof_state {
     double *x[3]; /**< positions, wrapped into a periodic box */
     double *v[3]; /**< velocities */
@@ -52,7 +52,7 @@ struct sphproof_state {
     double *h;    /**< support radii */
 };
 
-/** Fills what the state points to; returns the time. */
+/** Fills the arrays of the state; returns the time. */
 double sphproof_simulations_state(const struct sphproof_simulation *simulation,
                                   const struct sphproof_state *state);
 
@@ -63,10 +63,10 @@ struct sphproof_sums {
     double energy;      /**< kinetic and internal */
 };
 
-/** What should be conserved, at the present time. */
+/** Conserved sums at the current time. */
 struct sphproof_sums sphproof_simulations_sums(const struct sphproof_simulation *simulation);
 
-/** Releases it; NULL will do. */
+/** Frees the simulation; may be NULL. */
 void sphproof_simulations_free(struct sphproof_simulation *simulation);
 
 #ifdef __cplusplus

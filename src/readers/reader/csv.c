@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Text tables: a line with the names of the columns (any names with --map), then a line a particle;
- * separated by commas or, where the first line has none, by blanks. Where numbers come first, the
- * names are the last comment before them, as numpy.savetxt writes it. Lines before the particles
- * say what columns do not: "# time = 0.2", "# gamma = 1.4", "# box = 2", "# box = 2 1 1" or
- * "# box = -1:1 0:0.5"; our own snapshots also have "case", "boundary" and "keys". Time (or t) and
- * gamma are also found within a comment: "# Sod at t = 0.2, gamma: 5/3". */
+ * Text tables: a line with the names of the columns (any names with --map), then a line per
+ * particle; separated by commas or, if the first line has none, by blanks. If the file starts with
+ * numbers, the names are in the last comment before them, as numpy.savetxt writes it. Lines before
+ * the particles give what is not in columns: "# time = 0.2", "# gamma = 1.4", "# box = 2", "# box =
+ * 2 1 1" or "# box = -1:1 0:0.5"; our own snapshots also have "case", "boundary" and "keys". Time
+ * (or t) and gamma are also found within a comment: "# Sod at t = 0.2, gamma: 5/3". */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -19,7 +19,7 @@ static bool in_word(char c)
     return isalnum((unsigned char)c) || c == '_';
 }
 
-/* A word, and '=' or ':' behind it. */
+/* True for a word followed by '=' or ':'. */
 static bool assigns(const char *at)
 {
     const char *behind = at;
@@ -28,7 +28,7 @@ static bool assigns(const char *at)
     return behind > at && (behind[blanks] == '=' || behind[blanks] == ':');
 }
 
-/* A number, or a fraction such as 5/3. */
+/* Reads a number, or a fraction such as 5/3. */
 static bool take_ratio(const char *text, size_t length, double *value)
 {
     char word[48];
@@ -59,9 +59,9 @@ static void take_number(const char *key, size_t length, double number, const cha
     }
 }
 
-/* Every "KEY = NUMBER" and "KEY: NUMBER" of a comment. A number with anything but a comma, a
- * semicolon or the next key behind it may have a unit, and is left alone. No key reaches back
- * beyond the # that a comment begins with. */
+/* Reads every "KEY = NUMBER" and "KEY: NUMBER" of a comment. A number followed by anything but a
+ * comma, a semicolon or the next key may have a unit and is ignored. A key ends at the # that
+ * begins the comment. */
 static void take_numbers(const char *line, struct snapshot_file *file)
 {
     double number;
@@ -77,7 +77,7 @@ static void take_numbers(const char *line, struct snapshot_file *file)
     }
 }
 
-/* A line that has a #. */
+/* Reads a line with a #. */
 static void take_remark(const char *line, size_t length, struct snapshot_file *file)
 {
     char text[1200], key[16];
@@ -99,7 +99,7 @@ static void take_remark(const char *line, size_t length, struct snapshot_file *f
         snprintf(file->boundary, sizeof file->boundary, "%s", text + value);
     else if (strcmp(key, "keys") == 0)
         snprintf(file->keys, sizeof file->keys, "%s", text + value);
-    else if (text_real(text + value, &number)) /* "time 0.2" as well */
+    else if (text_real(text + value, &number)) /* also "time 0.2" */
         take_number(text + begin, size, number, text, file);
     else
         take_numbers(text, file);
@@ -120,7 +120,7 @@ static enum status take_names(struct text_table *table, const char *line, size_t
     for (size_t at = 0; at < length;) {
         size_t n = 0;
         while (at < length && (line[at] == ' ' || line[at] == '\t')) at++;
-        if (blanks && table->columns && at < length && strchr("[(", line[at])) { /* a unit */
+        if (blanks && table->columns && at < length && strchr("[(", line[at])) { /* unit */
             at += strcspn(line + at, line[at] == '[' ? "]\n" : ")\n") + 1;
             continue;
         }
@@ -137,7 +137,7 @@ static enum status take_names(struct text_table *table, const char *line, size_t
                              "%.200s: names of columns: allowed: at most %d, of 1 to %zu letters",
                              table->source->path, TABLE_COLUMNS_MAX, sizeof table->names[0] - 1);
         char *name = table->names[table->columns++];
-        memcpy(name, line + at, size); /* the rest of it is 0 */
+        memcpy(name, line + at, size); /* the rest is 0 */
         status_clean(name);
         if (text_real(name, &number))
             return error_set(error, STATUS_BAD_INPUT,
@@ -192,7 +192,7 @@ static enum status read(const struct snapshot_source *source,
             if (take_names(&table, named ? text + at : text + remark,
                            named ? length : remark_length, error))
                 return error->status;
-            if (!named) break; /* rows begin here */
+            if (!named) break; /* first row */
         }
         at += length + (text[at + length] == '\n');
         if (text[at] == '\0') break;

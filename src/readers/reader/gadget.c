@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Binary snapshots of GADGET (Springel 2005, user guide section 6), formats 1 and 2, either byte
- * order: Fortran records, each between two counts of its bytes. The first is the header of 256
- * bytes. In format 2 a record of 8 bytes before each block names it. Format 1 has no
- * names, and codes insert blocks of their own: what a record is follows from its length and values,
- * and a record that two quantities fit is not used. */
+ * order: Fortran records, each enclosed by its byte counts. The first is the header of 256 bytes.
+ * In format 2 a record of 8 bytes before each block names the block. Format 1 has no names, and
+ * codes insert additional blocks: the meaning of a record follows from its length and values, and
+ * an ambiguous record is not used. */
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
@@ -23,11 +23,11 @@ struct record {
 
 struct binary {
     const struct snapshot_source *source;
-    bool swapped; /* not in this machine's order */
+    bool swapped; /* opposite to native byte order */
     bool tagged;
     size_t count;
     struct record record[RECORDS_MAX];
-    size_t particles[TYPES], all, massive; /* massive: rows of the block of masses */
+    size_t particles[TYPES], all, massive; /* massive: rows of the mass block */
     double mass[TYPES], time, redshift, box;
     int parts;
 };
@@ -130,7 +130,7 @@ static enum status read_header(struct binary *b, struct error *error)
     return STATUS_OK;
 }
 
-/* The bytes of one number if the record holds `count` of them, else 0. */
+/* Bytes of a number if the record has `count` numbers, else 0. */
 static size_t width_of(const struct record *record, size_t count)
 {
     if (count && record->size == 4 * count) return 4;
@@ -138,13 +138,13 @@ static size_t width_of(const struct record *record, size_t count)
     return 0;
 }
 
-/* ---- which record is what ---- */
+/* ---- meaning of the records ---- */
 
 enum { POSITIONS, VELOCITIES, MASSES, ENERGIES, DENSITIES, WIDTHS, ACCELERATIONS, BLOCKS };
 static const char *const tags[BLOCKS] = {"POS ", "VEL ", "MASS", "U   ", "RHO ", "HSML", "ACCE"};
 
 struct layout {
-    const struct record *block[BLOCKS]; /* NULL: there is none */
+    const struct record *block[BLOCKS]; /* NULL: missing */
 };
 
 static double gas_value(const struct binary *b, const struct record *record, size_t count, size_t i)
@@ -158,9 +158,9 @@ static bool positive(double value)
     return value > 1e-30 && value < 1e30;
 }
 
-/* True if these may be masses, densities and widths of the gas. All must be positive, fill a volume
- * between half and twice that of the box (or of their extent, without a box), and have widths of
- * 0.3 to 30 spacings. */
+/* True if the records may be masses, densities and smoothing lengths of the gas: all positive, with
+ * a total volume between half and twice that of the box (or of the extent of the particles, without
+ * a box), and smoothing lengths of 0.3 to 30 spacings. */
 static bool plausible(const struct binary *b, const struct layout *layout, double volume, int dim)
 {
     const struct record *m = b->mass[0] > 0 ? NULL : layout->block[MASSES],
@@ -197,7 +197,7 @@ static void extent(const struct binary *b, const struct record *positions, int *
     }
 }
 
-/* The blocks from record `first` on, in the order of the user guide. */
+/* Assigns the blocks from record `first` on in the order of the user guide. */
 static bool try_layout(const struct binary *b, size_t first, struct layout *layout)
 {
     size_t at = first;
@@ -223,7 +223,7 @@ static enum status infer(const struct binary *b, struct layout *layout,
     for (size_t first = 3; first < b->count; first++) {
         struct layout tried = *layout;
         if (!try_layout(b, first, &tried) || !plausible(b, &tried, volume, dim)) continue;
-        if (tried.block[WIDTHS] && !found.block[WIDTHS]) fits = 0; /* the better proof */
+        if (tried.block[WIDTHS] && !found.block[WIDTHS]) fits = 0; /* stronger evidence */
         if (!tried.block[WIDTHS] && found.block[WIDTHS]) continue;
         if (!fits++) found = tried, where = first;
     }
@@ -297,7 +297,7 @@ static enum status take_block(const struct binary *b, const struct layout *layou
                                                                   : b->particles[0];
     size_t width = record ? width_of(record, each * rows) : 0;
     size_t all = rows;
-    if (record && block == ACCELERATIONS && !width) /* of all particles */
+    if (record && block == ACCELERATIONS && !width) /* for all particles, not only gas */
         width = width_of(record, each * (all = b->all));
     if (!record) return STATUS_OK;
     if (!width)

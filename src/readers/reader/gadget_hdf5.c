@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * HDF5 as GADGET-2 to -4, AREPO and GIZMO write it (Springel 2005, user guide): PartType0, names in
- * the singular, no gamma. */
+ * HDF5 files of GADGET-2 to -4, AREPO and GIZMO (Springel 2005, user guide): PartType0, singular
+ * names, no gamma. */
 #include <stdio.h>
 
 #include "hdf5_gas.h"
@@ -22,8 +22,8 @@ static const struct hdf5_names names[] = {
     {SNAPSHOT_DU, {"RateOfChangeOfInternalEnergy"}, false},
 };
 
-/* Our own snapshots say where the box begins, as positions in the file are relative to that corner,
- * and which case they are of. */
+/* Our own snapshots name their case and give the lower corner of the box, to which positions in the
+ * file are relative. */
 static void place(const struct snapshot_source *source, struct snapshot_file *file)
 {
     double corner[3];

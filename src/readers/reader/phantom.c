@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Phantom's own full dumps, as its documentation describes them (user guide, "The phantom native
- * binary format"): Fortran records with magic numbers, a name, a header of eight kinds of numbers
- * with their tags, and arrays of the same kinds; the first group of arrays is the particles. */
+ * Full dumps of Phantom (user guide, "The phantom native binary format"): Fortran records with
+ * magic numbers, a name, a header of eight kinds of numbers with their tags, and arrays of the same
+ * kinds. The first group of arrays contains the particles. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -17,13 +17,13 @@ enum { MAGIC_FIRST = 60769, MAGIC_SECOND = 60878, MAGIC_THIRD = 690706 };
 struct dump {
     const struct snapshot_source *source;
     bool swapped;
-    size_t at, count;    /* where the next record begins; how many there were */
-    size_t bytes[KINDS]; /* of a number of each kind */
-    char arrays[200];    /* names of the particles' arrays, as far as they fit */
+    size_t at, count;    /* offset of the next record; number of records read */
+    size_t bytes[KINDS]; /* size of a number of each kind */
+    char arrays[200];    /* names of the particle arrays, as many as fit */
 };
 
-/* The first record: magic numbers as an integer, a real and two or three integers, all of the
- * default kinds, of 4 or 8 bytes. */
+/* Checks the first record: magic numbers as an integer, a real and two or three integers, all of
+ * the default kinds of 4 or 8 bytes. */
 static bool begins(const struct snapshot_source *source, bool swapped, size_t bytes[KINDS])
 {
     static const size_t fixed[KINDS] = {4, 1, 2, 4, 8, 8, 4, 8};
@@ -70,7 +70,7 @@ static double number(const struct dump *dump, const unsigned char *bytes, int ki
                                                                 dump->swapped);
 }
 
-/* Does a tag, which blanks fill up, say this? */
+/* True if a tag, padded with blanks, equals name. */
 static bool is_tag(const unsigned char *tag, const char *name)
 {
     const size_t n = strlen(name);
@@ -84,7 +84,7 @@ static bool is_tag(const unsigned char *tag, const char *name)
 struct values {
     struct phantom_header header;
     double blocks;
-    bool end[3][2]; /* which ends of the box are there */
+    bool end[3][2]; /* ends of the box that are given */
 };
 
 static void take_value(const unsigned char *tag, double value, struct values *values)
@@ -152,7 +152,7 @@ static void note_array(struct dump *dump, const unsigned char *tag)
     snprintf(dump->arrays + used, sizeof dump->arrays - used, " %s", name);
 }
 
-/* One array of the particles: into its column, into types, or nowhere. */
+/* Reads one particle array: into its column or types, else skips it. */
 static enum status take_array(struct dump *dump, int kind, struct snapshot_file *file,
                               double **types, struct error *error)
 {
@@ -181,7 +181,7 @@ static enum status take_array(struct dump *dump, int kind, struct snapshot_file 
     return STATUS_OK;
 }
 
-/* The number of groups, a record of lengths for each, then the arrays of the first. */
+/* Reads the number of groups, a record of lengths for each, and the arrays of the first group. */
 static enum status read_arrays(struct dump *dump, struct snapshot_file *file, double **types,
                                struct error *error)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * HDF5 as Phantom writes it (Price et al. 2018): header and particles. */
+ * HDF5 files of Phantom (Price et al. 2018): groups header and particles. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -17,7 +17,7 @@ static const struct hdf5_names names[] = {
     {SNAPSHOT_H, {"h"}, true},   {SNAPSHOT_RHO, {"density"}, false},
 };
 
-/* Type of each row; NULL: all are gas. */
+/* Reads the type of each row; NULL: all are gas. */
 static enum status take_types(const struct snapshot_source *source, size_t n, double **types,
                               struct error *error)
 {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * HDF5 as SPH-EXA writes it (Cavelan et al. 2020): groups Step#0, Step#1 ..., each with one dataset
- * for each coordinate, its time and gamma. Its h is half of the support radius. The last step is
- * read. */
+ * HDF5 files of SPH-EXA (Cavelan et al. 2020): groups Step#0, Step#1 ..., each with a dataset per
+ * coordinate, time and gamma. h is half of the support radius. Reads the last step. */
 #include <math.h>
 #include <stdio.h>
 
@@ -24,7 +23,7 @@ static const struct hdf5_names names[] = {
     {SNAPSHOT_DU, {"du"}, false},
 };
 
-/* The box is an attribute: its ends along each direction. */
+/* The box is an attribute: both ends along each direction. */
 static void take_box(const struct snapshot_source *source, const char *step,
                      struct snapshot_file *file)
 {

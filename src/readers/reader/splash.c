@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * ASCII as SPLASH writes it (Price 2007): comment lines with the time and, last, the names of the
- * columns, at least two blanks apart; rows of all types, of which itype 1 is gas. Compressed or
- * not. */
+ * ASCII files of SPLASH (Price 2007): comment lines with the time and, last, the column names,
+ * separated by at least two blanks; rows of all types, of which itype 1 is gas. May be
+ * compressed. */
 #include <stdio.h>
 #include <string.h>
 
@@ -17,8 +17,7 @@ static bool recognises(const struct snapshot_source *source)
     return end && name && name < end;
 }
 
-/* Names stand in fields of equal width: a single blank belongs to a name, unless it ends a
- * field. */
+/* Names are in fields of equal width: a single blank is part of a name, unless it ends a field. */
 static enum status take_names(struct text_table *table, const char *line, size_t length,
                               struct error *error)
 {

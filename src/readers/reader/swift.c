@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * HDF5 as SWIFT writes it (Schaller et al. 2024): names are in the plural, gamma and kernel stand
- * in HydroScheme. Its h is twice the kernel's standard deviation, so that the support radius is h
- * times "Kernel gamma". */
+ * HDF5 files of SWIFT (Schaller et al. 2024): plural names; HydroScheme contains gamma and the
+ * kernel. h is twice the standard deviation of the kernel, so that the support radius is h times
+ * "Kernel gamma". */
 #include <stdio.h>
 #include <string.h>
 

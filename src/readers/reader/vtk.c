@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Legacy files of VTK (.vtk; The VTK User's Guide, "VTK File Formats"), as converters of
- * DualSPHysics and PySPH write particles: POINTS of POLYDATA or of an UNSTRUCTURED_GRID with
- * SCALARS, VECTORS and FIELD arrays of POINT_DATA, as text or binary, which is big-endian. They
- * know no time, box or gamma; a FIELD array TimeValue or TIME before the points is one. */
+ * Legacy VTK files (.vtk; The VTK User's Guide, "VTK File Formats"), as written by converters of
+ * DualSPHysics and PySPH: POINTS of POLYDATA or of an UNSTRUCTURED_GRID with SCALARS, VECTORS and
+ * FIELD arrays of POINT_DATA, as text or binary, which is big-endian. There is no time, box or
+ * gamma, except that a FIELD array TimeValue or TIME before the points is the time. */
 #include <ctype.h>
 #include <math.h>
 #include <stdint.h>
@@ -47,7 +47,7 @@ static const char *next_word(struct vtk *vtk, char word[WORD])
     return word;
 }
 
-/* A number of things, no more than the file has bytes. */
+/* Reads a count that is at most the number of bytes in the file. */
 static bool next_count(struct vtk *vtk, const char *what, size_t *count)
 {
     char word[WORD];
@@ -107,7 +107,7 @@ static double number_at(const char *type, const char *at)
     return NAN;
 }
 
-/* The numbers of an array; to: NULL skips them. */
+/* Reads the numbers of an array; to = NULL skips them. */
 static bool take_numbers(struct vtk *vtk, const struct array *array, double *to)
 {
     const size_t n = array->components * array->tuples, width = width_of(array->type);
@@ -130,7 +130,7 @@ static bool take_numbers(struct vtk *vtk, const struct array *array, double *to)
     return true;
 }
 
-/* ---- what they mean ---- */
+/* ---- meaning of the arrays ---- */
 
 static bool take_points(struct vtk *vtk, const struct array *array, int column,
                         struct snapshot_file *file)
@@ -155,7 +155,7 @@ static bool take_points(struct vtk *vtk, const struct array *array, int column,
     return well;
 }
 
-/* FIELD name count, then arrays: of points, or of the whole file. */
+/* Reads FIELD name count, then arrays of point data or of the whole file. */
 static bool take_field(struct vtk *vtk, bool points, struct snapshot_file *file)
 {
     char word[WORD];
@@ -182,7 +182,7 @@ static bool take_field(struct vtk *vtk, bool points, struct snapshot_file *file)
     return true;
 }
 
-/* SCALARS name type [components] and a line LOOKUP_TABLE name; VECTORS name type. */
+/* Reads SCALARS name type [components] and a line LOOKUP_TABLE name, or VECTORS name type. */
 static bool take_attribute(struct vtk *vtk, bool vectors, struct snapshot_file *file)
 {
     struct array array = {.components = vectors ? 3 : 1, .tuples = file->n};
@@ -205,7 +205,7 @@ static bool take_attribute(struct vtk *vtk, bool vectors, struct snapshot_file *
     return take_points(vtk, &array, snapshot_column_of(array.name), file);
 }
 
-/* CELLS, VERTICES ...: count and size; since version 5.1 two arrays with names of their own. */
+/* Skips CELLS, VERTICES ...: count and size; since version 5.1 two arrays with their own names. */
 static bool skip_cells(struct vtk *vtk, bool types)
 {
     struct array array = {.name = "cells", .components = 1, .type = "int"};
@@ -246,7 +246,7 @@ static bool take_section(struct vtk *vtk, const char *word, bool *points,
     if (!strcmp(word, "CELLS") || !strcmp(word, "VERTICES") || !strcmp(word, "LINES"))
         return skip_cells(vtk, false);
     if (!strcmp(word, "CELL_TYPES")) return skip_cells(vtk, true);
-    if (!strcmp(word, "METADATA")) { /* up to an empty line */
+    if (!strcmp(word, "METADATA")) { /* ends with an empty line */
         while (vtk->at + 1 < vtk->end && !(vtk->at[0] == '\n' && vtk->at[1] == '\n')) vtk->at++;
         return true;
     }

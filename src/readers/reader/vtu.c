@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * XML of VTK with the particles as points of one piece (.vtu, .vtp), as sphproof, ParaView, meshio
- * and WriteVTK write it: numbers as text, in base64 or appended, plain or compressed by zlib. Field
- * data say what belongs to all particles: TimeValue or time, gamma, ndims, and in our own also box,
- * case, boundary and keys. */
+ * VTK XML with the particles as points of one piece (.vtu, .vtp), as written by sphproof, ParaView,
+ * meshio and WriteVTK: numbers as text, base64 or appended, plain or compressed by zlib. Field data
+ * apply to all particles: TimeValue or time, gamma, ndims, and in our own files also box, case,
+ * boundary and keys. */
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
@@ -23,9 +23,9 @@ struct vtk {
     const struct snapshot_source *source;
     struct error *error;
     bool swapped, compressed;     /* byte order; zlib */
-    size_t head;                  /* bytes of a size: 4 or 8 */
-    const char *appended, *ended; /* behind its '_'; NULL: none */
-    bool raw;                     /* appended bytes are no base64 */
+    size_t head;                  /* bytes of a size field: 4 or 8 */
+    const char *appended, *ended; /* after its '_'; NULL: none */
+    bool raw;                     /* appended bytes are not base64 */
 };
 
 /* <NAME KEY="VALUE" ...>, or </NAME> */
@@ -42,7 +42,7 @@ struct array {
     bool text, raw;
 };
 
-/* False, for its callers to return. */
+/* Sets the error and returns false. */
 __attribute__((format(printf, 2, 3))) static bool refuse(const struct vtk *vtk, const char *format,
                                                          ...)
 {
@@ -76,7 +76,7 @@ static bool is_tag(const struct tag *tag, const char *name)
            !isalnum((unsigned char)tag->name[n]);
 }
 
-/* The value of a key; "" where there is none or where it is longer than a word. */
+/* The value of a key; "" if missing or longer than a word. */
 static const char *value_of(const struct tag *tag, const char *key, char value[WORD])
 {
     const size_t n = strlen(key);
@@ -110,7 +110,7 @@ static int digit_of(char c)
     return found ? (int)(found - digits) : -1;
 }
 
-/* n bytes of what begins at array->at, and the place behind them; false: it is too short. */
+/* Decodes n bytes at array->at; *behind: position after them. False: the array is too short. */
 static bool fetch(const struct array *array, size_t n, unsigned char *to, const char **behind)
 {
     const size_t length = array->raw ? n : (n + 2) / 3 * 4;
@@ -151,8 +151,8 @@ static uint64_t size_at(const struct vtk *vtk, unsigned char *at)
 }
 
 #ifdef HAVE_ZLIB
-/* Number of blocks, their size, the size of the last (0: the same), and what each is packed into.
- */
+/* Unpacks blocks; the array begins with their number, their size, the size of the last (0: equal)
+ * and the compressed size of each. */
 static bool unpack(const struct vtk *vtk, struct array array, size_t blocks, unsigned char *to,
                    size_t want)
 {
@@ -194,7 +194,7 @@ static bool unpack(const struct vtk *vtk, struct array array, size_t blocks, uns
 }
 #endif
 
-/* to has space for a size and `want` bytes; the bytes begin after the size. */
+/* Reads the size and `want` bytes; `to` has space for both. */
 static bool take_bytes(const struct vtk *vtk, const struct array *array, unsigned char *to,
                        size_t want)
 {
@@ -250,7 +250,7 @@ static bool take_text(const struct vtk *vtk, const struct array *array, double *
     for (size_t i = 0; i < n; i++) {
         char word[WORD];
         size_t length = 0;
-        while (isspace((unsigned char)*at)) at++; /* a '<' ends the array */
+        while (isspace((unsigned char)*at)) at++; /* '<' ends the array */
         while (at < array->end && !isspace((unsigned char)*at) && length + 1 < sizeof word)
             word[length++] = *at++;
         word[length] = '\0';
@@ -261,7 +261,7 @@ static bool take_text(const struct vtk *vtk, const struct array *array, double *
     return true;
 }
 
-/* n numbers; false: error says why not. */
+/* Reads n numbers. False: see error. */
 static bool take_numbers(const struct vtk *vtk, const struct array *array, double *to, size_t n)
 {
     const size_t width = width_of(array->type);
@@ -283,7 +283,7 @@ static bool take_numbers(const struct vtk *vtk, const struct array *array, doubl
     return well;
 }
 
-/* ---- what they mean ---- */
+/* ---- meaning of the arrays ---- */
 
 static bool take_array(const struct vtk *vtk, const struct tag *tag, struct array *array)
 {
@@ -443,7 +443,7 @@ static bool take_tag(struct vtk *vtk, const struct tag *tag, const char **sectio
     if (is_tag(tag, "VTKFile") && !tag->closes) return begin(vtk, tag);
     if (is_tag(tag, "Piece") && !tag->closes) {
         if (file->n) return refuse(vtk, "has a second Piece; allowed: one with all points");
-        /* nothing is packed more than 1032 fold by zlib */
+        /* zlib compresses by at most a factor of 1032 */
         const double most = (double)vtk->source->size * (vtk->compressed ? 1032 : 1);
         if (!text_real(value_of(tag, "NumberOfPoints", word), &n) || !(n >= 1) ||
             n > fmin(SNAPSHOT_ROWS_MAX, most) || n != floor(n))
