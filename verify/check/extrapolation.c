@@ -48,6 +48,7 @@ static void measure_richardson(struct check_run *run, const void *subject)
         double value[3], exact;
     } cases[] = {
         {"oscillating", ORDER_OSCILLATING, {1, 2, 1.5}, (double)NAN},
+        {"the same twice, then another", ORDER_OSCILLATING, {1, 1, 2}, (double)NAN},
         {"diverging", ORDER_DIVERGING, {1, 2, 4}, (double)NAN},
         {"diverging, though the exact value is known", ORDER_DIVERGING, {1, 2, 4}, -1},
         {"one NaN", ORDER_DIVERGING, {1, 2, (double)NAN}, (double)NAN},

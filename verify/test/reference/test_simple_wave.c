@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The simple wave against what is known in closed form: its start, its small-amplitude limit, the
- * speed of its crest, its period, its breaking. */
+ * The simple wave at its limits: when it breaks, input that has no wave, numbers beyond the range
+ * of double. Its start and its equations: the check `exact simple_wave`. */
 #include "test.h"
 
 #include <float.h>
@@ -18,48 +18,6 @@ static double sound(const struct simple_wave *w)
     return sqrt(w->gamma * w->P0 / w->rho0);
 }
 
-TEST(test_start)
-{
-    for (int i = 0; i < 20; i++) {
-        const double x = 0.085 * i, rho = 2.385 * (1 + 0.25 * sin(2 * M_PI * x / 1.7));
-        const struct simple_wave_state s = simple_wave_sample(&wave, x, 0);
-        near_relative(s.rho, rho, 1e-14);
-        near_relative(s.P, 0.7 * pow(rho / 2.385, 5. / 3), 1e-14);
-        near_relative(s.u, s.P / (2. / 3 * s.rho), 1e-15);
-        const double c = sqrt(5. / 3 * s.P / s.rho);
-        near_relative(s.v + 10, 10 - 0.3 + 3 * (c - sound(&wave)), 1e-15);
-    }
-}
-
-/* A value travels with its own v + c, at any amplitude and until it breaks. */
-TEST(test_characteristics)
-{
-    const double end = simple_wave_breaking_time(&wave);
-    for (int i = 0; i < 200; i++) {
-        const double start = 1.7 * i / 200, t = end * (0.05 + 0.9 * i / 200);
-        const struct simple_wave_state a = simple_wave_sample(&wave, start, 0);
-        const double x = start + (a.v + sqrt(wave.gamma * a.P / a.rho)) * t;
-        const struct simple_wave_state b = simple_wave_sample(&wave, x, t);
-        near_relative(b.rho, a.rho, 1e-13);
-        near_relative(b.P, a.P, 1e-13);
-        const struct simple_wave_state c = simple_wave_sample(&wave, x - 3 * 1.7, t);
-        near_relative(c.rho, a.rho, 1e-13);
-    }
-}
-
-TEST(test_small_amplitude)
-{
-    const struct simple_wave small = {1.4, 1, 0.5, 1 / 1.4, 1e-7, 1};
-    for (int i = 0; i < 20; i++) {
-        const double x = i / 20., t = 2.3;
-        const struct simple_wave_state s = simple_wave_sample(&small, x, t);
-        const double linear = 1e-7 * sin(2 * M_PI * (x - 1.5 * t));
-        near_below(fabs(s.rho - 1 - linear), 2e-13);
-        near_below(fabs(s.v - 0.5 - linear), 2e-13);
-        near_below(fabs(s.P - 1 / 1.4 - linear), 2e-13);
-    }
-}
-
 TEST(test_breaking)
 {
     /* gamma = 3: v + c = v0 + c0 + 2 c0 A sin, so t = L/(4 pi c0 A) */
@@ -74,15 +32,6 @@ TEST(test_breaking)
     flat.amplitude = 0;
     assert_true(isinf(simple_wave_breaking_time(&flat)));
     near_relative(simple_wave_sample(&flat, 0.3, 1e6).rho, 2.385, 1e-15);
-    /* the slope grows like 1/(1 - t/t_b) where it is steepest: some 20 times at 0.95 */
-    double steepest = 0;
-    for (int i = 0; i < 4000; i++) {
-        const double x = 1.7 * i / 4000, dx = 1.7 / 4000;
-        const double late = simple_wave_sample(&wave, x, 0.95 * end).v;
-        steepest = fmax(steepest, (late - simple_wave_sample(&wave, x + dx, 0.95 * end).v) / dx);
-    }
-    const double start = 2 * M_PI / 1.7 * 0.25 * sound(&wave);
-    near_inside(steepest / start, 15, 25);
 }
 
 /* The steepest place is sought: 1/t is the greatest of

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Orders, their intervals, classes and gates, and what three values extrapolate to. */
+ * Orders, their intervals, classes and gates, and what three values extrapolate to, at their
+ * limits. What they are in general: the group `norms` of checks. */
 #include "test.h"
 
 #include <gsl/gsl_cdf.h>
@@ -93,39 +94,6 @@ static enum order_class class_of(const double *error)
     return fit.class;
 }
 
-TEST(test_classes)
-{
-    assert_int_equal(class_of((double[]){16, 8, 4, 2, 1}), ORDER_ASYMPTOTIC);
-    assert_int_equal(class_of((double[]){16, 8, 4, 3.6, 3.5}), ORDER_FLOOR_LIMITED);
-    assert_int_equal(class_of((double[]){16, 8, 4, 3.6, 3.7}), ORDER_FLOOR_LIMITED);
-    /* the last order is a third of the best one exactly, and a little less */
-    const double spacing[] = {16, 8, 4, 2, 1};
-    for (int less = 0; less < 2; less++) {
-        struct order_fit fit;
-        assert_int_equal(
-            order_fit(5, spacing, (double[]){32, 4, 2, 1, less ? 0.501 : 0.5}, NULL, &fit, NULL),
-            STATUS_OK);
-        assert_int_equal(fit.class, less ? ORDER_FLOOR_LIMITED : ORDER_ASYMPTOTIC);
-    }
-    assert_int_equal(class_of((double[]){16, 4, 8, 1, 2}), ORDER_OSCILLATING);
-    assert_int_equal(class_of((double[]){1, 2, 4, 8, 16}), ORDER_DIVERGING);
-    assert_int_equal(class_of((double[]){1, 1, 1, 1, 1}), ORDER_FLOOR_LIMITED);
-    assert_int_equal(class_of((double[]){4, 2, 1, 0.5, NAN}), ORDER_DIVERGING);
-    assert_int_equal(class_of((double[]){4, 2, 1, 0.5, 0}), ORDER_DIVERGING);
-}
-
-/* NASA Glenn's worked example (Examining Spatial (Grid) Convergence, NPARC Alliance). */
-TEST(test_richardson_nasa)
-{
-    const struct order_extrapolation e =
-        order_extrapolate((double[]){4, 2, 1}, (double[]){0.96178, 0.96854, 0.97050}, NAN);
-    assert_int_equal(e.class, ORDER_ASYMPTOTIC);
-    near_absolute(e.order, 1.786170, 5e-7);
-    near_absolute(e.value, 0.9713003, 5e-8);
-    near_absolute(100 * e.gci_fine, 0.103083, 5e-7);
-    near_absolute(100 * e.gci_coarse, 0.356249, 5e-7);
-}
-
 TEST(test_richardson_unequal_ratios)
 {
     const double spacing[] = {0.1, 0.06, 0.025}, p = 1.37;
@@ -138,24 +106,6 @@ TEST(test_richardson_unequal_ratios)
                  change = (value[1] - value[0]) / (value[2] - value[1]);
     near_relative(exp(fine * e.order) * expm1(coarse * e.order) / expm1(fine * e.order), change,
                   1e-14);
-    near_relative(e.value, 2.385, 1e-13);
-    near_relative(e.gci_fine, 1.25 * (2.385 - value[2]) / value[2], 1e-10);
-    near_relative(e.gci_coarse, 1.25 * (2.385 - value[1]) / value[1], 1e-10);
-}
-
-TEST(test_richardson_classes)
-{
-    const double spacing[] = {4, 2, 1};
-    struct order_extrapolation e = order_extrapolate(spacing, (double[]){1, 2, 1.5}, NAN);
-    assert_true(e.class == ORDER_OSCILLATING && isnan(e.value));
-    e = order_extrapolate(spacing, (double[]){1, 1, 2}, NAN);
-    assert_true(e.class == ORDER_OSCILLATING && isnan(e.value));
-    e = order_extrapolate(spacing, (double[]){1, 2, 4}, NAN);
-    assert_true(e.class == ORDER_DIVERGING && isnan(e.value));
-    e = order_extrapolate(spacing, (double[]){1, 1, 1}, NAN);
-    assert_true(e.class == ORDER_FLOOR_LIMITED && isnan(e.value));
-    e = order_extrapolate(spacing, (double[]){1, 2, NAN}, NAN);
-    assert_true(e.class == ORDER_DIVERGING && isnan(e.value));
 }
 
 /* As many levels as there is room for; pairwise orders are those between levels and no more. */
@@ -245,17 +195,6 @@ TEST(test_order_weights)
     near_relative(fit.order, xy / xx, 1e-12);
     near_relative((fit.high - fit.low) / 2,
                   gsl_cdf_tdist_Pinv(0.975, total * total / parts) * sqrt(total), 1e-12);
-}
-
-TEST(test_gate_edges)
-{
-    const struct order_gate gate = {0, 1, 1};
-    struct order_fit fit = {.order = 0, .low = 0, .high = 2 * ORDER_HALF_WIDTH_MAX, .finest = 1};
-    assert_true(order_passes(&fit, &gate, NULL));
-    fit.order = 1;
-    assert_true(order_passes(&fit, &gate, NULL));
-    fit.high *= 1.001;
-    assert_false(order_passes(&fit, &gate, NULL));
 }
 
 /* Flat is what falls by less than a tenth of an order over all levels; a floor shows where the last
@@ -370,9 +309,6 @@ TEST(test_class_words)
         order_fit(4, (double[]){4, 2.5, 2.5, 1}, (double[]){8, 4, 2, 1}, NULL, &fit, &failure),
         STATUS_BAD_INPUT);
     assert_non_null(strstr(failure.message, "spacing 2 is 2.5"));
-    const struct order_gate gate = {0, 1, 1};
-    fit = (struct order_fit){.high = 2 * ORDER_HALF_WIDTH_MAX * (1 + 5e-7), .finest = 1};
-    assert_false(order_passes(&fit, &gate, NULL));
 }
 
 /* Three values that converge to something else than the exact one, 1, from above or below, by their
