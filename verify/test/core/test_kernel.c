@@ -1,51 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The kernels beside the oracle's, at several h; kernel_select; what descriptors say, against the
- * shapes. */
+ * Kernels by name; what their descriptors say; the sinc family; plug-ins. Their shapes: the group
+ * `kernels` of checks. */
 #include "test.h"
 
 #include <float.h>
 
-#include <gsl/gsl_integration.h>
-
 #include "kernel.h"
-#include "oracle_kernel.h"
-
-/* W, dW/dr and dW/dh beside the oracle's, which are written a second time in long double. */
-static void compare(const struct kernel *kernel, int dim, double q, double h)
-{
-    const struct oracle_kernel oracle = oracle_kernel_find(kernel, dim);
-    const long double w = oracle_kernel_w(&oracle, q), dw = oracle_kernel_dw(&oracle, q);
-    const double scale = pow(h, -dim), r = q * h;
-    const double got[3] = {kernel_value(kernel, r, h, dim) / scale,
-                           kernel_dr(kernel, r, h, dim) / (scale / h),
-                           kernel_dh(kernel, r, h, dim) / (scale / h)};
-    const long double table[3] = {w, dw, -(dim * w + q * dw)};
-    assert_null(oracle.source);
-    /* near a zero the error is that of the terms that cancel: of the order of C_d */
-    for (int i = 0; i < 3; i++) {
-        const double want = (double)(oracle.constant * table[i]);
-        const double bound = 1e-14 * fabs(want) + 4e-15 * kernel->constant[dim];
-        if (!(fabs(got[i] - want) <= bound))
-            fail_msg("%s, dim %d, q %g, h %g, column %d: got %.17g, oracle %.17g, bound %.1e",
-                     kernel->member.name, dim, q, h, i, got[i], want, bound);
-    }
-}
-
-TEST(test_values)
-{
-    static const double thirds[] = {1 / 3., 2 / 3.};
-    for (size_t k = 0; k < kernel_family.n; k++)
-        for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++)
-            for (int i = 0; i < 23; i++) {
-                const double q = i <= 20 ? i / 20. : thirds[i - 21];
-                struct kernel kernel;
-                assert_int_equal(kernel_select(&kernel, kernel_family.members[k]->name, 5, NULL),
-                                 STATUS_OK);
-                compare(&kernel, dim, q, 1);
-                compare(&kernel, dim, q, 0.0371);
-                compare(&kernel, dim, q, 2.385);
-            }
-}
 
 /* Constants of the sinc family to 20 digits: C_d = 1/(S_d int_0^1 q^(d-1) w dq), computed with
  * 30-digit quadrature. */
@@ -129,35 +89,6 @@ TEST(test_select)
     assert_non_null(strstr(error.message, "3 to 12"));
 }
 
-/* Exactly 0 from the edge on, however near it; on both sides of a knot the same to what one step of
- * q makes of it; flat at the origin. */
-TEST(test_edges)
-{
-    static const double beyond[] = {0, DBL_EPSILON, 1e-12, 1e-9, 1e-7, 5e-7, 1e-6, 1e-3, 0.5, 1e9};
-    for (size_t i = 0; i < kernel_family.n; i++)
-        for (int dim = 1; dim <= 3; dim++) {
-            struct kernel kernel;
-            assert_int_equal(kernel_select(&kernel, kernel_family.members[i]->name, 5, NULL),
-                             STATUS_OK);
-            for (size_t k = 0; k < sizeof beyond / sizeof *beyond; k++) {
-                const double q = 1 + beyond[k];
-                if (kernel.w(&kernel, q, dim) != 0 || kernel.dw(&kernel, q, dim) != 0)
-                    fail_msg("%s, %dD: not 0 at q = 1 + %g", kernel.member.name, dim, beyond[k]);
-            }
-            assert_true(kernel.w(&kernel, 0.99, dim) > 0 && kernel.dw(&kernel, 0.99, dim) < 0);
-            assert_true(fabs(kernel.dw(&kernel, 0, dim)) <= 1e-14 * kernel.w(&kernel, 0, dim));
-            for (int k = 0; k < kernel.knot_count; k++) {
-                const double at = kernel.knots[k], scale = kernel.w(&kernel, 0, dim);
-                const double before = nextafter(at, 0), after = nextafter(at, 1);
-                const double w = kernel.w(&kernel, at, dim), dw = kernel.dw(&kernel, at, dim);
-                assert_true(fabs(kernel.w(&kernel, before, dim) - w) <= 1e-14 * scale);
-                assert_true(fabs(kernel.w(&kernel, after, dim) - w) <= 1e-14 * scale);
-                assert_true(fabs(kernel.dw(&kernel, before, dim) - dw) <= 1e-13 * scale);
-                assert_true(fabs(kernel.dw(&kernel, after, dim) - dw) <= 1e-13 * scale);
-            }
-        }
-}
-
 /* What each kernel is: the B-spline M_n, whose knots lie at 1 - 2k/n, or Wendland's of a class C^k.
  */
 static const struct {
@@ -170,27 +101,8 @@ static const struct {
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
-/* S_d times the integral of q^(d-1) w, piece by piece, by a rule that is exact for these. */
-static double normalisation(const struct kernel *kernel, int dim)
-{
-    static const double sphere[] = {0, 2, 2 * M_PI, 4 * M_PI};
-    gsl_integration_glfixed_table *rule = gsl_integration_glfixed_table_alloc(24);
-    assert_non_null(rule);
-    double sum = 0;
-    for (int piece = 0; piece <= kernel->knot_count; piece++)
-        for (size_t i = 0; i < 24; i++) {
-            double q, weight;
-            gsl_integration_glfixed_point(piece ? kernel->knots[piece - 1] : 0,
-                                          piece < kernel->knot_count ? kernel->knots[piece] : 1, i,
-                                          &q, &weight, rule);
-            sum += weight * pow(q, dim - 1) * kernel->w(kernel, q, dim);
-        }
-    gsl_integration_glfixed_table_free(rule);
-    return sphere[dim] * kernel->constant[dim] * sum;
-}
-
-/* What a kernel says of itself: its constants are those of its shape, its knots and its class those
- * of its kind; lattice sums of a spline are exact from n/2 on, those of the others never. */
+/* What a kernel says of itself: its knots and its class are those of its kind; lattice sums of a
+ * spline are exact from n/2 on, those of the others never. */
 TEST(test_descriptors)
 {
     assert_int_equal(kernel_family.n, KINDS);
@@ -201,10 +113,8 @@ TEST(test_descriptors)
         assert_int_equal(kernel.knot_count, knots);
         for (int i = 0; i < knots; i++)
             near_absolute(kernel.knots[i], (double)((n - 1) % 2 + 1 + 2 * i) / n, 1e-15);
-        for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++) {
+        for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++)
             assert_int_equal(kernel.smoothness[dim], kinds[k].class);
-            near_relative(normalisation(&kernel, dim), 1, 4e-14);
-        }
         assert_true(kernel.unity_width == n / 2.);
         for (int shift = 0; n && shift < 5; shift++) {
             double sum = 0;

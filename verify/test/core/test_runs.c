@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Runs in 1D, 2D and 3D against each other: what must be the same with and without sleep, for any
- * number of threads, in a walled box and in the periodic one that its mirror image completes, in an
- * open box and in one that is much too wide, with and without a constant acceleration; and fixed
- * layers stay. Gases and schemes are drawn at random. */
+ * Runs in 1D, 2D and 3D against each other: what must be the same for any number of threads, in a
+ * walled box and in the periodic one that its mirror image completes, in an open box and in one
+ * that is much too wide, with and without a constant acceleration; and fixed layers stay. Gases and
+ * schemes are drawn at random. */
 #include "test.h"
 
 #include "draw.h"
@@ -156,34 +156,6 @@ static void same(const struct gas *a, const struct gas *b, size_t n, double tole
 }
 
 static struct gas p, whole, plain, other;
-
-/* Warm gas somewhere in a lattice, in 1D in its middle: the rest has heard nothing at the end. */
-TEST(sleep_changes_nothing)
-{
-    draw_state = 1;
-    for (int k = 0; k < 24; k++) {
-        const int dim = k < 3 ? 2 : k < 6 ? 3 : 1;
-        const struct scheme scheme = draw_scheme(dim);
-        lattice(&p, dim, dim == 1 ? 380 : dim == 2 ? 12 : 6, dim == 1 ? 1 : dim == 2 ? 16 : 10);
-        const double length = p.hi[0] - p.lo[0], at = dim == 1 ? 0.75 : draw(0, length);
-        const double height = draw(0, 1);
-        for (size_t i = 0; i < p.n; i++) {
-            const double dx = p.x[0][i] - at, dy = dim == 1 ? 0 : p.x[1][i] - height;
-            const double r = hypot(dx - length * round(dx / length), dy - round(dy));
-            if (r < (dim == 1 ? 0.05 : 0.3)) p.u[i] = 2;
-        }
-        struct setup setup = setup_of(&p, &scheme);
-        if (dim == 1) setup.boundary[0] = BOUNDARY_REFLECTING;
-        run(&setup, dim == 1 ? 0.1 : 0.2, &plain);
-        assert_int_equal(plain.cost.skipped_particle_updates, 0);
-        setup.skip = true;
-        run(&setup, dim == 1 ? 0.1 : 0.2, &other);
-        assert_true(other.cost.skipped_particle_updates > 100);
-        same(&plain, &other, p.n, 1e-8);
-        if (scheme.energy == ENERGY_TOTAL)
-            near_relative(other.sums.energy, plain.sums.energy, 1e-12);
-    }
-}
 
 TEST(threads_change_no_bit)
 {

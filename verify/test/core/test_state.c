@@ -139,23 +139,6 @@ TEST(closed)
             }
 }
 
-/* CONVENTIONS eq. 5.9. */
-TEST(alpha_grows_and_decays)
-{
-    const struct scheme scheme = {
-        .viscosity = VISCOSITY_TIME_DEPENDENT, .alpha_min = 0.1, .alpha_max = 1.5};
-    struct particles a = gas(2);
-    for (int i = 0; i < N; i++) a.dalpha[i] = untouched;
-    state_dalpha(&a, 20, 90, &scheme);
-    for (int i = 0; i < N; i++) {
-        const real growth = fmaxl(-(real)a.div_v[i], 0) * fmaxl(1.5L - a.alpha[i], 0);
-        const real decay = ((real)a.alpha[i] - 0.1L) * 0.2L * a.c[i] / a.h[i];
-        const bool inside = i >= 20 && i < 110;
-        near_below(fabs(a.dalpha[i] - (inside ? (double)(growth - decay) : untouched)), 1e-15);
-    }
-    particles_destroy(&a);
-}
-
 /* The largest value is found wherever it stands, and no other one. */
 TEST(largest_rates)
 {
