@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """ic.py SPHPROOF: `sphproof ic` writes the particles that `run` starts from, to the last bit, on scenes drawn at
-random; judge reads every format with the errors that its precision allows; SWIFT's h is twice the standard deviation.
-(Refusals: the transcripts.)"""
+random; judge reads every format with the errors that its precision allows, and finds that it is the case's initial state; SWIFT's
+h is twice the standard deviation. (Refusals, and states that are damaged: the transcripts and test_start_cause.)"""
 import csv
 import os
 import random
@@ -20,6 +20,13 @@ BAD = (("ic square boundary=reflecting --format swift --out a.csv", "no walls"),
        ("ic square --as-3d 8 --format csv --out a.csv", "at least 9 layers"),
        ("ic gresho n=16^2 eta=4 --as-3d 8 --format csv --out a.csv", "at least 9 layers"),
        ("ic gresho n=19^2 eta=4 --as-3d 8 --format csv --out a.csv", "at least 9 layers"))
+
+
+# starts of every kind; those that are moved have a jitter, which leaves masses, or all
+CASES = {1: ("sod", "leblanc", "sound_wave"), 2: ("sod_2d", "gresho", "square", "sedov_2d"), 3: ("sod_3d",)}
+MOVED = ("noh_2d", "rotation", "yee", "kelvin_helmholtz", "rayleigh_taylor_mode")
+KEYS = {1: ("lattice=uniform", "grade=0.9", "mass_ratio=0.5"), 2: ("lattice=square", "lattice=hexagonal", "lattice=jittered", "jitter=0.3"),
+        3: ("lattice=cubic", "lattice=jittered")}
 
 
 def answer(*words, status=0):
@@ -66,6 +73,19 @@ def test_every_format(draw):
             for norm in ("l1", "l2") if isinstance(norms, dict) else ():
                 scale = 10 if field in ("pressure", "internal_energy") else 2  # values and sums over gradients of them
                 assert abs(got[field][norm] - norms[norm]) <= floor * scale, (name, case, keys, field, norm, norms, got)
+
+
+def test_initial_states(draw):
+    """What is written is found to be the case's initial state, but for jitter."""
+    sizes = {1: "90", 2: "400", 3: "9216"}
+    cases = draw.sample([(case, dim) for dim, names in CASES.items() for case in names], 3)
+    for case, dim in cases + [(case, 2) for case in MOVED]:
+        key = "jitter=0.3" if case in MOVED else draw.choice(KEYS[dim] if case != "sound_wave" else KEYS[dim][:1])
+        call("ic", case, "n=" + ("1600" if case == "sod_2d" else sizes[dim]), key, "seed=%d" % draw.randint(1, 999), "--format", "csv",
+             "--out", "state.csv", status=0)
+        start = json_of("judge", "state.csv", status=None)["start"]
+        assert start["wrong"] == 0 and (start["message"] == "" and start["velocity"] < 1e-13
+                                        or case in MOVED and "to a spacing" in start["message"]), (case, key, start)
 
 
 def test_last_place():
@@ -145,5 +165,5 @@ def test_refused():
 
 seed = random.randrange(10**6) if len(sys.argv) < 3 else int(sys.argv[2])
 print("seed", seed)
-drawing = [lambda test=test: test(random.Random(seed)) for test in (test_bits, test_every_format, test_slab)]
+drawing = [lambda test=test: test(random.Random(seed)) for test in (test_bits, test_every_format, test_initial_states, test_slab)]
 play(*drawing, test_last_place, test_swift, test_equal_masses, test_refused)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Planted particles of which something is wrong: how many they are, where they stand and what their
- * values are, in words. (Whole snapshots: damages.py and the transcripts.) */
+ * values are, in words. (Whole snapshots: the transcripts.) */
 #include "test.h"
 
 #include <math.h>

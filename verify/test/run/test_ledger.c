@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a run says of itself, computed again from its particles: spacing, mean h, budgets (also of
- * the mirrored problem), sums over its start, and errors at the centre of a blast. */
+ * the mirrored problem), and errors at the centre of a blast. */
 #include "test.h"
 
-#include "initial.h"
 #include "keyed.h"
 
 static struct run_result ran(const char *name, const char *keys)
@@ -91,52 +90,6 @@ TEST(mirrored_budgets)
             near_below(fabs(run[0].budget.still - run[1].budget.still), 1e-9);
         run_free(&run[0]);
         run_free(&run[1]);
-    }
-}
-
-/* ---- what is summed over a start ---- */
-
-/* The scale of speeds: sum of m c, c of the state that the particles show; also of those that an
- * end holds. */
-TEST(sound)
-{
-    static const struct {
-        const char *name, *keys;
-    } cases[] = {{"sod", "n=60 h_method=newton"},
-                 {"gresho", "n=12^2 jitter=0.1"},
-                 {"rayleigh_taylor_mode", "n=12^2 h_method=newton"},
-                 {"rest_3d", "n=8^3 volume_element=energy"}};
-    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-        const struct run run = keyed_run(cases[c].name, cases[c].keys);
-        struct initial initial;
-        struct simulation *simulation;
-        struct snapshot s;
-        struct conservation sums;
-        struct error error = {0};
-        if (initial_create(&initial, &run.problem, &run.settings, &error))
-            fail_msg("%s", error.message);
-        const struct setup setup = run_setup(&run, &initial);
-        if (simulation_create(&setup, &simulation, &error)) fail_msg("%s", error.message);
-        simulation_snapshot(simulation, &s);
-        simulation_conservation(simulation, &sums);
-        double scale = 0, mass = 0, energy = 0;
-        for (size_t i = 0; i < s.n; i++) {
-            double square = 0, height = 0;
-            for (int d = 0; d < run.problem.domain.dim; d++) {
-                square += s.v[d][i] * s.v[d][i];
-                height += run.problem.gravity[d] * s.x[d][i];
-            }
-            scale += s.m[i] * sqrt(run.problem.gamma * s.P[i] / s.rho[i]);
-            mass += s.m[i];
-            energy += s.m[i] * (s.u[i] + 0.5 * square - height);
-            near_relative(s.P[i], (run.problem.gamma - 1) * s.rho[i] * s.u[i], 1e-13);
-            near_relative(s.volume[i], s.m[i] / s.rho[i], c == 3 ? 0.1 : 1e-13);
-        }
-        near_relative(sums.sound_scale, scale, 1e-12);
-        near_relative(sums.mass, mass, 1e-13);
-        near_relative(sums.energy, energy, 1e-12);
-        simulation_destroy(simulation);
-        initial_free(&initial);
     }
 }
 

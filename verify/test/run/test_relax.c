@@ -75,7 +75,7 @@ TEST(glasses_are_pushed_apart)
         struct rooms rooms = {dim, dim == 2 ? 1.2 : 1.32, n};
         const struct relax_region room = {
             {dim, {-0.3, 2.1, 0.2}, {0.7, 3.3, 1.3}}, room_at, &rooms};
-        double x[3][MOST], y[3][MOST], volume[MOST];
+        double x[3][MOST], y[3][MOST];
         double *const moved[] = {x[0], x[1], x[2]}, *const direct[] = {y[0], y[1], y[2]};
         struct error error = {0};
         for (size_t i = 0; i < n; i++)
@@ -96,40 +96,13 @@ TEST(glasses_are_pushed_apart)
                 near_absolute(x[d][i] + 9, y[d][i] + 9, 1e-9);
                 if (d < dim) assert_true(x[d][i] >= room.box.lo[d] && x[d][i] < room.box.hi[d]);
             }
-        /* as good as the regularity of a cloud with this width says */
-        struct relax_quality quality;
-        struct regularity found;
-        struct kernel kernel;
-        double h[MOST];
-        for (size_t i = 0; i < n; i++) {
-            volume[i] = (1 + 0.001 * (double)i) / (double)n;
-            h[i] = 3.6 * pow(volume[i], 1. / dim);
-        }
-        const struct regularity_cloud cloud = {.box = room.box,
-                                               .periodic = {true, true, true},
-                                               .n = n,
-                                               .x = {x[0], x[1], x[2]},
-                                               .volume = volume,
-                                               .h = h,
-                                               .kernel = &kernel};
-        assert_int_equal(kernel_select(&kernel, "wendland_c4", 0, &error), STATUS_OK);
-        const double *const places[] = {x[0], x[1], x[2]};
-        if (dim == 2) {
-            assert_int_equal(regularity_measure(&cloud, &found, &error), STATUS_OK);
-            assert_int_equal(relax_measure(&room.box, n, places, volume, &quality, &error),
-                             STATUS_OK);
-            near_relative(quality.density, found.density, 1e-12);
-            near_relative(quality.gradient, found.gradient, 1e-12);
-            near_relative(quality.spread, found.spread, 1e-12);
-            near_below(quality.spread, 0.2);
-        }
         rooms.n = 4;
         assert_int_equal(relax_points(&room, 4, moved, &error), STATUS_BAD_INPUT);
         assert_non_null(strstr(error.message, "n=4: a glass needs more particles"));
     }
 }
 
-/* Measured also in space, of any points. */
+/* As the regularity of a cloud with this width says. */
 TEST(quality_of_a_cloud)
 {
     enum { N = 500 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Runs on their way: what they conserve, how they break down, snapshots in time, checkpoints that
- * change nothing, amplitudes that grow. (That snapshots change nothing: snapshots.py.) */
+ * Runs on their way: what they conserve, how they break down, snapshots in time, amplitudes that
+ * grow. (That snapshots change nothing: snapshots.py; runs that go on: checkpoint.py.) */
 #include "test.h"
 
 #include <unistd.h>
@@ -117,54 +117,6 @@ TEST(snapshots_are_in_time)
         assert_true(strtod(time + 7, NULL) == snapshots_time(&snapshots, k));
         unlink(file);
         free(file);
-    }
-}
-
-static bool stop_at_ten(void *context, double time, uint64_t steps)
-{
-    (void)context, (void)time;
-    return steps < 10;
-}
-
-/* A run that is interrupted goes on from its last checkpoint to the same last bit, also what has
- * grown until then. */
-TEST(goes_on)
-{
-    static const char *const cases[] = {"sod", "kelvin_helmholtz_mode"};
-    static const char *const keys[] = {"n=60 t_end=0.1", "n=12^2 t_end=1.2"};
-    char path[64];
-    snprintf(path, sizeof path, "%s/state", folder);
-    for (int k = 0; k < 2; k++) {
-        struct run run = keyed_run(cases[k], keys[k]);
-        struct run_result usual = keyed_result(&run);
-        struct checkpoint checkpoint = {.path = path, .build = "b", .run = "{}", .snapshot = 7};
-        run.asked.checkpoint = &checkpoint;
-        run.asked.progress = stop_at_ten;
-        run.asked.each_step = true;
-        struct run_result part = keyed_result(&run);
-        assert_true(part.cost.steps == 10 && part.time < usual.time);
-        assert_int_equal(checkpoint.trouble.status, STATUS_OK);
-        assert_true(checkpoint.snapshot == -1); /* there are none on the way */
-        run_free(&part);
-        run.asked.progress = NULL;
-        checkpoint.resume = true;
-        struct run_result again = keyed_result(&run);
-        assert_true(again.cost.steps == usual.cost.steps && again.time == usual.time);
-        assert_true(again.energy == usual.energy && again.momentum == usual.momentum);
-        assert_int_equal(again.functional_count, usual.functional_count);
-        for (size_t i = 0; i < usual.functional_count; i++)
-            assert_memory_equal(&again.functionals[i].value, &usual.functionals[i].value,
-                                sizeof(double));
-        for (size_t i = 0; i < usual.snapshot.n; i++)
-            assert_true(again.snapshot.x[0][i] == usual.snapshot.x[0][i] &&
-                        again.snapshot.u[i] == usual.snapshot.u[i]);
-        run_free(&again);
-        checkpoint.build = "c"; /* of another build: nothing is run */
-        struct error error = {0};
-        assert_int_equal(run_execute(&run, &again, &error), STATUS_BAD_INPUT);
-        assert_non_null(strstr(error.message, "another build"));
-        run_free(&usual);
-        unlink(path);
     }
 }
 

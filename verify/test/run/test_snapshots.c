@@ -3,6 +3,7 @@
 #include "test.h"
 
 #include "made_simulation.h"
+#include "snapshot_file.h"
 #include "snapshot_writer.h"
 #include "snapshots.h"
 
@@ -151,4 +152,24 @@ TEST(first_trouble)
     for (int k = 0; k < 2; k++) snapshots_fail(&snapshots, &errors[k]);
     assert_int_equal(snapshots.trouble.status, STATUS_ENVIRONMENT);
     assert_string_equal(snapshots.trouble.message, "no space");
+}
+
+/* A snapshot has periods only if it has a box, and only along directions that are periodic. */
+TEST(periods)
+{
+    static const struct {
+        const char *boundary;
+        double period[3];
+    } rows[] = {{"", {2, 3, 5}},
+                {"periodic", {2, 3, 5}},
+                {"reflecting", {0, 0, 0}},
+                {"periodic reflecting", {2, 0, 0}},
+                {"open periodic fixed", {0, 3, 0}}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        for (int boxed = 0; boxed < 2; boxed++) {
+            struct snapshot_file file = {.boxed = boxed, .box = {2, 3, 5}};
+            strcpy(file.boundary, rows[k].boundary);
+            for (int d = 0; d < 3; d++)
+                assert_true(snapshot_period(&file, d) == boxed * rows[k].period[d]);
+        }
 }
