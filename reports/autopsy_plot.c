@@ -10,7 +10,7 @@
 
 enum { PARTS = 6, LEVELS = 64, TEXT = 240 };
 
-/* As they are stacked, with colours that stay whatever else is there. */
+/* In stacking order; each part always has the same colour. */
 static const struct {
     const char *name, *label;
 } parts[PARTS] = {{"disorder", "disorder"},   {"operator", "operator (gradient)"},
@@ -18,8 +18,8 @@ static const struct {
                   {"time_step", "time step"}, {"measure", "measure"}};
 
 struct drawing {
-    size_t n;                        /* of levels */
-    double x[LEVELS], whole[LEVELS]; /* particles along a side, L1 of the velocity */
+    size_t n;                        /* number of levels */
+    double x[LEVELS], whole[LEVELS]; /* particles per side, L1 of the velocity */
     double share[PARTS][LEVELS], own[PARTS][LEVELS], low[PARTS][LEVELS], high[PARTS][LEVELS];
     char labels[PARTS][64], title[TEXT], sentence[2][TEXT];
     struct plot_series lines[PARTS + 1], bars[PARTS];
@@ -28,7 +28,7 @@ struct drawing {
     struct plot plot;
 };
 
-/* The numbers of all levels. False: there are none. */
+/* Reads the numbers of all levels. False: there are none. */
 static bool read_levels(struct drawing *d, const json_t *document)
 {
     const json_t *levels = json_object_get(document, "levels"), *level, *entry;
@@ -54,10 +54,10 @@ static bool read_levels(struct drawing *d, const json_t *document)
     return d->n > 0;
 }
 
-/* What is less than this part of the error is not drawn as a line. */
+/* A smaller fraction of the error is not drawn as a line. */
 #define LEAST 3e-3
 
-/* "disorder, order 1.10": what the key says of a part; no order of what is nearly nothing. */
+/* Makes the labels of the key, such as "disorder, order 1.10"; a negligible part has no order. */
 static void name_parts(struct drawing *d, const json_t *document)
 {
     size_t i;
@@ -74,7 +74,7 @@ static void name_parts(struct drawing *d, const json_t *document)
     }
 }
 
-/* The sentence in two lines, one above each panel. */
+/* Splits the sentence into two lines, one above each panel. */
 static void split_sentence(struct drawing *d, const char *text)
 {
     const char *second = strstr(text, ": it is ");
@@ -85,7 +85,7 @@ static void split_sentence(struct drawing *d, const char *text)
     snprintf(d->sentence[1], TEXT, "%s", second ? second + 2 : "");
 }
 
-/* Bars do not touch. */
+/* Half width of the bars, so that they do not touch. */
 static double half_width(const struct drawing *d)
 {
     double width = 1.06;
@@ -196,6 +196,6 @@ void autopsy_plot_page(struct page_writer *writer, const json_t *document, const
     struct drawing d = {0};
     if (!draw(&d, document, name)) return;
     d.plot.show_title = false;
-    d.panels[0].title = d.panels[1].title = NULL; /* the page says the sentence */
+    d.panels[0].title = d.panels[1].title = NULL; /* the caption contains the sentence */
     page_plot(writer, &d.plot, d.title);
 }

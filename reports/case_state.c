@@ -9,7 +9,7 @@
 #include "page_plot.h"
 #include "value.h"
 
-/* From well to worst. */
+/* From best to worst. */
 static const char *const states[] = {"ok",   "known",      "undetermined", "smoke",
                                      "fail", "broke_down", "failed"};
 enum { STATES = sizeof states / sizeof *states, OPEN = 1, FAILED = 4 };
@@ -48,8 +48,7 @@ size_t case_state_labels(const json_t *list, int least, int most, const char **l
     return count;
 }
 
-/* The worst of a document and of its gates; of a scheme that does not speak for the case failures
- * count alone. */
+/* The worst state of a document and its gates. With speaks = false only failures count. */
 static int worst_of(const json_t *document, bool speaks)
 {
     static const char *const lists[] = {"gates", "orders", NULL};

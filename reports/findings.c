@@ -50,7 +50,7 @@ void findings_free(struct findings *findings)
     *findings = (struct findings){0};
 }
 
-/* Takes the buffers, which may be NULL: the subject and the reason. */
+/* Adds a finding; frees the buffers of its subject and reason, which may be NULL. */
 static void add(struct findings *to, struct finding finding, struct buffer *subject,
                 struct buffer *reason)
 {
@@ -64,7 +64,7 @@ static void add(struct findings *to, struct finding finding, struct buffer *subj
 
 /* ---- the findings of a report ---- */
 
-/* With the "value", "bound", "floor" and "seconds" of an entry, which may be NULL. */
+/* A finding with "value", "bound", "floor" and "seconds" of an entry, which may be NULL. */
 static struct finding figure(int rank, enum finding_status status, const char *what,
                              const char *command, const json_t *entry)
 {
@@ -78,7 +78,7 @@ static struct finding figure(int rank, enum finding_status status, const char *w
                             .seconds = value_member(entry, "seconds")};
 }
 
-/* Where the results are not what a report holds, nothing may pass for well. */
+/* Adds a failure for results that cannot be read, so that they never count as good. */
 static void unreadable(struct findings *to, const char *what, const char *message)
 {
     struct buffer reason = {0};
@@ -87,8 +87,8 @@ static void unreadable(struct findings *to, const char *what, const char *messag
         &reason);
 }
 
-/* The status of an entry, which may be skipped, or else have no bound (NONE). One that is none is a
- * failure of its own, and the entry counts as skipped. */
+/* The status of an entry, which with `skips` may be "skip", else "none". An unknown status adds a
+ * failure, and the entry counts as skipped. */
 static enum finding_status status_of(struct findings *to, const json_t *entry, bool skips,
                                      const char *what)
 {
@@ -102,7 +102,7 @@ static enum finding_status status_of(struct findings *to, const json_t *entry, b
     return FINDING_SKIP;
 }
 
-/* "3 is not <= 0.5", or the floor is not. */
+/* Writes "3 is not <= 0.5", for the value or for the floor. */
 static void say_figure(struct buffer *to, const struct finding *finding)
 {
     double beyond;
@@ -159,7 +159,7 @@ void findings_of_verify(struct findings *to, const json_t *verify)
     json_array_foreach(json_object_get(verify, "mutants"), i, entry) add_mutant(to, entry, command);
 }
 
-/* What a run alone has to keep: errors below bounds, conservation. */
+/* Adds a gate of a single run: a bound on an error or on conservation. */
 static void add_gate(struct findings *to, const json_t *run, const json_t *gate)
 {
     struct buffer subject = {0}, reason = {0};
@@ -263,8 +263,8 @@ static void add_stress(struct findings *to, const json_t *failure)
     findings_add(to, finding);
 }
 
-/* What survived in the report before and breaks down now. That more breaks down than ever is seen
- * in no bound. */
+/* Adds a failure if something broke down that did not in the previous report, since no bound limits
+ * the number of breakdowns. */
 static void add_since(struct findings *to, const json_t *change)
 {
     struct buffer reason = {0};
@@ -277,7 +277,8 @@ static void add_since(struct findings *to, const json_t *change)
         NULL, &reason);
 }
 
-/* What the world did to the program; a fault that could not be brought about is skipped. */
+/* Adds the answer of the program to a fault of its environment; a fault that could not be produced
+ * is skipped. */
 static void add_fault(struct findings *to, const json_t *fault)
 {
     struct finding finding = figure(AREA_FAULT, status_of(to, fault, true, "faults.json"),
@@ -296,7 +297,7 @@ static void add_faults(struct findings *to, const json_t *faults)
     json_array_foreach(list, i, entry) add_fault(to, entry);
 }
 
-/* What gave no result at all. */
+/* Adds a step of the report that gave no result. */
 static void add_trouble(struct findings *to, const json_t *trouble)
 {
     struct finding finding = figure(AREA_HARNESS, FINDING_FAIL, value_text(trouble, "name"),
@@ -349,13 +350,13 @@ void findings_of_judge(struct findings *to, const json_t *document)
     }
 }
 
-/* ---- what fails ---- */
+/* ---- failures ---- */
 
-/* Of one check the figure that is farthest beyond its bound; what is no check stands for itself. */
+/* The figure of a check that exceeds its bound most; other findings are listed one by one. */
 struct failure {
     const struct finding *finding;
     double excess;
-    size_t number, more; /* in the order of coming; other figures of the same check */
+    size_t number, more; /* position in the list; other failed figures of the same check */
 };
 
 static int most_specific_first(const void *a, const void *b)

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Lists of findings (see finding.h): all that a report or a judgement has found. What fails is told
- * with the most specific cause first: a wrong kernel fails its own checks, then those of the
- * gradients made of it, of whole runs, of orders of convergence; read in this order the first
- * failure names it. */
+ * Lists of findings (see finding.h) of a report or a judgement. Failures are sorted by their most
+ * specific cause: a wrong kernel fails its own checks, then those of gradients, of whole runs and
+ * of orders of convergence, so that the first failure names the cause. */
 #pragma once
 
 #include <jansson.h>
@@ -11,8 +10,8 @@
 
 #include "finding.h"
 
-/* What is no check, in the order in which it is told after all checks: its rank, and the name that
- * stands for its group. */
+/* Findings that are not checks, in the order in which they follow the checks: rank, and name of the
+ * group. */
 enum finding_area {
     AREA_DETECTION = 1000,
     AREA_SUSPICION,
@@ -27,34 +26,36 @@ enum finding_area {
     AREA_END,
 };
 
-/* What of a report failed where nothing else is in it. */
+/* The only failure of a report without findings. */
 #define FINDINGS_NOTHING "Nothing was checked"
 
-/* Begins as {0}; to be freed. No memory: failed is set, and what is made of the list is NULL. */
+/* Starts as {0}; free with findings_free. `failed` is set if memory runs out; results made from the
+ * list are then NULL. */
 struct findings {
     struct finding *list;
     size_t count;
     bool failed;
 };
 
-/* Copies the texts; NULL stands for "". Its group is that of its area where it is of one. */
+/* Adds a finding and copies its strings; NULL stands for "". A finding with the rank of an area
+ * gets the name of the area as its group. */
 void findings_add(struct findings *to, struct finding finding);
 void findings_free(struct findings *findings);
 
-/* All that is judged in results as verdict.h describes them. What cannot be read is a failure of
- * the harness, and so is that nothing was judged at all. */
+/* Adds all findings of results (see verdict.h). Results that cannot be read, or that contain no
+ * finding, are a failure of the harness. */
 void findings_of_report(struct findings *to, const json_t *results);
-/* Those of the documents of `sphproof verify` and `sphproof judge`. */
+/* Add the findings of documents of `sphproof verify` and `sphproof judge`. */
 void findings_of_verify(struct findings *to, const json_t *document);
 void findings_of_judge(struct findings *to, const json_t *document);
 
-/* What fails, most specific first: [{"area", "name", "detail", "command"}]. A check ("check", of
- * name "group: check", with its "subject") is listed once, by the figure farthest beyond its bound;
- * the others are counted. New reference; NULL: no memory. */
+/* The failures, most specific first: [{"area", "name", "detail", "command"}]. A check ("check",
+ * with the name "group: check" and its "subject") is listed once, with the figure that exceeds its
+ * bound most; its other failures are counted. New reference; NULL: no memory. */
 json_t *findings_failures(const struct findings *findings);
 
-/* JUnit XML of what `of`, one of the functions above, finds in a document: a suite for each group,
- * a test case for each finding but those of status NONE. What fails is a failure, what is neither
- * that nor passes is skipped. Malloced; NULL: no memory. */
+/* JUnit XML of the findings that `of`, one of the functions above, adds for a document: a suite per
+ * group, a test case per finding, except for those with status NONE. A finding that neither passes
+ * nor fails is skipped. Malloced; NULL: no memory. */
 char *findings_junit(void (*of)(struct findings *to, const json_t *document),
                      const json_t *document);

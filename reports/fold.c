@@ -9,7 +9,7 @@
 #ifdef HAVE_ZLIB
 #include <zlib.h>
 
-/* Compressed, malloced; NULL: no memory. */
+/* Compresses a text; malloced; NULL: no memory. */
 static unsigned char *pack(const char *text, size_t size, size_t *packed)
 {
     uLongf most = compressBound((uLong)size);
@@ -72,7 +72,7 @@ void fold_section(struct buffer *to, size_t start)
     free(section);
 }
 
-/* No '<' and no '&': the page is XML as well. */
+/* Without '<' and '&', since the page is also XML. */
 const char fold_script[] =
     "<noscript><p class=\"note\">What is folded is kept compressed and opens with JavaScript only. "
     "All figures are in <a href=\"results.json\">results.json</a>, the data and scripts of all "

@@ -103,7 +103,7 @@ void html_cell_code(struct buffer *to, const char *string)
     html_format(to, "<td><code>%s</code></td>", string);
 }
 
-/* "a/b/0" of an object, or the object. */
+/* The member "a/b/0" of an object, or the object itself. */
 static const json_t *member_of(const json_t *of, const char *path)
 {
     char name[64];
@@ -116,7 +116,7 @@ static const json_t *member_of(const json_t *of, const char *path)
     return of;
 }
 
-/* first: the first entry of the table. */
+/* True if an optional column is omitted; first: the first entry of the table. */
 static bool left_out(const struct html_column *column, const json_t *first)
 {
     return column->optional && !isfinite(value_real(member_of(first, column->member)));

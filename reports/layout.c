@@ -5,8 +5,8 @@
 #include <string.h>
 
 enum { LINE = 19, KEY_SAMPLE = 55, STACK_GAP = 36, BEFORE_PANEL = 92 };
-static const double LETTER = 7.7;      /* mean width of a letter of 14 px */
-static const double KEY_LETTER = 10.0; /* what gnuplot reserves for one in the key */
+static const double LETTER = 7.7;      /* mean width of a 14 px character */
+static const double KEY_LETTER = 10.0; /* width that gnuplot reserves for a character in the key */
 
 /* Characters, not bytes, of a UTF-8 string. */
 static size_t letters(const char *string)
@@ -16,7 +16,8 @@ static size_t letters(const char *string)
     return n;
 }
 
-/* Can it stand on the axis? Beyond that the margin of a logarithmic one would overflow. */
+/* True if the axis can show the value. Beyond 1e99 the margin of a logarithmic axis would
+ * overflow. */
 static bool shows(const struct layout_axis *axis, double value)
 {
     return axis->log ? value > 1e-99 && value < 1e99 : isfinite(value);
@@ -34,7 +35,7 @@ static void include_all(struct layout_axis *axis, const double *values, size_t n
     for (size_t i = 0; values && i < n; i++) include(axis, values[i]);
 }
 
-/* Half a cell beyond the first and last centre of a heat map. */
+/* Includes half a cell beyond the first and last centre of a heat map. */
 static void include_cells(struct layout_axis *axis, const double *centres, size_t n)
 {
     if (!n) return;
@@ -50,12 +51,11 @@ static void include_cells(struct layout_axis *axis, const double *centres, size_
     }
 }
 
-/* Values that differ by less than this, relatively, cannot be told apart in a plot, or in a script
- * whose limits have ten digits. */
+/* Smallest relative difference visible in a plot, or in a script whose limits have ten digits. */
 static const double one_value = 1e-8;
 
-/* The range that is asked for, if the axis has it; else that of the data with a margin, and a
- * sensible one where there is no data or no extent. */
+/* Sets the range as asked if the axis can show it, else to that of the data with a margin, with a
+ * default for missing or constant data. */
 static void finish(struct layout_axis *axis, double min, double max, double air)
 {
     if (min < max && shows(axis, min) && shows(axis, max)) {
@@ -111,7 +111,7 @@ static void ranges(struct layout_panel *at, const struct plot_panel *panel)
     finish(&at->y, panel->y_min, panel->y_max, air);
 }
 
-/* Shrinks a panel, at its right or its bottom, until a unit is as long on both axes. */
+/* Shrinks a panel at its right or bottom until the scales of both axes are equal. */
 static void equalise(struct layout_panel *at)
 {
     const double x = at->x.max - at->x.min, y = at->y.max - at->y.min;
@@ -120,7 +120,7 @@ static void equalise(struct layout_panel *at)
     at->bottom = at->top + scale * y;
 }
 
-/* Room at the right for the names at the ends of curves. */
+/* Width needed at the right for labels at the ends of curves. */
 static double end_width(const struct plot_panel *panel)
 {
     size_t longest = 0;
@@ -222,7 +222,8 @@ void layout_ends(const struct layout_panel *at, const struct plot_panel *panel, 
             if (isfinite(series->y[i]) && series->x[i] <= at->x.max)
                 pixels[k] = layout_y(at, series->y[i]);
     }
-    /* Neighbours in height push each other apart; few labels, so many gentle rounds are cheap. */
+    /* Labels that overlap push each other apart. There are few labels, so that many small steps are
+     * cheap. */
     for (int round = 0; round < 200; round++) {
         bool moved = false;
         for (size_t a = 0; a < n; a++) {

@@ -59,7 +59,8 @@ static void keep_range(struct movie_range *range, struct plot_panel *panel, stru
         widen(range, heat->z, heat->nx * heat->ny);
         const double reach = fmax(fabs(range->low), fabs(range->high));
         panel->heat = heat;
-        if (!(range->high - range->low > 1e-6 * reach)) return; /* uniform: gnuplot's own range */
+        if (!(range->high - range->low > 1e-6 * reach))
+            return; /* uniform: gnuplot chooses the range */
         heat->low = heat->diverging ? -reach : range->low;
         heat->high = heat->diverging ? reach : range->high;
     } else if (panel->y_min == panel->y_max) {
@@ -93,7 +94,7 @@ enum status movie_add(struct movie *movie, const struct plot *plot, struct error
     return error_set(error, STATUS_ENVIRONMENT, "no memory for the pictures of a movie");
 }
 
-/* ffmpeg writes a temporary file, which replaces the movie when it is whole. */
+/* ffmpeg writes a temporary file, which replaces the movie when complete. */
 enum status movie_write(const struct movie *movie, const char *path, struct error *error)
 {
     const bool gif = !strcmp(strrchr(path, '.'), ".gif");

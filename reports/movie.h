@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Plots one after the other as a movie, made by ffmpeg. Axes and colours without a range of their
- * own reach as far as in any picture so far, so that they widen but never jump back. */
+ * Movies of plots, made by ffmpeg. Axes and colour scales without a fixed range cover all pictures
+ * so far, so that they widen but never shrink. */
 #pragma once
 
 #include "buffer.h"
@@ -14,19 +14,20 @@ struct movie_range {
     bool known;
 };
 
-struct movie { /* begins as zeros */
+struct movie { /* starts as zeros */
     struct buffer pictures;
     size_t count;
     struct movie_range range[MOVIE_PANELS];
 };
 
-/* Does the name end in .gif or .mp4? */
+/* True if the name ends in .gif or .mp4. */
 bool movie_wanted(const char *path);
 
-/* Could path become a movie: is ffmpeg there, can it be written? STATUS_ENVIRONMENT. */
+/* Checks that ffmpeg is installed and that path can be written. STATUS_ENVIRONMENT: one is not
+ * so. */
 enum status movie_probe(const char *path, struct error *error);
 
-/* One more picture; all plots of a movie have the same size. STATUS_ENVIRONMENT: it cannot be
+/* Adds a picture; all plots of a movie have the same size. STATUS_ENVIRONMENT: it cannot be
  * drawn. */
 enum status movie_add(struct movie *movie, const struct plot *plot, struct error *error);
 

@@ -18,8 +18,7 @@ static void tile(struct buffer *to, const char *label, double good, double all, 
                   good < all ? "bad" : "good", anchor, good, all, label);
 }
 
-/* How many of the orders and errors that could be judged are as expected, and what became of the
- * others. */
+/* Writes how many of the judged orders and errors are as expected, and the states of the others. */
 static void gates_tile(struct buffer *to, const json_t *verdict)
 {
     static const char *const others[][2] = {{"gates_smoke", "too coarse to judge"},

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What orders are lost to: for each autopsy its conclusion, a picture, and the shares of the error
- * at the finest level. */
+ * Autopsies of the error: conclusion, plot, and shares of the error at the finest level. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Work-precision: what an error costs, per case. Schemes by L1^2 x CPU time, best first. */
+ * Work-precision: cost against error for each case. Schemes are sorted by L1^2 x CPU time, best
+ * first. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -45,7 +46,7 @@ static int by_merit(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The curves of a document, best first; their number. */
+/* Reads the curves of a document, best first; returns their number. */
 static size_t read_curves(const json_t *document, struct curve *curves, size_t most)
 {
     size_t count = 0, i;
@@ -70,9 +71,9 @@ static size_t read_curves(const json_t *document, struct curve *curves, size_t m
     return count;
 }
 
-/* Errors of other codes, whose times belong to other machines: 0.148 is the exact amplitude, and 1
- * minus the factor before it is M/reference in cases/README.md. Those of Athena++ are found again
- * with `sphproof run CASE n=N --code verify/examples/codes/athena.ini`. */
+/* Errors of other codes, without CPU times, which belong to other machines. 0.148 is the exact
+ * amplitude, and its factor is 1 minus M/reference in cases/README.md. `sphproof run CASE n=N
+ * --code verify/examples/codes/athena.ini` reproduces those of Athena++. */
 static const struct {
     const char *case_name, *error_of, *label;
     double error;
@@ -191,7 +192,7 @@ static void cheapest_table(struct buffer *to, const json_t *ways)
     html_table_end(to);
 }
 
-/* of_codes: from the levels of their ladders. */
+/* of_codes: for other codes, from the levels of their ladders. */
 static void explain(struct buffer *to, bool of_codes)
 {
     buffer_add(to, of_codes

@@ -15,8 +15,8 @@ enum { QUANTITIES = 4, PRESSURE = 2, ENERGY = 3 };
 static const char *const quantities[QUANTITIES] = {"density", "velocity", "pressure",
                                                    "internal_energy"};
 
-/* Internal energies of n particles of density rho and pressure P, malloced. NULL: no memory, or one
- * of the arrays is missing. */
+/* Internal energies of n particles with density rho and pressure P, malloced. NULL: no memory, or
+ * an array is missing. */
 static double *energies(const double *rho, const double *P, size_t n, double gamma)
 {
     double *u = rho && P && n ? malloc(n * sizeof *u) : NULL;
@@ -24,7 +24,7 @@ static double *energies(const double *rho, const double *P, size_t n, double gam
     return u;
 }
 
-/* What the plots of one case are drawn from; owned arrays. */
+/* Data for the plots of a case; owned arrays. */
 struct curves {
     size_t runs;
     const char *label[PAGE_SCHEMES];
@@ -176,7 +176,7 @@ static const struct html_column run_columns[] = {
     COLUMN("", "status", .kind = CELL_STATUS),
     {0}};
 
-/* ---- what a profile does that the exact solution does not ---- */
+/* ---- deviations of a profile from the exact solution ---- */
 
 static void range(const double *values, size_t n, double *low, double *high)
 {
@@ -188,7 +188,7 @@ static void range(const double *values, size_t n, double *low, double *high)
     }
 }
 
-/* How far particles go beyond the range of the exact solution, as a part of that range. */
+/* How far values exceed the range of the exact solution, as a fraction of that range. */
 static double overshoot(const struct curves *curves, size_t k, int q)
 {
     double low, high, exact_low, exact_high;
@@ -197,8 +197,8 @@ static double overshoot(const struct curves *curves, size_t k, int q)
     return fmax(0, fmax(high - exact_high, exact_low - low)) / (exact_high - exact_low);
 }
 
-/* Where density jumps and pressure does not; NaN: nowhere. The exact curve has two points at a
- * jump. */
+/* Position where the density jumps and the pressure does not; NaN: none. The exact curve has two
+ * points at a jump. */
 static double contact_of(const struct curves *curves)
 {
     const double *rho = curves->exact[0], *P = curves->exact[PRESSURE];
@@ -214,8 +214,7 @@ static double contact_of(const struct curves *curves)
     return at;
 }
 
-/* The largest error of pressure within four widths of the contact, in parts of the pressure there.
- */
+/* Largest relative error of the pressure within four smoothing lengths of the contact. */
 static double pressure_blip(const struct curves *curves, size_t k, double contact, double h)
 {
     double most = (double)NAN;
@@ -251,7 +250,7 @@ static bool is_failure(const char *state)
     return !strcmp(state, "fail") || !strcmp(state, "broke_down") || !strcmp(state, "failed");
 }
 
-/* The summary line of a case, which stays visible when the case is folded. */
+/* Writes the summary line of a case, which is visible when the case is folded. */
 static void case_head(struct buffer *to, const char *name, const json_t *title,
                       const json_t *const *studies, size_t study_count, const char *state)
 {
@@ -263,7 +262,7 @@ static void case_head(struct buffer *to, const char *name, const json_t *title,
     size_t shown = 0;
     for (size_t k = 0; k < study_count; k++) {
         const json_t *order = page_study_main(studies[k]);
-        if (!order) continue; /* it failed */
+        if (!order) continue; /* the study failed */
         if (!shown) buffer_add(to, " <span class=\"note\">order of ");
         if (!shown) page_study_name(to, order);
         html_format(to, shown++ ? ", %s " : ": %s ", value_text(studies[k], "label"));
@@ -283,7 +282,7 @@ static bool is_cloud(const json_t *const *runs, size_t count)
     return count && dimension_of(runs[0]) > 1;
 }
 
-/* Writes all that the results say about one case. */
+/* Writes all results of one case. */
 static void one_case(struct page_writer *writer, const json_t *results, const char *name)
 {
     struct buffer *to = &writer->to;
@@ -343,7 +342,7 @@ static bool seen_before(const json_t *list, size_t before, const char *name)
     return false;
 }
 
-/* Cases of one dimension, or nothing. */
+/* Writes the cases of one dimension, if any. */
 static void cases_in(struct page_writer *writer, const json_t *results, int dimension, bool folded)
 {
     const json_t *runs = json_object_get(results, "runs"), *entry;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Checks: per group a table, one line a check (its figure nearest to the bound), all figures of
- * failing ones; and the detection power: which deliberate faults each check catches. */
+ * Checks: a table per group with one line per check (the figure nearest to its bound) and all
+ * figures of failed checks; and the detection power: which deliberate faults each check detects. */
 #include <math.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #include "page_part.h"
 #include "value.h"
 
-/* Figures [first, end) of one check. */
+/* Figures [first, end) of a check. */
 struct span {
     size_t first, end, failed, skipped, worst;
     double seconds;
@@ -166,7 +166,7 @@ void page_detection(struct page_writer *writer, const json_t *verify)
         value_inner(verify, "summary", "mutants"), n, caught,
         value_inner(verify, "summary", "detected"), caught < n ? " open=\"open\"" : "");
     html_table(to, "mutants", "fault|check|#value|#bound|caught");
-    for (int round = 0; round < 2; round++) { /* those that slipped through come first */
+    for (int round = 0; round < 2; round++) { /* undetected faults first */
         json_array_foreach(mutants, i, entry) {
             bool detected = json_is_true(json_object_get(entry, "detected"));
             if (detected != (round == 1)) continue;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Claims about schemes: the claim, what was measured, the verdict. */
+ * Claims about schemes: the claim, the measurement, the verdict. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,15 +16,15 @@ static void claim_head(struct buffer *to, const json_t *claim)
                 value_text(claim, "verdict"), value_text(claim, "claim"));
 }
 
-/* ---- particles in pairs ---- */
+/* ---- pairing of particles ---- */
 
 struct curve {
     double neighbours[STEPS], nearest[STEPS];
     struct buffer label;
 };
 
-/* The mean distance to the nearest neighbour of each kernel in one dimension; kernels that theory
- * lets pair are dashed. Returns how many there are. */
+/* Reads the mean distance to the nearest neighbour for each kernel in one dimension; curves of
+ * kernels that may pair according to theory are dashed. Returns the number of curves. */
 static size_t read_curves(const json_t *ladders, int dim, struct curve *curves,
                           struct plot_series *series)
 {

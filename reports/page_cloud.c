@@ -13,7 +13,7 @@ enum { MAPS = 3, QUANTITIES = 4, MAP_PIXELS = 300 };
 
 /* ---- maps ---- */
 
-/* Arrays of a map; owned. */
+/* Arrays of a map, owned. */
 struct map {
     size_t nx, ny, cells;
     double *x, *y, *z[MAPS];
@@ -44,7 +44,7 @@ static void free_map(struct map *map)
     for (int k = 0; k < MAPS; k++) free(map->z[k]);
 }
 
-/* An edge of the box: centres of cells are half a cell inside. */
+/* Position of an edge of the box, half a cell beyond the first or last centre. */
 static double edge(const double *centres, size_t n, bool upper)
 {
     const double half = n > 1 ? (centres[1] - centres[0]) / 2 : 0.5;
@@ -67,8 +67,8 @@ static struct plot_panel map_panel(const struct map *map, const struct plot_heat
                                .heat = heat};
 }
 
-/* Draws one map as a figure of its own, so that maps stand side by side where there is room. The
- * figure is called after the case and `what`. */
+/* Draws one map as a separate figure, so that maps are placed side by side if there is space. The
+ * figure is named after the case and `what`. */
 static void plot_map(struct page_writer *writer, const char *case_name, const char *what,
                      const struct map *map, const struct plot_heat *heat, const char *title,
                      const char *caption)
@@ -128,7 +128,7 @@ static void plot_first(struct page_writer *writer, const char *case_name, const 
     buffer_add(&writer->to, "</div>\n");
 }
 
-/* Map k of every scheme, on one colour scale. */
+/* Draws map k of every scheme on the same colour scale. */
 static void plot_each(struct page_writer *writer, const char *case_name, const json_t *const *runs,
                       const struct map *maps, size_t count, int k)
 {
@@ -158,7 +158,7 @@ static void plot_each(struct page_writer *writer, const char *case_name, const j
     buffer_add(&writer->to, "</div>\n");
 }
 
-/* ---- particles over the exact curve ---- */
+/* ---- particles and the exact curve ---- */
 
 struct curves {
     size_t quantities, n, exact_n;
@@ -213,7 +213,7 @@ static void plot_profiles(struct page_writer *writer, const char *case_name,
     const bool around = !strcmp(value_text(json_object_get(runs[0], "profile"), "over"), "R");
     for (size_t q = 0; q < first->quantities; q++) {
         size_t n = 0;
-        for (size_t k = count; k-- > 0;) { /* the first one on top */
+        for (size_t k = count; k-- > 0;) { /* draws the first one last, on top */
             if (curves[k].quantities != first->quantities) continue;
             series[q][n++] = (struct plot_series){.label = value_text(runs[k], "label"),
                                                   .kind = PLOT_POINTS,
@@ -324,7 +324,7 @@ static const struct html_column gates[] = {COLUMN("scheme", "^label", .kind = CE
                                            COLUMN("", NULL, .cell = gate_status),
                                            {0}};
 
-/* The gates of these runs; the section is open if one of them fails. */
+/* Writes the gates of these runs; the section is open if one fails. */
 static void gate_table(struct buffer *to, const json_t *const *runs, size_t count)
 {
     size_t i, all = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Other codes: a matrix of cases and codes with errors, orders and gates, what they conserve, what
- * was assumed of their files, and what they are. */
+ * Other codes: a matrix of cases and codes with errors, orders and gates, conservation, assumptions
+ * about their files, and descriptions. */
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ static bool is_code(const json_t *document)
     return json_is_object(json_object_get(document, "code"));
 }
 
-/* The worst that gates of a document say; "none": it has no gate. */
+/* The worst status of a document's gates; "none" if there is no gate. */
 static const char *gate_of(const json_t *document, const char *list)
 {
     static const char *const worse[] = {"fail", "undetermined", "known", "smoke", "pass"};
@@ -41,7 +41,7 @@ static double finest_n(const json_t *study)
     return value_member(count ? json_array_get(levels, count - 1) : NULL, "n");
 }
 
-/* Error at the finest level, order with its interval, gate, command. */
+/* Writes the error at the finest level, the order with its interval, the gate and the command. */
 static void cell(struct buffer *to, const json_t *study, const json_t *run)
 {
     const json_t *shown = study ? study : run, *order = study ? page_study_main(study) : NULL;
@@ -84,7 +84,7 @@ static void heads(struct buffer *to, const char *first, const char *const *label
     buffer_free(&columns);
 }
 
-/* Is it the first run of its case? */
+/* True if this is the first run of its case. */
 static bool begins_case(const json_t *runs, size_t i)
 {
     const char *name = value_text(json_array_get(runs, i), "case");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The page of `sphproof compare`: verdict, table, and both sides over the exact solution or as maps
- * of one colour scale. */
+ * The page of `sphproof compare`: verdict, table, and both sides with the exact solution or as maps
+ * with the same colour scale. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 static const char *const fields[] = {"density", "velocity", "pressure"};
 enum { PANELS = sizeof fields / sizeof *fields, SIDES = 2, SERIES = SIDES + 1 };
 
-/* Both over the exact curve, in one panel for each field. */
+/* Draws both sides and the exact curve, in one panel per field. */
 static void lines(struct page_writer *writer, const json_t *const runs[SIDES])
 {
     static const char *const axes[] = {"x", "density", "velocity", "pressure"};
@@ -72,7 +72,7 @@ static void table(struct buffer *to, const json_t *document)
                     value_member(figure, "b"));
         const int places = half > 0 && half < 0.1 ? 2 : 0;
         buffer_format(to, "<td class=\"n\">%+.*f", places, 100 * change);
-        if (!isnan(half)) /* Student's interval is one of the logarithm */
+        if (!isnan(half)) /* Student's interval is that of the logarithm */
             buffer_format(to, " (%+.*f to %+.*f)", places, 100 * (ratio * exp(-half / ratio) - 1),
                           places, 100 * (ratio * exp(half / ratio) - 1));
         html_format(to, "</td><td>%s</td></tr>\n",

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What the world did to the program, and what came of it: one line a fault. */
+ * Faults of the environment and the answers of the program, one line per fault. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@ static void row(struct buffer *to, const json_t *fault)
 {
     const char *detail = value_text(fault, "detail");
     const json_t *number = json_object_get(fault, "exit");
-    const int value = (int)json_number_value(number); /* below 0: the signal that ended it */
+    const int value = (int)json_number_value(number); /* < 0: the signal that ended the process */
     html_format(to, "<tr><td>%s</td><td>", value_text(fault, "fault"));
     html_status(to, value_text(fault, "status"));
     buffer_add(to, "</td><td>");
@@ -37,7 +37,7 @@ void page_faults(struct page_writer *writer, const json_t *results)
     if (strcmp(git, value_text(results, "git")))
         html_format(to, ", with another build (git %s)", git);
     buffer_add(to, ".</p>\n");
-    for (int round = 0; round < 2; round++) { /* first what went wrong */
+    for (int round = 0; round < 2; round++) { /* failures first */
         bool open = false;
         json_array_foreach(list, i, entry) {
             if (!strcmp(value_text(entry, "status"), "fail") != (round == 0)) continue;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What has changed since last night, and over the nights: change points with the revision where a
- * figure moved, errors and orders of each case against time. */
+ * Changes since the previous night and over all nights: change points with the revision that
+ * changed a figure, and errors and orders of each case against time. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -52,14 +52,14 @@ static void verdict_cell(struct buffer *to, const char *verdict)
                   verdict);
 }
 
-/* The part of a path that says which run, study or check it belongs to. */
+/* Length of the part of a path that names its run, study or check. */
 static size_t subject_length(const char *path)
 {
     const char *end = strchr(path, ']');
     return end ? (size_t)(end - path) + 1 : strcspn(path, ".");
 }
 
-/* Two entries that one row can stand for: of one subject, with one verdict, of one night. */
+/* True if one row can represent two entries: of the same subject, verdict and night. */
 static bool together(const json_t *a, const json_t *b)
 {
     const char *p = value_text(a, "path"), *q = value_text(b, "path");
@@ -76,8 +76,8 @@ static double amount(const json_t *entry)
     return ratio > 0 ? fabs(log(ratio)) : (double)INFINITY;
 }
 
-/* The entry that stands for all of list[i]'s kind, the one that has moved most; NULL where an
- * earlier entry has spoken for them. */
+/* The entry with the largest change among those that share a row with list[i]; NULL if a row was
+ * already written for them. *others: number of other entries in the row. */
 static const json_t *spokesman(const json_t *list, size_t i, size_t *others)
 {
     const json_t *most = json_array_get(list, i), *entry = most;
@@ -148,7 +148,7 @@ static const json_t *first_worse(const json_t *figures)
     return NULL;
 }
 
-/* Seconds since 1970 of "2026-01-31T12:00:00Z"; NaN: none. */
+/* Seconds since 1970 of "2026-01-31T12:00:00Z"; NaN: not a date. */
 static double seconds_of(const char *date)
 {
     struct tm tm = {0};
@@ -160,7 +160,7 @@ static double seconds_of(const char *date)
     return (double)timegm(&tm);
 }
 
-/* "24 minutes before". */
+/* Writes "24 minutes before". */
 static void how_long(struct buffer *to, const json_t *since, const json_t *results)
 {
     static const struct {
@@ -272,7 +272,7 @@ static void read_curve(struct curves *curves, const json_t *trend)
     }
 }
 
-/* Nights at which something of this case has moved, each once. */
+/* Reads the nights on which some figure of the case changed, each once. */
 static void read_marks(struct curves *curves, const json_t *changes, const char *case_name)
 {
     size_t i, length = strlen(case_name);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The page of `sphproof judge`: verdict, gates, orders, what was assumed and why, errors, the
- * kernel's candidates, particles over the exact solution. */
+ * The page of `sphproof judge`: verdict, gates, orders, assumptions and their reasons, errors,
+ * candidate kernels, particles and the exact solution. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -77,7 +77,7 @@ static void profiles(struct page_writer *writer, const json_t *judged, size_t nu
     curves_free(&c);
 }
 
-/* In 2D and 3D: maps, and particles over the exact curve where there is one. */
+/* In 2D and 3D: maps, and particles with the exact curve if there is one. */
 static void cloud(struct page_writer *writer, const json_t *judged, size_t number)
 {
     char which[32];
@@ -150,14 +150,14 @@ static void why(struct buffer *to, const json_t *gate)
     buffer_escape(to, *why ? why : value_text(gate, "source"));
 }
 
-/* Gates, of the snapshot with the most particles. */
+/* Gates of the snapshot with the most particles. */
 static const struct html_column gates[] = {
     COLUMN("gate", "name", .kind = CELL_CODE), COLUMN("#found", "value"),
     COLUMN("#allowed", NULL, .cell = allowed), COLUMN("", "status", .kind = CELL_STATUS),
     COLUMN("why", NULL, .cell = why),          {0}};
 
-/* Several snapshots have orders if their numbers of particles differ, and show what is conserved if
- * their times differ. */
+/* Several snapshots have orders if their numbers of particles differ, and a drift of conserved
+ * quantities if their times differ. */
 static void together(struct buffer *to, const json_t *document)
 {
     static const char *const kept[] = {"mass", "momentum", "angular_momentum", "energy"};

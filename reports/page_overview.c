@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * All cases in one table: what a reader wants to know before anything else. */
+ * All cases in one table, as an overview. */
 #include <math.h>
 #include <string.h>
 
@@ -31,7 +31,7 @@ static void end_row(struct buffer *to, const json_t *results, const char *name, 
     buffer_add(to, "</td></tr>\n");
 }
 
-/* Heads of a table of so many columns for each label, and then those of end_row. */
+/* Writes the head of a table: a column for each label, then those of end_row. */
 static void heads(struct buffer *to, const char *first, const char *each, const char *const *labels,
                   size_t count)
 {
@@ -61,7 +61,7 @@ static void row(struct buffer *to, const json_t *results, const json_t *first,
     end_row(to, results, name, page_study_order(first, "density", "l1"), run);
 }
 
-/* ---- 2D and 3D: by their runs, whatever they are judged by ---- */
+/* ---- 2D and 3D: runs with the errors by which they are judged ---- */
 
 static void cloud_row(struct buffer *to, const json_t *results, const json_t *run,
                       const char *const *labels, size_t count)

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What the parts of the page write to: its text, and its plots, whose scripts and data stand beside
- * the page. */
+ * Output of the parts of the page: the text, and the plots, whose scripts and data are written next
+ * to the page. */
 #pragma once
 
 #include "buffer.h"
 #include "plot.h"
 
-enum { PAGE_SCHEMES = PLOT_COLORS }; /* of one case, at most */
+enum { PAGE_SCHEMES = PLOT_COLORS }; /* most schemes of a case */
 
 struct page_file {
     char *name; /* NAME.gp, NAME.dat */
@@ -16,9 +16,10 @@ struct page_file {
 struct page_plots {
     struct page_file *files;
     size_t file_count;
-    size_t missing; /* the page says where; message is the first one's reason */
+    size_t missing; /* plots that could not be drawn, each with a note in the page; message: reason
+                       of the first */
     char message[512];
-    bool no_gnuplot; /* it was missing once, and is not tried again */
+    bool no_gnuplot; /* gnuplot was not found and is not tried again */
 };
 void page_plots_free(struct page_plots *plots);
 
@@ -26,12 +27,12 @@ struct page_writer {
     struct buffer to;
     struct page_plots plots;
     struct plot_pen pen;
-    bool alone; /* nothing will lie beside the page */
+    bool alone; /* no files will be written next to the page */
 };
 
-/* Draws a plot into the page as <figure>, and keeps its script and data, to be written beside the
- * page. In place of a plot that cannot be drawn there is a note. */
+/* Draws a plot into the page as <figure>, and keeps its script and data for files next to the page.
+ * A plot that cannot be drawn is replaced by a note. */
 void page_plot(struct page_writer *writer, const struct plot *plot, const char *caption);
 
-/* Makes "CASE-WHAT" a plot's name, with '_' for characters that are not allowed there. */
+/* Makes a plot's name "CASE-WHAT", with '_' for characters that are not allowed. */
 void page_plot_name(char *name, size_t size, const char *case_name, const char *what);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The mutation score: how many of the generated faults the tests noticed, file by file, and which
- * faults no test noticed. */
+ * The mutation score: the share of generated faults that the tests detected, by file, and the
+ * undetected faults. */
 #include "html.h"
 #include "page_part.h"
 #include "value.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What is left out of runs where no signal has been: how much, what could be, what it saves, and
- * where and when the gas sleeps. */
+ * Computation skipped where no signal has arrived: fraction skipped, largest possible fraction,
+ * time saved, and where and when particles are inactive. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@
 
 enum { NAME = 96, ROWS = 64, COLUMNS = 128, MAP_WIDTH = 330, MAP_HEIGHT = 240 };
 
-/* The words after `sphproof bench`, up to the options: the case and its keys. */
+/* The words between `sphproof bench` and the options: the case and its keys. */
 static void setup_of(const json_t *document, char name[NAME])
 {
     const char *from = value_text(document, "reproduce"), *bench = strstr(from, "bench ");
@@ -61,7 +61,7 @@ static void shares_table(struct buffer *to, const json_t *skips)
     html_table_end(to);
 }
 
-/* Where (along x) and when (as parts of t_end) gas sleeps. */
+/* Draws where (along x) and when (relative to t_end) particles are inactive. */
 static void plot_map(struct page_writer *writer, const json_t *document, size_t number)
 {
     static double z[ROWS * COLUMNS], x[COLUMNS], y[ROWS];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The stability atlas: growth rates of linear theory, and the maps of the stress test, one table a
- * group, each cell coloured by its outcome. */
+ * The stability atlas: growth rates of linear theory, and maps of the stress test, one table per
+ * group, with cells coloured by outcome. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -32,7 +32,7 @@ static void label_of(char label[64], const json_t *row, bool eta)
     buffer_free(&words);
 }
 
-/* Growth against eta for one gradient, where it is seen. */
+/* Draws growth against eta for one gradient, if any growth is visible. */
 static void plot_growth(struct page_writer *writer, const json_t *atlas, const char *gradient)
 {
     static const double least = 1e-4;
@@ -83,7 +83,7 @@ static void plot_growth(struct page_writer *writer, const json_t *atlas, const c
     free(curves);
 }
 
-/* Frequency and growth against the wavenumber. */
+/* Draws frequency and growth against the wavenumber. */
 static void plot_waves(struct page_writer *writer, const json_t *waves)
 {
     struct curve *curves = calloc(2 * CURVES, sizeof *curves);
@@ -130,7 +130,7 @@ static void plot_waves(struct page_writer *writer, const json_t *waves)
     free(curves);
 }
 
-/* Growth over eta and wavenumber. */
+/* Draws growth against eta and wavenumber. */
 static void plot_map(struct page_writer *writer, const json_t *map)
 {
     static double eta[POINTS], kappa[POINTS], growth[MAP_MAX];
@@ -164,13 +164,13 @@ static bool is_number(const json_t *entry, const char *name)
     return json_is_number(json_object_get(entry, name));
 }
 
-/* stable_below: a predicted growth below this counts as stable; NaN if none is predicted. */
+/* stable_below: a smaller predicted growth counts as stable; NaN: no prediction. */
 static void cell(struct buffer *to, const json_t *entry, double stable_below)
 {
     const char *outcome = value_text(entry, "outcome");
     html_format(to, "<td class=\"%s\" title=\"%s%s%s\">", outcome, value_text(entry, "reason"),
                 *value_text(entry, "reason") ? ": " : "", value_text(entry, "command"));
-    /* not by its colour alone */
+    /* not distinguished by colour alone */
     if (!strcmp(outcome, "inaccurate")) buffer_add(to, "≉ ");
     if (!strcmp(outcome, "wrong")) buffer_add(to, "≠ ");
     const bool measured = is_number(entry, "measured"), predicted = is_number(entry, "predicted");
@@ -189,7 +189,7 @@ static bool belongs(const json_t *entry, const char *group, const char *row)
            (!row || !strcmp(value_text(entry, "row"), row));
 }
 
-/* What is not ok, with the command that does it again. */
+/* Lists the cells that are not ok, with commands to reproduce them. */
 static void reasons(struct buffer *to, const char *group, const json_t *cells)
 {
     size_t i, count = 0;

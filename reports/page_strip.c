@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * All cases as a strip of small pictures: particles over the exact solution, or a map, with the
- * error and the order of the first scheme. Each picture leads to its case. */
+ * A strip of small pictures, one per case: particles and the exact solution, or a map, with the
+ * error and the order of the first scheme. Each picture links to its case. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,7 +37,7 @@ static double down(const struct frame *f, double y)
            (HEIGHT - 2 * MARGIN) * (f->y1 > f->y0 ? (y - f->y0) / (f->y1 - f->y0) : 0.5);
 }
 
-/* A path through points (joined), or of dots; what falls on the same half pixel is drawn once. */
+/* Writes a path through points (joined) or of dots; draws only one point per half pixel. */
 static void path(struct buffer *to, const char *class, const struct frame *f, const double *x,
                  const double *y, size_t n, size_t most, bool joined)
 {
@@ -65,7 +65,7 @@ static void svg_begin(struct buffer *to, const char *title)
                 WIDTH, HEIGHT, title);
 }
 
-/* Do the values of a curve differ by more than noise would? */
+/* True if the values of a curve vary by more than noise. */
 static bool varies(const json_t *curve, const char *name)
 {
     size_t n;
@@ -76,8 +76,8 @@ static bool varies(const json_t *curve, const char *name)
     return high - low > 1e-9 * fmax(fabs(low), fabs(high));
 }
 
-/* What a picture shows of a profile: what the case is judged by, else the first quantity whose
- * exact curve varies. In 1D density. */
+/* The quantity in the picture of a profile: the one by which the case is judged, else the first
+ * whose exact curve varies; in 1D density. */
 static const char *quantity_of(const json_t *run, const json_t *from)
 {
     const json_t *list = json_object_get(from, "quantities"), *entry;
@@ -95,7 +95,7 @@ static const char *quantity_of(const json_t *run, const json_t *from)
     return found;
 }
 
-/* Particles over the exact curve; false: the run has none. */
+/* Draws particles and the exact curve; false: the run has none. */
 static bool profile(struct buffer *to, const json_t *run)
 {
     const json_t *from = json_object_get(run, "profile"), *exact = json_object_get(from, "exact");
@@ -117,7 +117,7 @@ static bool profile(struct buffer *to, const json_t *run)
             else
                 widen(&exact_y[i], 1, &f.y0, &f.y1);
         }
-        /* noise about what is constant is not blown up to the whole picture */
+        /* do not enlarge noise around a constant to the full height */
         if (!varies(exact, name)) {
             const double most = fmax(fabs(f.y0), fabs(f.y1));
             f.y0 = fmin(f.y0, -0.1 * most), f.y1 += 0.1 * most;
@@ -136,7 +136,7 @@ static void put(unsigned char *at, size_t bytes, size_t value)
     for (size_t k = 0; k < bytes; k++) at[k] = (unsigned char)(value >> 8 * k);
 }
 
-/* Dark violet to yellow, as the large maps are. */
+/* Dark violet to yellow, as in the large maps. */
 static void palette(unsigned char *at)
 {
     static const unsigned char anchors[][3] = {
@@ -150,7 +150,7 @@ static void palette(unsigned char *at)
     }
 }
 
-/* A bitmap of nx by ny cells, from the lowest row up; voids have the lowest colour. */
+/* Writes a bitmap of nx by ny cells, lowest row first; voids have the lowest colour. */
 static void bitmap(struct buffer *to, const double *z, size_t nx, size_t ny)
 {
     enum { HEAD = 54, PALETTE = 4 * COLORS };
@@ -177,7 +177,7 @@ static void bitmap(struct buffer *to, const double *z, size_t nx, size_t ny)
     free(bytes);
 }
 
-/* A map: of density, or of speed where density hardly varies. */
+/* Draws a map of density, or of speed if density hardly varies. */
 static bool map(struct buffer *to, const json_t *run)
 {
     const json_t *from = json_object_get(json_object_get(run, "profile"), "map");
@@ -249,7 +249,7 @@ void page_strip(struct page_writer *writer, const json_t *results)
         size_t i;
         json_array_foreach(json_object_get(results, lists[k]), i, entry) {
             const char *name = value_text(entry, "case");
-            /* once: of runs the first, of studies without a run */
+            /* once per case: its first run, or its first study if there is no run */
             if (case_state_find(json_object_get(results, lists[k]), name, NULL) != entry ||
                 (k && case_state_find(runs, name, NULL)))
                 continue;

@@ -11,9 +11,9 @@
 
 enum { LEVELS = 64, PLOTTED = 3 };
 
-/* Error of one quantity, L1 of a field or the distance of a scalar from its exact value: measured,
- * least-squares fit, and what the 95 % interval of its order allows, about the middle of the
- * ladder. */
+/* Errors of one quantity (L1 of a field, or the distance of a scalar from its exact value):
+ * measured, least-squares fit, and the range of the 95 % interval of the order, about the middle of
+ * the ladder. */
 struct fitted {
     double error[LEVELS], fit[LEVELS], low[LEVELS], high[LEVELS];
 };
@@ -38,14 +38,15 @@ const json_t *page_study_order(const json_t *study, const char *field, const cha
     return NULL;
 }
 
-/* Of a field the norm that pages show, of a scalar its error. */
+/* The order of a field in the norm that pages show, or that of a scalar's error. */
 static const json_t *order_of(const json_t *document, const char *name)
 {
     const json_t *order = page_study_order(document, name, "l1");
     return order ? order : page_study_order(document, name, "error");
 }
 
-/* What the case is judged by, at most PLOTTED things; their number. */
+/* Reads the names of the errors by which the case is judged, at most PLOTTED; returns their
+ * number. */
 static int read_names(const json_t *document, const char *names[PLOTTED])
 {
     static const char *const usual[PLOTTED] = {"density", "velocity", "pressure"};
@@ -74,7 +75,7 @@ void page_study_name(struct buffer *to, const json_t *order)
     html_format(to, is_scalar(order) ? "the error of %-s" : "L1(%-s)", value_text(order, "field"));
 }
 
-/* At a level (the i-th) of a study. */
+/* The error at level i of a study. */
 static double error_of(const json_t *document, const char *name, size_t i)
 {
     const json_t *level = json_array_get(json_object_get(document, "levels"), i), *entry;
@@ -133,7 +134,7 @@ static void read_study(struct study *study, const json_t *document)
     for (int q = 0; q < study->plotted; q++) fit(study, q);
 }
 
-/* The series of one panel: bands first, so that they lie below. */
+/* Adds the series of one panel: bands first, so that they are below. */
 static size_t add_series(struct plot_series *series, const struct study *studies, size_t count,
                          int quantity)
 {
@@ -162,7 +163,7 @@ static size_t add_series(struct plot_series *series, const struct study *studies
     return used;
 }
 
-/* Reference slopes, below the curves; the second only where it does not squash them. */
+/* Adds reference slopes below the curves; the second only if it does not squeeze the curves. */
 static size_t add_slopes(struct plot_slope slopes[2], const struct study *studies, size_t count,
                          const struct study *ladder, int quantity)
 {
@@ -220,8 +221,8 @@ static void plot_convergence(struct page_writer *writer, const char *case_name,
               "of the order, dashes have the named order.");
 }
 
-/* The main error at a number of particles, with its deviation over the replicates where that
- * exceeds 3 %; a dash: the study has none there. */
+/* Writes the main error at a number of particles, with the standard deviation of its replicates if
+ * above 3 %; a dash if the study has no such level. */
 static void error_cell(struct buffer *to, const struct study *study, double n)
 {
     size_t i = 0;
@@ -239,7 +240,7 @@ static void error_cell(struct buffer *to, const struct study *study, double n)
     buffer_add(to, "</td>");
 }
 
-/* The least number of particles of any study above this one; INFINITY: there is none. */
+/* The smallest number of particles above this one in any study; INFINITY: none. */
 static double next_n(const struct study *studies, size_t count, double above)
 {
     double least = (double)INFINITY;
@@ -249,7 +250,7 @@ static double next_n(const struct study *studies, size_t count, double above)
     return least;
 }
 
-/* What the errors of a study are means of. */
+/* Explains over which runs the errors are averaged. */
 static void replicates_note(struct buffer *to, const json_t *document)
 {
     const json_t *level = json_array_get(json_object_get(document, "levels"), 0);
@@ -294,7 +295,7 @@ static void gate_words(struct buffer *to, const json_t *gate)
     if (json_is_object(gate)) {
         double low = value_member(gate, "low"), bound = value_member(gate, "bound");
         const double least = value_member(gate, "least");
-        if (isfinite(low)) /* else any order will do */
+        if (isfinite(low)) /* else any order is allowed */
             html_format(to, "%f to %f", low, value_member(gate, "high"));
         if (isfinite(bound))
             html_format(to, isfinite(low) ? ", finest ≤ %f" : "finest ≤ %f", bound);
@@ -360,8 +361,8 @@ static void order_table(struct buffer *to, const struct study *studies, size_t c
     buffer_add(to, "</details>\n");
 }
 
-/* The class of a scalar is of its differences from level to level, which may grow where its error
- * falls: then that is said. */
+/* Writes the class of a scalar's convergence. The class refers to differences between levels, which
+ * may grow although the error decreases; the text then says so. */
 static void class_words(struct buffer *to, const json_t *entry)
 {
     const char *class = value_text(entry, "class");
@@ -398,7 +399,7 @@ static const struct html_column functionals[] = {
     COLUMN("convergence", NULL, .cell = class_words),
     {0}};
 
-/* Scalars of the final state: what they tend to, and how sure that is. */
+/* Writes the extrapolated scalars of the final state and their uncertainty. */
 static void functional_table(struct buffer *to, const json_t *const *studies, size_t count)
 {
     size_t all = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How the page looks: one column of readable width, figures side by side where there is room, light
- * and dark, paper. */
+ * Style of the page: one column of readable width, figures side by side if there is space, light
+ * and dark colours, print. */
 #include "page_part.h"
 
 #define DARK                                                                                       \
@@ -47,7 +47,7 @@ const char *const page_styles[] = {
     "details.dimension>summary{font-size:1.1rem;font-weight:600;margin:.2em 0}"
     "figcaption{font-size:.86rem;color:var(--dim);max-width:640px}.files a{color:inherit}"
     ".missing{padding:2em 1em;border:1px dashed var(--line);color:var(--dim)}",
-    /* a shade at the side on which a wide table goes on, and a bar that stays */
+    /* a shadow where a wide table continues, and a permanent scroll bar */
     ".scroll{overflow-x:auto;margin:.5em 0;background:linear-gradient(to right,var(--paper) "
     "40%,transparent) left/48px 100% no-repeat local,linear-gradient(to left,var(--paper) "
     "40%,transparent) right/48px 100% no-repeat local,linear-gradient(to right,var(--shade),"

@@ -7,7 +7,7 @@
 #include "page_part.h"
 #include "value.h"
 
-/* A row of any flat object: strings, numbers, and true or false as words. */
+/* Writes a cell for a string, a number, or a boolean as yes or no. */
 static void flat_cell(struct buffer *to, const json_t *value)
 {
     if (json_is_boolean(value)) {
@@ -21,7 +21,7 @@ static void flat_cell(struct buffer *to, const json_t *value)
     }
 }
 
-/* The highest degree of polynomials that an operator gets exactly right. */
+/* Writes the highest degree of polynomials for which an operator is exact. */
 static void degree_cell(struct buffer *to, double degree)
 {
     static const char *const names[] = {"nothing", "constants", "linear", "quadratic", "cubic"};
@@ -29,7 +29,7 @@ static void degree_cell(struct buffer *to, double degree)
     html_cell(to, isfinite(degree) ? names[index] : "—");
 }
 
-/* "exact_degree_lattice" and the like; the dimension is in the heading. */
+/* True for "exact_degree_lattice" and the like; the dimension is in the heading. */
 static bool is_degree(const char *name)
 {
     return !strncmp(name, "exact_degree", 12);
@@ -65,7 +65,7 @@ static void league_row(struct buffer *to, const json_t *row)
     buffer_add(to, "</tr>\n");
 }
 
-/* Error against momentum defect: no gradient is in the corner where both are small. */
+/* Draws error against momentum defect: no gradient has both small. */
 static void plot_league(struct page_writer *writer, const json_t *rows)
 {
     enum { DIMENSIONS = 3 };

@@ -9,13 +9,13 @@
 
 enum { POINTS = 256, CURVES = 3 };
 
-/* Axes are logarithmic: what is exactly conserved is drawn at the bottom. */
+/* Position of exact conservation on the logarithmic axes. */
 static const double bottom = 1e-17;
 
-/* What is drawn of runs through time: panels, one for each curve that any of them has. */
+/* A plot of time series with one panel for each curve that any run has. */
 struct picture {
     const char *kind, *title, *words;
-    const char *inside; /* part of "through_time"; NULL: itself */
+    const char *inside; /* member of "through_time"; NULL: "through_time" itself */
     const char *names[CURVES], *labels[CURVES];
 };
 
@@ -55,7 +55,7 @@ static bool read_line(struct line *line, const json_t *of, const char *name)
     return line->n > 0;
 }
 
-/* The curve of each run that has it. */
+/* Reads a curve of each run that has it. */
 static size_t read_series(const struct picture *picture, int curve, const json_t *const *runs,
                           size_t count, struct line *lines, struct plot_series *series)
 {

@@ -29,7 +29,7 @@ enum status picture_write(const struct plot *plot, const char *path, struct erro
         return error_set(error, STATUS_ENVIRONMENT, "--plot '%.150s': %.250s", path, message);
     enum status status = output_open(&output, path, error);
     if (!status) {
-        fwrite(bytes, 1, size, output.stream); /* output_close tells whether it worked */
+        fwrite(bytes, 1, size, output.stream); /* output_close reports failures */
         status = output_close(&output, error);
     }
     free(bytes);

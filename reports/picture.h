@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Writes a plot into a file, which appears whole or not at all. */
+ * Writes a plot to a file, completely or not at all. */
 #pragma once
 
 #include "plot.h"

@@ -23,7 +23,7 @@ static bool usable_name(const char *name)
     return true;
 }
 
-/* Behind each plot of a pen; an error in a file that is loaded does not end gnuplot by itself. */
+/* Printed after each plot of a pen. An error in a loaded file does not end gnuplot by itself. */
 static const char end_of_plot[] = "end of plot\n";
 static const char next_plot[] = "if (GPVAL_ERRNO) exit status 1\nset output\nreset session\n"
                                 "set print '-'\nprint 'end of plot'\n";
@@ -43,8 +43,8 @@ static void begin(struct plot_pen *pen)
     pen->begun = true;
 }
 
-/* gnuplot reads its standard input byte by byte, a file as usual. Where there can be none (the disk
- * is full), the script stays in the input. */
+/* Moves the script to a file, since gnuplot reads standard input byte by byte. If there is no file
+ * (the disk is full), the script stays in the input. */
 static void set_aside(const struct plot_pen *pen, struct buffer *script)
 {
     const int file = pen->script;
@@ -101,7 +101,7 @@ bool plot_source(const struct plot *plot, char **script, char **data)
 {
     struct buffer output = {0}, file = {0}, to = {0};
     buffer_format(&output, "%s.svg", plot->name);
-    buffer_add(&file, "'"); /* in single quotes, where a quote is doubled */
+    buffer_add(&file, "'"); /* in single quotes, in which a quote is doubled */
     for (const char *c = plot->name; *c; c++) {
         if (*c == '\'') buffer_add(&file, "'");
         buffer_add_bytes(&file, c, 1);
@@ -142,7 +142,7 @@ enum plot_status plot_svg(struct plot_pen *pen, const struct plot *plot, char **
     return status;
 }
 
-/* A picture of its own: prolog, and the style sheet inside. */
+/* A standalone picture: with prolog and style sheet. */
 static enum plot_status svg_document(const struct plot *plot, struct buffer *picture, char *message,
                                      size_t n)
 {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Plots by gnuplot through a pipe, one style for all: colour-blind-safe, light and dark. Plain
- * arrays in, a picture in memory out (the caller writes the file). Arrays stay the caller's. */
+ * Plots by gnuplot through a pipe, all in one style: colour-blind-safe, light and dark. Input:
+ * plain arrays, owned by the caller; output: a picture in memory, which the caller writes to a
+ * file. */
 #pragma once
 
 #include <stdbool.h>
@@ -10,7 +11,7 @@
 
 enum plot_status {
     PLOT_OK,
-    PLOT_NO_GNUPLOT, /* gnuplot is not installed, or hangs: no use asking again */
+    PLOT_NO_GNUPLOT, /* gnuplot is not installed or hangs; do not try again */
     PLOT_FAILED,     /* gnuplot failed, or no memory */
 };
 
@@ -20,21 +21,21 @@ enum plot_kind {
     PLOT_LINES_POINTS,
     PLOT_ERROR_BARS, /* points with low..high */
     PLOT_BAND,       /* filled between low and high; y unused */
-    PLOT_BARS        /* the same, a bar at each x, from x/size to x*size */
+    PLOT_BARS        /* low and high with a bar at each x, from x/size to x*size */
 };
 
 enum { PLOT_AUTO = 0, PLOT_NEUTRAL = -1 }; /* colours: automatic, text colour, or 1..PLOT_COLORS */
 enum { PLOT_COLORS = 7 };
 
 struct plot_series {
-    const char *label; /* NULL: not named */
+    const char *label; /* NULL: unnamed */
     enum plot_kind kind;
     size_t n;
     const double *x, *y;      /* a non-finite value interrupts a line */
     const double *low, *high; /* bands and error bars only */
-    int color;                /* PLOT_AUTO: the next of the palette */
+    int color;                /* PLOT_AUTO: next of the palette */
     bool dashed;
-    double size; /* of points, 0: the usual 1; profiles of many particles use less */
+    double size; /* size of points, 0: the default of 1; profiles of many particles use less */
 };
 
 /* Reference slope: y = y0 (x/x0)^order from x0 to x1, dashed, labelled (log-log panels). */
@@ -50,8 +51,9 @@ struct plot_mark {
     const char *label; /* or NULL */
 };
 
-/* Heat map: cell (i, j) is centred on x[i], y[j] and has the value z[j * nx + i]; NaN is left
- * empty. With categories, z is an index into them: coloured by palette and named in the key. */
+/* Heat map: cell (i, j) is centred at x[i], y[j] and has the value z[j * nx + i]; NaN cells are
+ * empty. With categories, z is an index into them; they are coloured by the palette and named in
+ * the key. */
 struct plot_heat {
     size_t nx, ny;
     const double *x, *y, *z;
@@ -59,25 +61,25 @@ struct plot_heat {
     bool log;          /* logarithmic colour scale */
     const char *const *categories;
     size_t category_count;
-    bool image;       /* cells are even on linear axes: drawn as an image, kept as a bare matrix */
-    bool diverging;   /* the middle of the colours is 0, and both signs reach equally far */
+    bool image;       /* equal cells on linear axes: drawn as an image, saved as a bare matrix */
+    bool diverging;   /* the middle of the colours is 0, with the same range for both signs */
     double low, high; /* of the colour scale; equal: from the data */
 };
 
 enum plot_key {
     PLOT_KEY_TOP, /* one key above the first panel */
-    PLOT_KEY_END, /* each curve is named at its right end */
+    PLOT_KEY_END, /* each curve is labelled at its right end */
     PLOT_KEY_NONE
 };
 
 struct plot_panel {
     const char *title;             /* or NULL */
-    const char *x_label, *y_label; /* with units; x_label of a stack is taken from the last panel */
-    bool own_x;                    /* begins a new stack with an x axis of its own */
-    bool equal;                    /* a unit is as long on both axes */
+    const char *x_label, *y_label; /* with units; a stack has the x_label of its last panel */
+    bool own_x;                    /* begins a new stack with its own x axis */
+    bool equal;                    /* equal scales on both axes */
     bool x_log, y_log;
     double x_min, x_max, y_min, y_max; /* min == max: from the data */
-    const double *x_ticks;             /* where log axes should have labels; NULL: automatic */
+    const double *x_ticks;             /* positions of labels on log axes; NULL: automatic */
     size_t x_tick_count;
     enum plot_key key;
     const struct plot_series *series;
@@ -90,41 +92,41 @@ struct plot_panel {
 };
 
 struct plot {
-    const char *name;  /* letters, digits, '_' and '-': prefixes ids, names the saved files */
-    const char *title; /* one line for people who cannot see it; also drawn if `show_title` */
+    const char *name;  /* letters, digits, '_' and '-': prefix of ids, name of saved files */
+    const char *title; /* one line, a text alternative; also drawn if `show_title` */
     bool show_title;
-    int width, height; /* pixels; 0: 560 and by the number of panels */
+    int width, height; /* pixels; 0: 560, and from the number of panels */
     const struct plot_panel
         *panels; /* stacked from top to bottom; two or more share their x axis (see own_x) */
     size_t panel_count;
-    bool beside; /* instead: panels from left to right, each with its own axes */
+    bool beside; /* panels from left to right, each with its own axes */
 };
 
-/* To start gnuplot takes several times as long as to draw; this one draws one plot after another.
- * {0}: it has not started. Each plot finds it as the first one did, and one that fails costs no
- * other. */
+/* A running gnuplot that draws one plot after another, since starting gnuplot takes several times
+ * as long as drawing. Starts as {0}: not running. Each plot starts from gnuplot's default state,
+ * and a failed plot does not affect others. */
 struct plot_pen {
     struct process gnuplot;
-    int script; /* a file without a name, which gnuplot has open as well; -1: there is none */
+    int script; /* an unnamed file, also open in gnuplot; -1: none */
     bool begun;
 };
 void plot_pen_free(struct plot_pen *pen);
 
 /* An <svg> element for inlining in HTML (no prolog, ids prefixed with the plot's name, colours by
- * the classes of style_css). *svg is malloced; on failure NULL, and message (of n bytes) says why.
- * pen: NULL for a gnuplot of its own. */
+ * the classes of style_css). *svg is malloced; NULL on failure, with the reason in message (n
+ * bytes). pen: NULL for a separate gnuplot. */
 enum plot_status plot_svg(struct plot_pen *pen, const struct plot *plot, char **svg, char *message,
                           size_t n);
 
 enum plot_format { PLOT_SVG, PLOT_PNG };
 
-/* The format that a path's ending (.svg, .png) asks for; false: neither. */
+/* The format for a path by its suffix (.svg, .png); false: neither. */
 bool plot_format_of(const char *path, enum plot_format *format);
 
-/* A picture that stands alone: size bytes, malloced. On failure *bytes is NULL. */
+/* A standalone picture of size bytes, malloced. On failure *bytes is NULL. */
 enum plot_status plot_draw(const struct plot *plot, enum plot_format format, char **bytes,
                            size_t *size, char *message, size_t n);
 
-/* What draws the plot again: `gnuplot NAME.gp` beside NAME.dat makes NAME.svg. Both malloced;
+/* The source of the plot: `gnuplot NAME.gp` next to NAME.dat makes NAME.svg. Both are malloced;
  * false: no memory. */
 bool plot_source(const struct plot *plot, char **script, char **data);

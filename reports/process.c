@@ -23,8 +23,8 @@ static void close_pair(int pair[2])
         if (pair[k] >= 0) close(pair[k]);
 }
 
-/* Descriptors 0..2 may be closed in this program (`sphproof ... >&-`): a pipe that lands there
- * would be overwritten by the child's dup2, so pipes are moved above them. */
+/* Descriptors 0..2 may be closed in this program (`sphproof ... >&-`). The child's dup2 would
+ * overwrite a pipe there, so pipes are moved above them. */
 static bool make_pipe(int pair[2])
 {
     if (pipe(pair)) return false;
@@ -36,7 +36,7 @@ static bool make_pipe(int pair[2])
     return pair[0] >= 0 && pair[1] >= 0;
 }
 
-/* posix_spawn rather than fork: this process may hold OpenMP threads. Returns an errno. */
+/* posix_spawn, not fork, since this process may have OpenMP threads. Returns an errno. */
 static int start(struct process *child, char *const argv[], int file, const sigset_t *mask)
 {
     int in[2] = {-1, -1}, out[2] = {-1, -1}, err[2] = {-1, -1};
@@ -78,7 +78,7 @@ static int start(struct process *child, char *const argv[], int file, const sigs
     return code;
 }
 
-/* Reads what is there; closes the descriptor at its end. */
+/* Reads the available data; closes the descriptor at the end of the file. */
 static void drain(int *descriptor, struct buffer *into)
 {
     char buffer[65536];
@@ -91,7 +91,7 @@ static void drain(int *descriptor, struct buffer *into)
     }
 }
 
-/* Takes the mark away from the end of the output, if it is there. */
+/* Removes the mark from the end of the output; false: not there yet. */
 static bool marked(struct buffer *output, const char *mark)
 {
     const size_t n = strlen(mark);
@@ -103,8 +103,8 @@ static bool marked(struct buffer *output, const char *mark)
 
 enum turn { ANSWERED, ENDED, OUT_OF_TIME };
 
-/* Writes and reads at once, so that neither side waits for the other, up to the mark. Without one
- * the program is told that this is all, and read to its end. */
+/* Writes and reads simultaneously, so that neither side blocks the other, until the mark. Without a
+ * mark closes the input and reads to the end. */
 static enum turn converse(struct process *child, const char *input, size_t size, const char *mark,
                           double end_time, struct buffer *output, struct buffer *errors)
 {
@@ -138,7 +138,7 @@ static enum turn converse(struct process *child, const char *input, size_t size,
     return ENDED;
 }
 
-/* Waits for its end; returns how it ended. */
+/* Waits for the process to end; returns its wait status. */
 static int end(struct process *child)
 {
     int *ends[] = {&child->in, &child->out, &child->err};
@@ -198,7 +198,7 @@ enum process_status process_ask(struct process *process, char *const argv[], int
             status = PROCESS_FAILED;
         }
     }
-    /* A SIGPIPE that our own write raised is taken away before the mask is restored. */
+    /* Removes a SIGPIPE that our own write raised before the mask is restored. */
     sigpending(&pending);
     int taken;
     if (!was_pending && sigismember(&pending, SIGPIPE)) sigwait(&pipe_signal, &taken);
@@ -210,7 +210,7 @@ enum process_status process_ask(struct process *process, char *const argv[], int
 void process_end(struct process *process)
 {
     if (!process->pid) return;
-    kill(process->pid, SIGKILL); /* it may wait for ever */
+    kill(process->pid, SIGKILL); /* it may never end by itself */
     end(process);
 }
 

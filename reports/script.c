@@ -8,7 +8,7 @@
 #include "layout.h"
 #include "style.h"
 
-/* In single quotes gnuplot interprets nothing; a quote is doubled. */
+/* Writes a string in single quotes, in which gnuplot interprets nothing; a quote is doubled. */
 static void quote(struct buffer *to, const char *string)
 {
     buffer_add(to, "'");
@@ -37,7 +37,7 @@ static double edge(const double *centres, size_t n, size_t i, int side, bool log
     return inside ? centres[i] + half : centres[i] - half;
 }
 
-/* One line a row of cells, from the bottom to the top. */
+/* Writes one line per row of cells, from bottom to top. */
 static void image_data(struct buffer *to, const struct plot_heat *heat)
 {
     buffer_format(to, "# %zu rows of %zu cells\n", heat->ny, heat->nx);
@@ -45,7 +45,7 @@ static void image_data(struct buffer *to, const struct plot_heat *heat)
         for (size_t i = 0; i < heat->nx; i++) {
             const double z = heat->z[j * heat->nx + i];
             if (isfinite(z))
-                buffer_format(to, " %.6g", z); /* more than colours show */
+                buffer_format(to, " %.6g", z); /* more digits than colours can show */
             else
                 buffer_add(to, " NaN");
         }
@@ -119,7 +119,7 @@ static const char *superscript(char *buffer, int exponent)
     return buffer;
 }
 
-/* Labels at decades; at 1, 2, 5 where there are few decades; powers where numbers get long. */
+/* Labels at decades; at 1, 2, 5 if there are few decades; as powers if numbers get long. */
 static void log_ticks(struct buffer *to, const struct layout_axis *axis, const double *ticks,
                       size_t n)
 {
@@ -154,7 +154,7 @@ static void log_ticks(struct buffer *to, const struct layout_axis *axis, const d
     buffer_add(to, ")");
 }
 
-/* 1, 2 or 5 times a power of ten, so that a linear axis gets at most `most` steps. */
+/* 1, 2 or 5 times a power of ten, so that a linear axis has at most `most` steps. */
 static double tick_step(const struct layout_axis *range, double most)
 {
     double rough = (range->max - range->min) / most, power = pow(10, floor(log10(rough)));
@@ -178,7 +178,7 @@ static void axis(struct buffer *to, char which, const struct layout_axis *range,
                   which, labelled ? "%g" : "");
 }
 
-/* The names of the axes stand at fixed places, whatever the length of the numbers. */
+/* Axis names have fixed positions, whatever the length of the numbers. */
 static void axis_names(struct buffer *to, const struct layout *layout, size_t p,
                        const struct plot_panel *panel, bool last)
 {
@@ -254,11 +254,11 @@ static void end_labels(struct buffer *to, const struct layout *layout, size_t p,
     }
 }
 
-/* viridis, five stops: even in lightness, so it reads in grey too. */
+/* viridis, five stops: uniform in lightness, so that it works in grey. */
 static const char *const viridis =
     "set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\n";
 
-/* Blue, white, red: 0 is white; even in lightness to both sides. */
+/* Blue, white, red: 0 is white; uniform in lightness on both sides. */
 static const char *const blue_to_red =
     "set palette defined (0 '#2166ac', 1 '#92c5de', 2 '#f7f7f7', 3 '#f4a582', 4 '#b2182b')\n";
 
@@ -303,7 +303,7 @@ static void curve(struct buffer *to, const struct plot_series *series, const cha
     const char *color = style_series(series->color, next);
     int shape = shapes[(series->color > 0 ? series->color - 1 : next > 0 ? next - 1 : 0) % 7];
     double size = series->size > 0 ? series->size : 1;
-    if (size < 1) shape = shapes[0]; /* particles: dots, which svg.c packs */
+    if (size < 1) shape = shapes[0]; /* particles: dots, which svg.c combines */
     double width = series->color == PLOT_NEUTRAL ? 1.4 : 2;
     const char *dash = series->dashed ? "(8,5)" : "solid";
     buffer_format(to, "%s index %zu ", data, index);
@@ -346,8 +346,8 @@ static void curve(struct buffer *to, const struct plot_series *series, const cha
     }
 }
 
-/* Ticks of a colour bar of so many pixels; those of a low one are as far apart as its labels ask
- * for. */
+/* Ticks of a colour bar of this height; on a low bar their distance follows from the height of the
+ * labels. */
 static void color_ticks(struct buffer *to, const struct plot_heat *heat, double pixels)
 {
     const double label = 1.5 * LAYOUT_FONT;
@@ -393,7 +393,8 @@ static void panel_script(struct buffer *to, const struct plot *plot, const struc
 {
     const struct plot_panel *panel = &plot->panels[p];
     const struct layout_panel *at = &layout->panels[p];
-    bool last = plot->beside || p + 1 == plot->panel_count || panel[1].own_x; /* of its stack */
+    bool last =
+        plot->beside || p + 1 == plot->panel_count || panel[1].own_x; /* last of its stack */
     const char *ink = style_colors[STYLE_plot_ink].light;
     buffer_add(to, "\nunset arrow\nunset label\n");
     buffer_format(to, "set lmargin at screen %.5f\nset rmargin at screen %.5f\n",

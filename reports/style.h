@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The colours of plots: Okabe and Ito's colour-blind-safe palette, shifted a little so that each
- * has enough contrast as text; one column for light paper, one for dark. Internal to plots. */
+ * Colours of plots: the colour-blind-safe palette of Okabe and Ito, adjusted so that each has
+ * enough contrast as text; one column for light and one for dark backgrounds. Internal to plots. */
 #pragma once
 
-/* STYLE(css class, colour on light, colour on dark): the first is the text colour, `currentColor`
- * in a page; then axes and grid; then the palette in order. */
+/* STYLE(css class, colour on light, colour on dark): first the text colour, `currentColor` in a
+ * page; then axes and grid; then the palette in order. */
 #define STYLE_LIST(STYLE)                                                                          \
     STYLE(plot_ink, "#1b1f24", "#e6e8eb")                                                          \
     STYLE(plot_axis, "#8a9099", "#7d848e")                                                         \
@@ -30,8 +30,8 @@ struct style_color {
 
 extern const struct style_color style_colors[STYLE_COUNT];
 
-/* Light colour of plot_series.color (`next`: what PLOT_AUTO stands for here). */
+/* Light colour for plot_series.color; next: the colour for PLOT_AUTO. */
 const char *style_series(int color, int next);
 
-/* The style sheet that gives inlined plots their colours in light and dark. */
+/* The style sheet with the colours of inlined plots in light and dark. */
 const char *style_css(void);

@@ -37,7 +37,7 @@ static const char *skip_space(const char *c)
     return c;
 }
 
-/* Parses the tag that starts at c ('<'); returns what follows it, NULL if it is malformed. */
+/* Parses the tag that starts at c ('<'); returns the text after it, NULL if malformed. */
 static const char *parse(const char *c, struct tag *tag)
 {
     *tag = (struct tag){0};
@@ -67,7 +67,7 @@ static const char *parse(const char *c, struct tag *tag)
     return *c == '>' ? c + 1 : NULL;
 }
 
-/* The style of a paint: "black", "rgb(0,114,178)", "#0072b2"; STYLE_COUNT if it is none. */
+/* The style of a paint: "black", "rgb(0,114,178)", "#0072b2"; STYLE_COUNT: none. */
 static int style_of(struct slice paint)
 {
     if (is(paint, "black")) return STYLE_plot_ink;
@@ -91,7 +91,7 @@ static void put(struct buffer *to, const char *name, struct slice value)
     buffer_add(to, "\"");
 }
 
-/* One attribute; a paint of the style becomes currentColor and leaves its style in *color. */
+/* Writes an attribute. A paint of the style becomes currentColor, and *color its style. */
 static void put_attribute(struct buffer *to, const struct attribute *attribute, const char *prefix,
                           int *color)
 {
@@ -100,7 +100,7 @@ static void put_attribute(struct buffer *to, const struct attribute *attribute, 
     int style = paint || is(name, "color") ? style_of(value) : STYLE_COUNT;
     if (is(name, "color")) {
         if (style < STYLE_COUNT && style != STYLE_plot_ink) *color = style;
-        return; /* the ink is inherited from the page; white is only ever a halo */
+        return; /* the text colour is inherited from the page; white is used only for halos */
     }
     if (is(name, "font-family") || is(name, "class")) return;
     if (paint && style < STYLE_COUNT) {
@@ -111,7 +111,7 @@ static void put_attribute(struct buffer *to, const struct attribute *attribute, 
         buffer_format(to, " id=\"%s-%.*s\"", prefix, (int)value.n, value.at);
     } else if (is(name, "xlink:href") && value.n && value.at[0] == '#') {
         buffer_format(to, " href=\"#%s-%.*s\"", prefix, (int)value.n - 1, value.at + 1);
-    } else if (is(name, "xlink:href")) { /* an image, with its bytes */
+    } else if (is(name, "xlink:href")) { /* an image with its data */
         put(to, "href", value);
         buffer_add(to, " style=\"image-rendering:pixelated\"");
     } else {
@@ -146,8 +146,9 @@ static void put_root(struct buffer *to, const struct tag *tag, const char *prefi
     buffer_add(to, "</title>\n");
 }
 
-/* Particles: gnuplot writes a filled circle as a <use> of some hundred bytes. A run of them in one
- * size and colour becomes one path of dots, zero-length segments with round caps, of a tenth. */
+/* Particles: gnuplot writes a filled circle as a <use> of some hundred bytes. A sequence of circles
+ * of one size and colour becomes one path of dots (zero-length segments with round caps), a tenth
+ * as long. */
 struct dots {
     bool open;
     double scale;
@@ -174,7 +175,7 @@ static void end_dots(struct buffer *to, struct dots *dots)
     dots->open = false;
 }
 
-/* True: the tag was a dot and has been written. */
+/* Returns true if the tag was a dot, and writes it. */
 static bool put_dot(struct buffer *to, const struct tag *tag, struct dots *dots)
 {
     struct dots now = {.open = true};
@@ -193,12 +194,12 @@ static bool put_dot(struct buffer *to, const struct tag *tag, struct dots *dots)
     return true;
 }
 
-/* Groups: those without content are not written; where each started is kept to take it back. */
+/* Open groups. Empty groups are removed, for which the start of each is recorded. */
 enum { DEPTH = 32 };
 
 struct groups {
-    size_t start[DEPTH];   /* of the tag in the text */
-    size_t content[DEPTH]; /* just behind it */
+    size_t start[DEPTH];   /* position of the tag in the text */
+    size_t content[DEPTH]; /* position after the tag */
     size_t depth;
 };
 
@@ -223,7 +224,7 @@ bool svg_adapt(struct buffer *to, const char *raw, const char *prefix, const cha
     struct tag tag;
     struct dots dots = {0};
     while (*c) {
-        if (*c != '<') { /* text content matters only in <text>, where tags have put it */
+        if (*c != '<') { /* text content matters only in <text>, whose tags put it in place */
             const char *end = strchr(c, '<');
             size_t n = end ? (size_t)(end - c) : strlen(c);
             if (skip_space(c) < c + n) buffer_add_bytes(to, c, n);

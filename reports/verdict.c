@@ -11,7 +11,7 @@
 
 enum { STATUSES = FINDING_SKIP + 1 };
 
-/* How many findings came to what. */
+/* Number of findings by status. */
 struct tally {
     int checks[STATUSES], gates[STATUSES], runs[STATUSES], faults[STATUSES];
 };
@@ -34,8 +34,8 @@ static struct tally count(const struct findings *findings)
     return tally;
 }
 
-/* "271 judged, 30 too coarse to judge, 2 undetermined, 6 known weaknesses": of orders and errors of
- * runs. */
+/* Writes "271 judged, 30 too coarse to judge, 2 undetermined, 6 known weaknesses" for the orders
+ * and errors of runs. */
 static void gates_words(struct buffer *to, const struct tally *tally)
 {
     const int *gates = tally->gates;
@@ -49,13 +49,13 @@ static void gates_words(struct buffer *to, const struct tally *tally)
                       gates[FINDING_KNOWN] == 1 ? "" : "es");
 }
 
-/* The number of failures and the first one: its name and, if it is a check, its subject. */
+/* Writes the number of failures and the first one: its name and, for a check, its subject. */
 static void headline(struct buffer *to, const struct tally *tally, const json_t *failures)
 {
     size_t count = json_array_size(failures);
     const json_t *first = json_array_get(failures, 0);
     const char *area = value_text(first, "area"), *subject = value_text(first, "subject");
-    /* these names say what they are about */
+    /* these names need no area */
     bool plain = !strcmp(area, "check") || !strcmp(area, "convergence") || !strcmp(area, "budget");
     if (!count) {
         const bool all = !tally->gates[FINDING_SMOKE] && !tally->gates[FINDING_UNDETERMINED] &&
@@ -70,10 +70,11 @@ static void headline(struct buffer *to, const struct tally *tally, const json_t 
     }
     buffer_format(to, "%zu %s%s%s%s", count, count == 1 ? "failure: " : "failures; look first at ",
                   plain ? "" : area, plain ? "" : " ", value_text(first, "name"));
-    if (strstr(subject, "broke down")) return; /* it says where, not of what */
+    if (strstr(subject, "broke down"))
+        return; /* the message has the position, but not the subject */
     enum { LONGEST = 64 };
     size_t length = strlen(subject), whole = length;
-    if (length > LONGEST) /* to the end of a word */
+    if (length > LONGEST) /* cut at the end of a word */
         for (length = LONGEST; length && subject[length] != ' ';) length--;
     if (length && subject[length - 1] == ',') length--;
     if (length) buffer_format(to, " (%.*s%s)", (int)length, subject, length < whole ? " …" : "");
