@@ -107,6 +107,7 @@ enum status hdf5_header(const struct snapshot_source *source, struct snapshot_fi
     static const char *const dims[] = {"Header:Dimension", "HydroScheme:Dimension", NULL};
     static const char *const parts[] = {"Header:NumFilesPerSnapshot", NULL};
     static const char *const counts[] = {"Header:NumPart_ThisFile", NULL};
+    static const char *const totals[] = {"Header:NumPart_Total", NULL};
     file->time = hdf5_first(source, times, NULL);
     const struct snapshot_value dim = hdf5_first(source, dims, NULL),
                                 part = hdf5_first(source, parts, NULL),
@@ -127,6 +128,7 @@ enum status hdf5_header(const struct snapshot_source *source, struct snapshot_fi
                          "%.200s: Header/NumFilesPerSnapshot = %g; allowed: 1 to %d", source->path,
                          part.value, SNAPSHOT_PARTS_MAX);
     file->parts = part.known ? (int)part.value : 1;
+    file->total = hdf5_first(source, totals, NULL).value;
     if (dim.known && dim.value >= 1 && dim.value <= 3) file->dim = (int)dim.value;
     take_box(source, file);
     return take_masses(source, file, error);

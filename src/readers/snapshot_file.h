@@ -55,6 +55,7 @@ struct snapshot_file {
     double corner[3];
     char case_name[256], boundary[64], keys[1024]; /* from snapshots of ours, else "" */
     int parts, part; /* number of files of the snapshot; index of this file */
+    double total;    /* gas particles in all files by the header; 0: not given */
     char kernel[48]; /* name of the kernel in the file, or "" */
     double ratio;    /* support radius over h if stated in the file, else 0 */
     struct snapshot_notes notes;

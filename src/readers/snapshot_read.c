@@ -230,6 +230,11 @@ static enum status read_parts(const char *path, const struct snapshot_options *o
         snprintf(value, sizeof value, "%d", file->parts);
         snapshot_note(&file->notes, "files", value, "the header says so; read as one");
     }
+    if (file->total > 0 && file->total != (double)file->n)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: Header/NumPart_Total says %.0f gas particles, and %s %zu: a part "
+                         "is missing, or the file is damaged",
+                         path, file->total, file->parts > 1 ? "all parts have" : "it has", file->n);
     return STATUS_OK;
 }
 

@@ -77,6 +77,35 @@ TEST(every_order)
         }
 }
 
+/* The header's total is that of all parts; 0, or none, says nothing. */
+TEST(totals)
+{
+    for (int parts = 1; parts <= 2; parts++)
+        for (int off = -1; off <= 2; off++) {
+            struct snapshot_file file;
+            struct error error;
+            struct item items[ITEMS_MAX];
+            const int all = parts == 1 ? N : 2 * N - 1;
+            char name[32];
+            for (int k = 0; k < parts; k++) {
+                part(k, parts, items);
+                struct item *total = &items[gadget->count];
+                for (size_t i = 0; i < gadget->count; i++)
+                    if (gadget->fields[i].meaning == COUNT) *total = items[i];
+                snprintf(total->path, sizeof total->path, "Header/NumPart_Total");
+                total->values[0] = off == 2 ? 0 : all + off;
+                snprintf(name, sizeof name, "t.%d", k);
+                write_items(path_of(name), items, gadget->count + 1);
+            }
+            const enum status status = read_parts("t.0", &file, &error);
+            assert_int_equal(status, off == 0 || off == 2 ? STATUS_OK : STATUS_BAD_INPUT);
+            if (status)
+                assert_non_null(
+                    strstr(error.message, parts == 1 ? "and it has" : "all parts have"));
+            snapshot_file_free(&file);
+        }
+}
+
 /* Any of two parts has one item otherwise: they are not joined. */
 TEST(other_headers)
 {
