@@ -22,7 +22,7 @@
 #include "table.h"
 #include "text.h"
 
-enum { WORDS_MAX = 64, FIGURES_MAX = FIELDS + PROBLEM_FUNCTIONALS_MAX, DRAWS = 5 };
+enum { WORDS_MAX = 64, FIGURES_MAX = FIELDS + PROBLEM_FUNCTIONALS_MAX, DRAWS = 5, TIMED_DRAWS = 4 };
 #define LEVEL 0.05 /* of all figures together */
 
 /* One of the two. */
@@ -338,7 +338,7 @@ static void conclude(struct comparison *c)
         timed = timed && isfinite(ratio[r]);
     }
     list_sort(ratio, c->draws);
-    c->cpu = timed ? ratio[c->draws / 2] : (double)NAN;
+    c->cpu = timed ? 0.5 * (ratio[(c->draws - 1) / 2] + ratio[c->draws / 2]) : (double)NAN;
     c->cpu_low = timed ? ratio[0] : (double)NAN;
     c->cpu_high = timed ? ratio[c->draws - 1] : (double)NAN;
     for (size_t v = 0; v < PAIRED_VERDICTS; v++) {
@@ -354,7 +354,7 @@ static void conclude(struct comparison *c)
         }
     }
     say(text, size, " (%zu draw%s)", c->draws, c->draws == 1 ? "" : "s");
-    if (c->cpu_low > 1 || c->cpu_high < 1)
+    if (c->draws >= TIMED_DRAWS && (c->cpu_low > 1 || c->cpu_high < 1))
         say(text, size, "; b takes %.2g times the CPU time (%.2g to %.2g)", c->cpu, c->cpu_low,
             c->cpu_high);
 }
