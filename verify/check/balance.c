@@ -9,7 +9,7 @@
 
 #include "worst.h"
 
-enum { LAWS = 3, POINTS = 64 }; /* GSL keeps its own 27 digits of the 64 point rule */
+enum { LAWS = 3, POINTS = 64 }; /* GSL tabulates the 64-point rule to 27 digits */
 
 /* Densities and fluxes of mass, momentum and energy (Toro eq. 3.2). */
 static void conserved(double gamma, struct riemann_state s, double U[LAWS], double F[LAWS])
@@ -27,11 +27,11 @@ static void conserved(double gamma, struct riemann_state s, double U[LAWS], doub
 struct side {
     const struct flow *flow;
     const struct flow_paths *paths;
-    double fixed; /* the time, or the place */
+    double fixed; /* the time, or the position */
     bool in_time;
 };
 
-/* The ends and the kinks between them, in order; their number. */
+/* Writes the ends and the kinks between them, sorted; returns their number. */
 static size_t break_points(const struct side *side, const double range[2], double *points)
 {
     const struct flow_paths *paths = side->paths;

@@ -15,8 +15,8 @@ struct flow {
     double gamma;
 };
 
-/* Where the flow is not smooth: on the lines x = x0 + speeds[i] t. NaN and infinite speeds are
- * ignored. At most BALANCE_PATHS. */
+/* The lines x = x0 + speeds[i] t on which the flow is not smooth. Ignores NaN and infinite speeds.
+ * At most BALANCE_PATHS. */
 struct flow_paths {
     double x0;
     const double *speeds;
@@ -25,8 +25,8 @@ struct flow_paths {
 enum { BALANCE_PATHS = 16 };
 
 /* |change of content + net outflow| of mass, momentum and energy over [x[0], x[1]] x [t[0], t[1]],
- * the worst of the three, each relative to the sum of the magnitudes that went into it. NaN: no
- * memory, more paths, or the flow has a NaN. */
+ * the worst of the three, each relative to the sum of the magnitudes of its terms. NaN: no memory,
+ * too many paths, or the flow has a NaN. */
 double balance_defect(const struct flow *flow, const double x[2], const double t[2],
                       const struct flow_paths *paths);
 

@@ -14,7 +14,7 @@
 #include "sedov.h"
 #include "worst.h"
 
-/* Velocity outwards and along the circle. */
+/* Radial (v) and azimuthal (along) velocity. */
 struct radial_state {
     double rho, v, along, P;
 };
@@ -26,15 +26,15 @@ struct radial {
     int d;
     double a, b;
     struct sedov sedov;
-    double t[2]; /* looked at from .. to */
+    double t[2]; /* first and last time */
     void (*at)(const struct radial *flow, double r, double t, struct radial_state *state);
     double (*shock)(const struct radial *flow, double t); /* or the edge of the gas */
 };
 
 struct blast_subject {
-    const char *fault_of; /* of which flow; NULL: all */
+    const char *fault_of; /* the flow that it changes; NULL: all */
     void (*spoil)(const struct radial *flow, double r, double t, struct radial_state *state);
-    double energy; /* of a blast, in place of the right one */
+    double energy; /* replaces the energy of a blast */
 };
 
 static void sedov_at(const struct radial *flow, double r, double t, struct radial_state *state)
@@ -91,8 +91,8 @@ static double energy_of(const struct ball *ball, const struct radial_state *s)
     return 0.5 * s->rho * (s->v * s->v + s->along * s->along) + s->P / (ball->flow->gamma - 1);
 }
 
-/* Content of lo < r < hi at t over the unit sphere's surface. r - lo rises with the fourth power of
- * what is summed over: fractional powers of r become whole ones. */
+/* Content of lo < r < hi at t over the unit sphere's surface. r - lo is the fourth power of the
+ * integration variable, which turns fractional powers of r into whole ones. */
 static void add_content(const struct ball *ball, double lo, double hi, double t,
                         double sum[CONSERVED])
 {
@@ -117,7 +117,7 @@ static void find_content(const struct ball *ball, double r, double t, double sum
     if (front < r) add_content(ball, front, r, t, sum);
 }
 
-/* What has flowed out through the sphere of radius r, which no shock passes meanwhile. */
+/* Outflow through the sphere of radius r, which no shock crosses in that time. */
 static void find_outflow(const struct ball *ball, double r, double sum[CONSERVED])
 {
     const double area = pow(r, ball->flow->d - 1), *t = ball->flow->t;
@@ -133,7 +133,7 @@ static void find_outflow(const struct ball *ball, double r, double sum[CONSERVED
     }
 }
 
-/* |change + outflow| over what has come together, the worst of the three. */
+/* |change + outflow| over the sum of the sizes, the worst of the three. */
 static double balance_of(const struct ball *ball, double r)
 {
     double before[CONSERVED], after[CONSERVED], out[CONSERVED], worst = 0;
@@ -200,8 +200,7 @@ static bool concerns(const struct blast_subject *subject, const char *name)
     return !subject || strcmp(subject->fault_of, name) == 0;
 }
 
-/* R = 1 at t = 1 of E/rho = xi0^-(d+2), beside the constants of Sedov's and Kamm & Timmes's tables.
- */
+/* E/rho = xi0^-(d+2) with R = 1 at t = 1, against the tables of Sedov and of Kamm & Timmes. */
 static void measure_constants(struct check_run *run, const struct blast_subject *subject)
 {
     static const struct {
@@ -219,8 +218,8 @@ static void measure_constants(struct check_run *run, const struct blast_subject 
     }
 }
 
-/* gamma = 7 in 3D (Primakoff): v is proportional to r, P to r^3 and rho to r. Beside it the
- * profile differs by as much as gamma does. */
+/* gamma = 7 in 3D (Primakoff): v is proportional to r, P to r^3 and rho to r. For gamma close to 7
+ * the profile differs by the difference in gamma. */
 static void measure_primakoff(struct check_run *run, const struct blast_subject *subject)
 {
     struct radial flow = {.name = "sedov", .gamma = 7 - 1e-7, .d = 3};
@@ -258,9 +257,8 @@ static double pressure_at(double r, const struct sedov_state *s)
     return s->P;
 }
 
-/* Of balls inside and outside of the front: all energy; and mass, which is (1 - v R/(r D)) times
- * what the density at the edge would fill, as the ball that grows with the shock keeps its share.
- */
+/* Integrals over balls inside and outside the front: the total energy; and the mass, which by
+ * self-similarity is (1 - v R/(r D)) times the edge density times the volume. */
 static void measure_integrals(struct check_run *run, const struct radial *flow)
 {
     const struct sedov *sedov = &flow->sedov;

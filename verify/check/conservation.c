@@ -26,7 +26,7 @@ static void right_subjects(struct check_run *run)
     for (size_t i = 0; i < sizeof right / sizeof *right; i++) check_subject(run, &right[i], 0);
 }
 
-/* One of each operator: mean pair gradients do not know of the formulation. */
+/* One subject per operator: mean pair gradients do not depend on the formulation. */
 static void right_gradients(struct check_run *run)
 {
     for (size_t i = 0; i < sizeof right / sizeof *right; i++)
@@ -87,9 +87,8 @@ CHECK_DEFINE(
 
 /* ---- antisymmetry ---- */
 
-/* The mean pair gradient of (i, j) against that of (j, i) in the mirror image of the cloud, where
- * it must be the same; the mirror only makes the sums round differently. In units of the last
- * place. */
+/* The mean pair gradient of (i, j) against that of (j, i) in the mirror image of the cloud. They
+ * must be equal; the mirror only changes the rounding of the sums. In units in the last place. */
 static double antisymmetry(const struct pair_forces_subject *subject, int dim, double *condition)
 {
     struct kernel kernel;
@@ -117,7 +116,7 @@ static double antisymmetry(const struct pair_forces_subject *subject, int dim, d
                 worst_keep(&size, fabs(s->G[i][j][a]) + fabs(s->G[j][i][a]));
                 worst_keep(&sum, fabs((s->G[i][j][a] + other) - (t->G[l][k][a] + back)));
             }
-            if (size == 0) continue; /* out of reach of each other */
+            if (size == 0) continue; /* not neighbours */
             worst_keep(&worst, sum / size);
             pairs++;
         }
@@ -153,8 +152,8 @@ CHECK_DEFINE(conservation, antisymmetry, 304, .says = "pair gradients are not an
 
 /* ---- defects: what is not conserved, and by how much ---- */
 
-/* linear_exact must not conserve momentum, ia not angular momentum in 2D and 3D: if they do, the
- * thing measured is not that operator. */
+/* linear_exact must not conserve momentum, nor ia angular momentum in 2D and 3D: otherwise the
+ * check measures a different operator. */
 static void measure_defects(struct check_run *run, const void *subject)
 {
     static const struct pair_forces_subject exact = {

@@ -43,8 +43,9 @@ static struct riemann_state tube_at(const void *context, double x, double t)
     return tube->solver->sample(&tube->solution, x, x0, t);
 }
 
-/* Solves, and gives the paths of the waves; the fastest of them crosses length 0.8 until the time
- * returned (NaN: no solution). The paths are those of the right solution: a wrong one may lie. */
+/* Solves the problem and returns the time until which the fastest wave has crossed a length of 0.8
+ * (NaN: no solution). speeds: wave speeds of the right solution, because a wrong one may report
+ * wrong ones. */
 static double tube_prepare(struct tube_flow *flow, const struct riemann_problem *p,
                            double speeds[5])
 {
@@ -62,7 +63,7 @@ static double tube_prepare(struct tube_flow *flow, const struct riemann_problem 
 
 static void measure_balance(struct check_run *run, const void *subject)
 {
-    /* all waves inside; through the waves; beside the diaphragm, on either side */
+    /* all waves inside; across the waves; on either side of the diaphragm */
     static const double windows[][2] = {{-1, 1}, {-0.3, 0.25}, {0.05, 0.6}, {-0.5, -0.1}};
     for (size_t i = 0; i < TUBES; i++) {
         struct tube_flow flow = {.solver = subject ? subject : &riemann_reference};
@@ -162,7 +163,8 @@ static struct riemann_state wave_at(const void *context, double x, double t)
     return (struct riemann_state){s.rho, s.v, s.P};
 }
 
-/* When neighbouring characteristics first meet, from their speeds at t = 0 on a fine grid. */
+/* Time at which neighbouring characteristics first cross, from their speeds at t = 0 on a fine
+ * grid. */
 static double first_crossing(const struct wave_subject *subject, const struct simple_wave *wave)
 {
     enum { GRID = 4000 };
@@ -200,7 +202,7 @@ static void measure_wave(struct check_run *run, const void *subject)
             worst_keep(&start, fabs(s.rho / rho - 1));
             worst_keep(&start, fabs(s.P / (wave->P0 * pow(rho / wave->rho0, wave->gamma)) - 1));
         }
-        /* in time slices short against a wave's passage */
+        /* time slices that are short compared with a wave's passage */
         for (int slice = 0; slice < 4; slice++) {
             const double passage = fmin(L / (fabs(wave->v0) + c0), end - t[0]);
             const double from = t[0] + (end - t[0] - passage) * slice / 3;
@@ -229,7 +231,7 @@ static struct simple_wave_state wave_rigid(const struct simple_wave *wave, doubl
     return simple_wave_sample(wave, x - (wave->v0 + c0) * t, 0);
 }
 
-/* Values that travel with a v + b c. */
+/* State whose values travel at a v + b c. */
 static struct simple_wave_state carried(const struct simple_wave *wave, double x, double t,
                                         double a, double b)
 {

@@ -102,7 +102,7 @@ static struct order_extrapolation absolute_ratio(const double spacing[3], const 
     return order_extrapolate(spacing, value[1] > value[0] ? mirrored : value, exact);
 }
 
-/* The coarse pair's change over the fine pair's ratio. */
+/* Mutant: the change of the coarse pair with the ratio of the fine pair. */
 static struct order_extrapolation coarse_as_fine(const double spacing[3], const double value[3],
                                                  double exact)
 {

@@ -23,7 +23,7 @@ struct flow_subject {
                    struct problem_state *state);
 };
 
-/* The problem's gas is not quite cold, which no exact solution knows. */
+/* The problem's gas has a small pressure, which the exact solution neglects. */
 static void noh_without_pressure(const struct prepared *p, const double x[3], double t,
                                  struct problem_state *state)
 {
@@ -58,7 +58,7 @@ static void add_flows(struct check_run *run)
 
 enum { CONSERVED = 5, POINTS = 200 };
 
-/* Densities of what is conserved, and their fluxes along an axis. */
+/* Densities of the conserved quantities, and their fluxes along an axis. */
 static void conserved(const struct problem_state *s, double U[CONSERVED])
 {
     U[0] = s->rho;
@@ -77,8 +77,7 @@ static void fluxes(const struct problem_state *s, int axis, double F[CONSERVED])
     F[1 + axis] += s->P;
 }
 
-/* The change of U (axis -1) or F over a unit of time or length: central differences of fourth
- * order. */
+/* Derivative of U in time (axis -1) or of F along an axis: fourth-order central differences. */
 static void derivative(const struct flow_subject *flow, const struct prepared *p, const double x[3],
                        double t, int axis, double step, double D[CONSERVED])
 {
@@ -97,8 +96,8 @@ static void derivative(const struct flow_subject *flow, const struct prepared *p
     }
 }
 
-/* Is x near a shock, the edge of a disc, or the middle, where speeds jump or pressure is all; or
- * beyond all gas? */
+/* True if x is near a shock, the edge of a disc or the centre, where derivatives jump or the
+ * pressure dominates, or outside all gas. */
 static bool near_front(const struct prepared *p, const double x[3], double t)
 {
     const double r = problem_radius(p, x), far = 0.02 * domain_length(&p->domain, 0);
@@ -119,7 +118,7 @@ static bool near_kink(const struct prepared *p, const double x[3], double t)
         const double length = domain_length(&p->domain, d);
         const double away = x[d] - p->boost[d] * t - p->window.centre[d];
         const double nearest = away - length * round(away / length);
-        /* and images of smooth vortices meet at the edge of the box */
+        /* periodic images of smooth vortices meet at the edge of the box */
         if (fabs(nearest) > 0.48 * length && p->problem->circular) return true;
         R2 += nearest * nearest;
     }
@@ -127,7 +126,7 @@ static bool near_kink(const struct prepared *p, const double x[3], double t)
     return fabs(R - 0.2) < 0.02 || fabs(R - 0.4) < 0.02;
 }
 
-/* Residual of all equations at a point, over the terms that it is the sum of. */
+/* Largest residual of all equations at a point, relative to the sum of the sizes of their terms. */
 static double residual(const struct flow_subject *flow, const struct prepared *p, const double x[3],
                        double t)
 {
@@ -147,7 +146,8 @@ static double residual(const struct flow_subject *flow, const struct prepared *p
             size[k] += fabs(D[k]);
         }
     }
-    /* where nothing changes there is only round-off: terms are at least a part of c U/length */
+    /* where the flow is uniform only round-off is left: terms are at least a fraction of c
+     * U/length */
     const double current = state.rho * fastest;
     const double floors[CONSERVED] = {state.rho, current, current, current, current * fastest};
     for (int k = 0; k < CONSERVED; k++)
@@ -168,13 +168,14 @@ static void measure_flow(struct check_run *run, const void *subject)
         ready = !settings_apply(&file.settings, 1, &key, &error);
     ready = ready && !problem_prepare(&p, &file.settings, file.dimension, &error);
     double worst = ready ? 0 : (double)NAN;
-    /* multiples of irrational numbers: nowhere on a symmetry */
+    /* multiples of irrational numbers avoid symmetric points */
     static const double steps[3] = {0.7548776662466927, 0.5698402909980532, 0.3819660112501051};
     for (int i = 1; ready && i <= POINTS; i++) {
         double x[3] = {0};
         for (int d = 0; d < file.dimension; d++)
             x[d] = p.domain.lo[d] + fmod(i * steps[d], 1) * domain_length(&p.domain, d);
-        const double t = 0.01 + 0.1 * fmod(i * 0.6180339887498949, 1); /* differences look back */
+        const double t =
+            0.01 + 0.1 * fmod(i * 0.6180339887498949, 1); /* differences also use earlier times */
         if (!near_kink(&p, x, t) && !near_front(&p, x, t))
             worst_keep(&worst, residual(flow, &p, x, t));
     }
@@ -201,7 +202,7 @@ static void yee_temperature(const struct prepared *p, const double x[3], double 
     state->u = T / (p->gamma - 1);
 }
 
-/* The boost without the motion that goes with it. */
+/* Mutant: a boost of the velocity without the displacement that it causes. */
 static void not_carried(const struct prepared *p, const double x[3], double t,
                         struct problem_state *state)
 {
@@ -268,7 +269,7 @@ static double amplitude_of(const struct mode_subject *mode, bool flat, double ph
         const int row = i / SIDE;
         x[i] = (i % SIDE + 0.5) / SIDE;
         y[i] = (row + 0.5) / SIDE;
-        w[i] = 1 + 0.5 * (i % 2); /* volumes differ: evenly over the wave */
+        w[i] = 1 + 0.5 * (i % 2); /* unequal volumes, evenly distributed over the wave */
         const double weight = y[i] < 0.5 ? exp(-4 * M_PI * fabs(y[i] - 0.25)) : 0;
         vy[i] = 0.01 * sin(4 * M_PI * x[i] + phase) * (flat ? 1 : weight);
     }

@@ -10,7 +10,7 @@
 #include "gradient_forms.h"
 #include "worst.h"
 
-/* What the operator of this name promises: a wrong one is held to it, too. */
+/* The promise of the operator of this name, which a wrong one must keep, too. */
 static const struct operator_form *promise_of(const struct gradient_subject *subject)
 {
     return (const struct operator_form *)family_find(&operator_family, subject->form->member.name);
@@ -25,8 +25,7 @@ static struct kernel kernel_at(size_t i)
 
 /* ---- brute force ---- */
 
-/* Largest |src - brute force| h / max|f|, in units of the condition number where there is a matrix.
- */
+/* Largest |src - brute force| h / max|f|, over the condition number if there is a matrix. */
 static double departure(const struct gradient_subject *subject, const struct kernel *kernel,
                         const struct clouds_cloud *cloud)
 {
@@ -81,8 +80,7 @@ static void measure_brute_force(struct check_run *run, const void *subject)
 
 /* ---- exactness ---- */
 
-/* With both kinds of volumes the worse error counts; on a lattice only exact ones promise anything.
- */
+/* The worse error of both kinds of volumes; on a lattice only exact volumes promise anything. */
 static enum status errors_of(const struct gradient_subject *subject, size_t kernel_index,
                              enum clouds_kind kind, int dim, enum gradient_function field,
                              struct gradient_errors *worst)
@@ -108,7 +106,7 @@ static enum status errors_of(const struct gradient_subject *subject, size_t kern
     return STATUS_OK;
 }
 
-/* A field of this degree on one cloud; everywhere: not only in the interior. */
+/* Measures a field of this degree on one cloud; everywhere: not only in the interior. */
 static void measure_degree(struct check_run *run, const struct gradient_subject *s, size_t kernel,
                            enum clouds_kind kind, int dim, enum gradient_function field,
                            bool everywhere)
@@ -206,7 +204,7 @@ CHECK_DEFINE(gradients, exactness, 250, .cost = 0.9,
 /* For f = a.x + c, ia gives a + f_i C s with s = sum V x W: exact where s = 0, wrong by f_i C s
  * elsewhere. C s is what ia makes of the field 1. */
 struct assumption {
-    double left;      /* |error of the field - f_i C s| h, the worst of the interior */
+    double left;      /* largest |error of the field - f_i C s| h in the interior */
     double error;     /* of the linear field */
     double violation; /* |s|/h */
     double condition;

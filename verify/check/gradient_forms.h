@@ -16,7 +16,7 @@ FORM(difference, "standard_difference", VECTOR_GRADIENT, true, false);
 FORM(ia, "ia", VECTOR_POSITION, false, true);
 FORM(linear_exact, "linear_exact", VECTOR_POSITION, true, true);
 FORM(normalised, "normalised_corrected", VECTOR_NORMALISED, true, true);
-/* normalised_corrected without subtracting f_i: what sum V g = 0 does is seen */
+/* normalised_corrected without subtracting f_i: shows the effect of sum V g = 0 */
 FORM(normalised_plain, "normalised_corrected", VECTOR_NORMALISED, false, true);
 /* wrong flags */
 FORM(difference_without, "standard_difference", VECTOR_GRADIENT, false, false);

@@ -8,8 +8,8 @@
 #include "gradient_forms.h"
 
 struct response {
-    double projection; /* of the part in phase with cos(k.x): its component along k, over |k| */
-    double noise;      /* root mean square of all else over that of k cos(k.x) */
+    double projection; /* of the part in phase with cos(k.x): component along k over |k| */
+    double noise;      /* rms of the rest over that of k cos(k.x) */
 };
 
 static const int mode[3] = {1, 2, -1}; /* k / 2 pi */
@@ -60,8 +60,8 @@ static bool response_of(const struct gradient_subject *subject, const struct ker
     return ok;
 }
 
-/* The projection on a lattice, from the lattice sum itself: k.sum V p sin(k.x)/k^2, over sum V p_0
- * x_0 where the operator is corrected. */
+/* The projection on a lattice from the lattice sum itself: k.sum V p sin(k.x)/k^2, over sum V p_0
+ * x_0 if the operator is corrected. */
 static double symbol(const struct gradient_subject *subject, const struct kernel *kernel,
                      const struct clouds_settings *settings)
 {

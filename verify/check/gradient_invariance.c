@@ -10,7 +10,7 @@
 #include "gradient_forms.h"
 #include "worst.h"
 
-/* A rotation about no axis of the lattice; -1 in 1D. */
+/* A rotation that maps no lattice axis to another; -1 in 1D. */
 static void rotation_make(int dim, double *R)
 {
     const double c = cos(0.7), s = sin(0.7), e = cos(1.9), t = sin(1.9);
@@ -67,7 +67,7 @@ static void measure_invariance(struct check_run *run, const void *subject)
         double R[9], unit[9] = {0};
         rotation_make(dim, R);
         for (int a = 0; a < dim; a++) unit[a * dim + a] = 1;
-        /* positions lose |shift|/h units of the last place */
+        /* positions lose |shift|/h units in the last place */
         check_measure(run, moved_difference(s, &kernel, dim, unit, shift), 1e-11, 1e-13,
                       "%s, %dD, translated", s->form->member.name, dim);
         check_measure(run, moved_difference(s, &kernel, dim, R, nowhere), 1e-12, 1e-14,
@@ -127,8 +127,8 @@ static bool defects_of(const struct gradient_subject *subject, const struct kern
     return ok;
 }
 
-/* Before and after each correction: the plain kernel has both defects, each correction alone
- * removes one (the matrix alone: isotropy), together none is left. */
+/* The plain kernel has both defects, each correction alone removes one (the matrix: isotropy), both
+ * together remove both. */
 static void measure_corrections(struct check_run *run, const void *subject)
 {
     static const struct gradient_subject plain = {&standard, NAIVE_NONE},

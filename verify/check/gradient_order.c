@@ -11,9 +11,9 @@
 
 enum { LEVELS = 5 };
 
-/* What is expected of each operator: order in the spacing on a lattice and on a jittered lattice,
- * with cubic_spline at its partition-of-unity width, and in the jitter. A conserving form has an
- * error O(jitter) on a constant, whose gradient grows as 1/h; the difference form an error O(1) on
+/* Expected orders of each operator in the spacing on a lattice and on a jittered lattice, with
+ * cubic_spline at its partition-of-unity width, and in the jitter. A conservative form has an error
+ * O(jitter) for a constant, whose gradient grows as 1/h; the difference form has an error O(1) for
  * a linear field. */
 static const struct expectation {
     const char *name;
@@ -26,7 +26,8 @@ static const struct expectation {
     {"normalised_corrected", {1.85, 2.15, 1.5e-3}, {0.85, 1.25, 0.01}, {0.5, 1.9, 0.003}},
 };
 
-/* NULL: none; then the order must be what the operator's promise implies. */
+/* The expectation of an operator; NULL: none, and the order must be that of its promised
+ * exactness. */
 static const struct expectation *expectation_of(const struct gradient_subject *subject)
 {
     for (size_t i = 0; i < sizeof expectations / sizeof *expectations; i++)
@@ -34,7 +35,7 @@ static const struct expectation *expectation_of(const struct gradient_subject *s
     return NULL;
 }
 
-/* Root mean square of |grad - exact| over the interior, mean over seeds. */
+/* Rms of |grad - exact| over the interior, mean over seeds. */
 static double interior_error(const struct gradient_subject *subject, const struct kernel *kernel,
                              const struct clouds_settings *settings)
 {
@@ -74,8 +75,8 @@ static void measure_gate(struct check_run *run, const double *spacing, const dou
     check_series(run, against, LEVELS, log_spacing, log_error);
 }
 
-/* The first field that is not exact leaves an error O(1) in the spacing per degree below linear
- * ones: order -1, 0, 1 for exact = 0, 1, 2. */
+/* The lowest degree that is not exact leaves an error of order -1, 0 or 1 in the spacing for exact
+ * = 0, 1, 2. */
 static void measure_promise(struct check_run *run, const double *spacing, const double *error,
                             int exact, const char *name, int dim, const char *against)
 {
@@ -167,6 +168,6 @@ static const struct check_mutant order_mutants[] = {
 CHECK_DEFINE(gradients, order, 250, .cost = 0.2, .property = PROPERTY,
              .subjects = gradient_subjects, .measure = measure_narrow, .mutants = order_mutants);
 
-/* Takes longer than all other checks of gradients together. */
+/* Takes longer than all other gradient checks together. */
 CHECK_DEFINE(gradients, order_3d, 250, .cost = 2, .property = PROPERTY ", in 3D", .slow = true,
              .subjects = gradient_subjects, .measure = measure_3d, .mutants = order_mutants);

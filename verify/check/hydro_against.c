@@ -58,7 +58,7 @@ static void judge_rates(struct check_run *run, const struct simulation *simulati
     }
     if (shifts != (rates.shift.mass != NULL)) mass.error = (double)NAN;
     if (got.n != oracle->n) h.error = (double)NAN;
-    /* in src the damping of close pairs is a series, good to 8e-7 of itself at its end */
+    /* src damps close pairs by a series with a relative error up to 8e-7 */
     const bool series = oracle->scheme.viscosity == VISCOSITY_RECONSTRUCTED ||
                         oracle->scheme.viscosity == VISCOSITY_PROJECTED;
     const double bound = series ? 1e-10 : 1e-12, floor = series ? 1e-12 : 2e-14;
@@ -78,9 +78,10 @@ static void judge_rates(struct check_run *run, const struct simulation *simulati
     check_measure(run, fabs(rates.time_step / step - 1), 1e-13, 2e-15, "time step, %s", where);
 }
 
-/* --- some steps later ------------------------------------------------------------------------- */
+/* --- after some steps
+ * --------------------------------------------------------------------------- */
 
-/* Whether a position has left the box, and how far it is from where it should be. */
+/* True if a position is outside the box; *worst: the largest distance from the correct one. */
 static bool judge_position(const double *const *x, size_t i, const struct oracle *oracle,
                            const struct oracle_particle *want, double *worst)
 {
@@ -126,7 +127,7 @@ static void judge_steps(struct check_run *run, const struct simulation *simulati
     check_measure(run, outside, 0, 0, "positions outside the box, %s", where);
     check_measure(run, v, bound, floor, "velocity, %s", where);
     check_measure(run, u, bound, floor, "internal energy, %s", where);
-    /* of the state at t_end, whatever the last step has evaluated */
+    /* of the state at t_end, not of the last step's evaluation */
     check_measure(run, rho, bound, floor, "density, %s", where);
     check_measure(run, P, bound, floor, "pressure, %s", where);
     check_measure(run, h, bound, floor, "smoothing length, %s", where);
@@ -139,7 +140,8 @@ static void judge_steps(struct check_run *run, const struct simulation *simulati
     check_measure(run, fabs(got.time - (double)oracle->time), 0, 0, "time, %s", where);
 }
 
-/* --- both ------------------------------------------------------------------------------------- */
+/* --- solver and oracle
+ * -------------------------------------------------------------------------- */
 
 void hydro_put_fault(const struct hydro_fault *fault, struct setup *setup)
 {

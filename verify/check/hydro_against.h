@@ -8,10 +8,10 @@
 #include "check.h"
 #include "simulation.h"
 
-/* A fault in the setup that the solver gets, and only the solver: one double, or one choice, of it
- * becomes `times` the right one plus `plus`. Or a function spoils the setup. {0}: no fault. */
+/* A fault in the setup of the solver alone, not of the oracle: one double or choice becomes `times`
+ * its value plus `plus`, or a function changes the setup. {0}: no fault. */
 struct hydro_fault {
-    size_t at, size; /* of the member within struct setup */
+    size_t at, size; /* offset and size of the member in struct setup */
     double times, plus;
     void (*spoil)(struct setup *setup);
 };
@@ -26,11 +26,11 @@ struct hydro_fault {
 
 void hydro_put_fault(const struct hydro_fault *fault, struct setup *setup);
 
-/* Density, smoothing length, pressure, volume, force, rates of energy and alpha, and the time step.
- * A scheme that the solver refuses, or of which the oracle lacks a choice, is skipped. */
+/* Compares density, smoothing length, pressure, volume, force, rates of energy and alpha, and the
+ * time step. Skips a scheme that the solver refuses, or that the oracle does not know. */
 void hydro_against_rates(struct check_run *run, struct setup setup, const struct hydro_fault *fault,
                          const char *where);
 
-/* The state and the number of steps after this many of the first time step. */
+/* Compares the state and the number of steps after `steps` times the first time step. */
 void hydro_against_steps(struct check_run *run, struct setup setup, const struct hydro_fault *fault,
                          double steps, const char *where);

@@ -111,7 +111,7 @@ enum { SETUP_MAX = 1000 };
 typedef void disturb_function(size_t n, double *x, double *m, double *u);
 
 struct setup_subject {
-    disturb_function *disturb; /* what the mutant does to the particles */
+    disturb_function *disturb; /* how the mutant changes the particles */
 };
 
 static void measure_setup_of(struct check_run *run, const char *name, size_t n,
@@ -212,13 +212,14 @@ CHECK_DEFINE(
     .property = "N_L = round(n rho_L/(rho_L + rho_R)), equal masses a side, centred, own state",
     .measure = measure_setup, .mutants = setup_mutants);
 
-/* --- errors of a run, once more from its particles -------------------------------------------- */
+/* --- errors of a run, computed again from its particles
+ * ----------------------------------------- */
 
 enum { FINE = 400 }; /* samples of a bin */
 
 struct errors_subject {
-    int field;   /* of the run that is compared with the right one's exact solution */
-    double late; /* the exact solution is taken so much later */
+    int field;   /* field of the run that is compared with the correct exact solution */
+    double late; /* delay of the time of the exact solution */
 };
 
 static double exact_of(const struct riemann_solution *tube, int field, double x, double t)
@@ -247,8 +248,8 @@ static double binned_again(const struct snapshot *s, const struct riemann_soluti
     return total / used;
 }
 
-/* A scheme that does not conserve energy: the defect that the run tells, once more from its
- * particles; the tube begins with P/(gamma - 1) = 2.5 and 0.25 a unit of length. */
+/* For a scheme that does not conserve energy, computes the reported defect again from the
+ * particles; the tube begins with P/(gamma - 1) = 2.5 and 0.25 per unit length. */
 static void measure_energy(struct check_run *run, bool thermal_only)
 {
     const char *arguments[] = {"n=200", "integrator=symplectic_euler", "energy=internal", NULL};
@@ -328,9 +329,9 @@ CHECK_DEFINE(
 
 /* --- predicted smoothing length --------------------------------------------------------------- */
 
-/* One density sum at a predicted h costs at most a few per cent of error against Newton's root (the
- * pressure then follows the volume, which takes as much away on sod); without the prediction L1
- * grows by 18 to 120 %. subject: settings that the prediction gets. */
+/* One density sum at a predicted h costs at most a few per cent of error compared with Newton's
+ * root (the pressure then follows the volume, which cancels as much on sod); without the prediction
+ * L1 grows by 18 to 120 %. subject: settings of the prediction. */
 static void measure_predicted(struct check_run *run, const void *subject)
 {
     static const char *const names[] = {"sod", "lax", "sod_standard"};

@@ -9,7 +9,7 @@
 #include "hydro_setup.h"
 #include "worst.h"
 
-/* A state and its scheme; what a mutant does to what the solver has found (see corrupt). */
+/* A state and its scheme; a mutant's change of the solver's results (see corrupt). */
 enum corruption { NONE, ONE_FORCE, ONE_HEAT, TURNED, OTHER_KERNEL };
 
 struct balance_subject {
@@ -20,7 +20,7 @@ struct balance_subject {
     struct scheme scheme;
 };
 
-/* More than half of the particles in a plane, with nothing near it. */
+/* More than half of the particles in a plane without neighbours outside it. */
 static void planes(struct hydro_state *cloud, int dim, size_t side)
 {
     hydro_cloud_sheared(cloud, dim, side);
@@ -51,7 +51,7 @@ static void subjects(struct check_run *run)
                 add(run, s);
                 if (p % 3) continue;
                 s.state = planes;
-                if (dim == 2) add(run, s); /* in 3D h is beyond half of the box */
+                if (dim == 2) add(run, s); /* in 3D h exceeds half of the box */
                 s.boundary = BOUNDARY_OPEN;
                 add(run, s);
             }
@@ -129,7 +129,7 @@ static void count_one(void *context, size_t particle, const struct description *
     if (of->condition > 1000) ++*(double *)context;
 }
 
-/* How many matrices cannot be used. */
+/* Number of matrices that cannot be used. */
 static double count_ill(const struct simulation *simulation)
 {
     double count = 0;

@@ -20,19 +20,19 @@ struct hostile_subject {
     place *place;
     const char *name;
     enum boundary boundary;
-    double grain; /* what positions can be known to, in box lengths */
+    double grain; /* resolution of positions, in box lengths */
     int dim, scheme;
 };
 
-/* --- places ----------------------------------------------------------------------------------- */
+/* --- positions -------------------------------------------------------------------------------- */
 
 static void in_one_place(struct hydro_state *cloud)
 {
     for (int a = 0; a < cloud->dim; a++) cloud->x[a][5] = cloud->x[a][2];
-    cloud->m[5] = cloud->m[2]; /* the lighter one may have no h */
+    cloud->m[5] = cloud->m[2]; /* with unequal masses the lighter one may have no h */
 }
 
-/* Pressed towards the middle of the box; all from `first` on. */
+/* Moves the particles from `first` on towards the middle of the box. */
 static void press(struct hydro_state *cloud, size_t first, double factor)
 {
     for (int a = 0; a < cloud->dim; a++) {
@@ -50,14 +50,15 @@ static void in_one_cell(struct hydro_state *cloud)
 static void one_alone(struct hydro_state *cloud)
 {
     press(cloud, 0, 1e-3);
-    cloud->x[0][3] += 0.1; /* the oracle's box is periodic: half of it is out of reach */
+    cloud->x[0][3] +=
+        0.1; /* the oracle's box is periodic and must be larger than twice the reach */
 }
 
 static void contrast(struct hydro_state *cloud)
 {
     const size_t first = 3 * cloud->n / 4;
     press(cloud, first, pow(1e-6, 1. / cloud->dim));
-    for (size_t i = first; i < cloud->n; i++) cloud->u[i] *= 1e-6; /* else it explodes at once */
+    for (size_t i = first; i < cloud->n; i++) cloud->u[i] *= 1e-6; /* avoids an explosion */
 }
 
 static void in_a_plane(struct hydro_state *cloud)
@@ -84,7 +85,7 @@ static struct scheme scheme_of(int dim, int c)
 {
     struct scheme s = hydro_cloud_scheme(dim);
     s.cfl = 0.2;
-    if (c == 0) { /* forces along r_ij, each side with its own width */
+    if (c == 0) { /* forces along r_ij, each particle with its own width */
         s.formulation = FORMULATION_LAGRANGIAN;
         s.viscosity = VISCOSITY_TIME_DEPENDENT;
         return s;
@@ -117,7 +118,7 @@ static void add(struct check_run *run, size_t k, int dim, int more)
     check_subject(run, &s, sizeof s);
 }
 
-/* In 3D, where the oracle takes its time, only the first ones. */
+/* In 3D, where the oracle is slow, only the first ones. */
 static void subjects(struct check_run *run)
 {
     for (size_t k = 0; k < PLACES; k++) add(run, k, 2, 0);
@@ -137,7 +138,7 @@ struct scales {
     double h, force, power;
 };
 
-/* Of a particle: what one neighbour of its kind does to it. */
+/* Scales of a particle: the contribution of one equal neighbour. */
 static struct scales scales_of(const struct oracle *oracle, const struct oracle_particle *p)
 {
     const double F = (double)(p->P * p->V / p->h);
@@ -238,7 +239,7 @@ static void warmer(struct setup *setup)
     ((double *)setup->u)[0] *= 1 + 1e-8;
 }
 
-/* As if positions were kept in single precision. */
+/* Mutant: rounds positions to single precision. */
 static void coarse(struct setup *setup)
 {
     double *x = (double *)setup->x[0];

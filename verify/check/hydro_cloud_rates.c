@@ -7,14 +7,14 @@
 #include "hydro_against.h"
 #include "hydro_setup.h"
 
-/* Boxes of three to four widths in 2D; in 3D hardly more than two. */
+/* Particles per side: boxes of three to four kernel widths in 2D, hardly more than two in 3D. */
 static size_t side_of(int dim)
 {
     return dim == 2 ? 9 : 6;
 }
 
-/* A scheme in a dimension; or what a mutant does to the solver's setup, where the scheme is
- * hydro_cloud_scheme() with a geometry and physics of its own. */
+/* A scheme in a dimension, or a mutant's change of the solver's setup with hydro_cloud_scheme() and
+ * a geometry and physics of its own. */
 struct cloud_subject {
     struct hydro_fault fault;
     int dim;
@@ -27,8 +27,8 @@ static void add(struct check_run *run, int dim, struct scheme scheme)
     check_subject(run, &subject, sizeof subject);
 }
 
-/* Adds every step-th geometry for each kernel. The steps here and below have no factor in common
- * with the sizes of the families, so that every member is used. */
+/* Adds every step-th geometry for each kernel. The steps here and below are coprime to the sizes of
+ * the families, so that every member is used. */
 static void add_kernels(struct check_run *run, int dim, size_t step)
 {
     for (size_t k = 0; k < kernel_family.n; k++)
@@ -43,11 +43,11 @@ static void add_kernels(struct check_run *run, int dim, size_t step)
         }
 }
 
-/* Every step-th geometry and physics. */
+/* Adds every step-th geometry and physics. */
 static void add_turns(struct check_run *run, int dim, size_t step)
 {
     const size_t geometries = hydro_cloud_geometries(), physics = hydro_cloud_physics();
-    const size_t of_mean = geometries / PAIR_WIDTHS; /* those whose width is the mean come first */
+    const size_t of_mean = geometries / PAIR_WIDTHS; /* geometries with the mean width come first */
     for (size_t g = 0; g < geometries; g += step) {
         struct scheme s = hydro_cloud_scheme(dim);
         hydro_cloud_geometry(&s, g);
@@ -75,7 +75,7 @@ static struct scheme shifting_scheme(int dim, enum shifting shifting, enum gradi
     return s;
 }
 
-/* In 3D the oracle takes four times as long. */
+/* The oracle is four times slower in 3D. */
 static void subjects(struct check_run *run)
 {
     add(run, 2, shifting_scheme(2, SHIFTING_FLUXES, GRADIENT_CORRECTED));

@@ -25,7 +25,7 @@ static struct scheme scheme_of(int dim, const struct integrator *integrator, int
     s.volume_element = c == 1 ? VOLUME_NUMBER : c == 2 ? VOLUME_ENERGY : VOLUME_MASS;
     s.h_method = c == 1 ? H_PREDICTED : c == 2 ? H_PREDICTED : H_NEWTON;
     if (c == 0) s.balsara = BALSARA_ON;
-    if (c == 3) { /* alpha by a switch once a step */
+    if (c == 3) { /* a switch sets alpha once a step */
         s.viscosity = VISCOSITY_CULLEN_DEHNEN;
         s.viscosity_form = VISCOSITY_FORM_SIGNAL;
         s.gradient = GRADIENT_IA;
@@ -60,7 +60,7 @@ static void measure(struct check_run *run, const void *subject)
             scheme_of(2, hydro_integrator("predicted_midpoint"), given->scheme.viscosity ? 3 : 1);
     }
     hydro_cloud_sheared(&cloud, s.dim, s.dim == 2 ? 8 : 6);
-    for (size_t i = 0; i < cloud.n; i++) cloud.v[0][i] -= 1.1; /* through the end of the box */
+    for (size_t i = 0; i < cloud.n; i++) cloud.v[0][i] -= 1.1; /* across the end of the box */
     char where[HYDRO_TEXT];
     hydro_cloud_describe(&s.scheme, s.dim, where);
     hydro_against_steps(run, hydro_setup(&cloud, &s.scheme), &s.fault, STEPS + 0.3, where);

@@ -8,11 +8,11 @@
 #include "hydro_setup.h"
 #include "integrator.h"
 #include "order.h"
-#include "solver.h" /* the state as an integrator sees it: for mutants only */
+#include "solver.h" /* the integrator's state, for mutants only */
 
 enum { TUBE = 99 };
 
-/* NULL, or what the mutant does to the rates: a wrapped integrator. */
+/* NULL, or a mutant's integrator with changed rates. */
 struct drift_subject {
     enum status (*step)(struct simulation *simulation, double dt, struct error *error);
 };
@@ -27,7 +27,8 @@ static struct scheme combination(size_t c, const struct integrator *integrator)
     return s;
 }
 
-/* Energy drift that the integrator's order allows for internal energy; measured 2e-6 to 5e-4. */
+/* Bound of the energy drift with internal energy, from the integrator's order; measured 2e-6 to
+ * 5e-4. */
 static double drift_bound(const struct scheme *scheme)
 {
     if (scheme->energy == ENERGY_TOTAL) return 1e-13;
@@ -111,7 +112,7 @@ CHECK_DEFINE(
 
 enum { WAVE = 24, LADDER = 5 };
 
-/* The velocities after time T in equal steps, by a scheme's integrator; sorted by position. */
+/* Velocities after time T in equal steps of a scheme's integrator, sorted by position. */
 static enum status wave_after(const struct scheme *scheme, int steps, double T, double *v,
                               struct error *error)
 {
@@ -140,7 +141,7 @@ static void measure_order(struct check_run *run, const void *subject)
     struct error failure = {0};
     struct scheme scheme = hydro_scheme();
     scheme.viscosity = VISCOSITY_NONE;
-    scheme.cfl = 50; /* the time step is that of the ladder */
+    scheme.cfl = 50; /* the ladder sets the time step */
     scheme.integrator = hydro_integrator("rk3");
     enum status status = wave_after(&scheme, 1000, T, exact, &failure);
     for (size_t i = 0; i < integrator_family.n && !status; i++) {

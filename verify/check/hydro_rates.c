@@ -11,8 +11,8 @@
 
 enum { PARTICLES = 82 };
 
-/* A state and a scheme of it, and what a mutant does to the solver's setup; the oracle keeps the
- * right one. A mutant names no state: hydro_scheme() on hydro_disordered(). */
+/* A state and a scheme, or a mutant's change of the solver's setup, while the oracle keeps the
+ * right one. A mutant names no state: it runs hydro_scheme() on hydro_disordered(). */
 struct rates_subject {
     struct hydro_fault fault;
     void (*state)(struct hydro_state *state, size_t n);
@@ -36,7 +36,7 @@ static void subjects(struct check_run *run)
         add(run, s, hydro_disordered);
         const bool internal = s.energy == ENERGY_INTERNAL;
         if (s.viscosity == VISCOSITY_TIME_DEPENDENT && internal) add(run, s, hydro_expanding);
-        s.eta = 4.8; /* at 2 coincident particles have no h */
+        s.eta = 4.8; /* with eta = 2 coincident particles have no h */
         if (s.viscosity == VISCOSITY_RECONSTRUCTED && internal) add(run, s, hydro_coincident);
         s.eta = 2;
     }
@@ -127,7 +127,7 @@ static void measure_residual(struct check_run *run, const void *subject)
         double worst = 0;
         simulation_snapshot(simulation, &got);
         for (size_t i = 0; i < got.n; i++) {
-            /* the width of the sum itself: the snapshot's h is the next better one */
+            /* h of the sum itself; the snapshot has the next iterate */
             const double h_inverse = simulation->particles.h_inverse[i];
             const double residual = fabs(scheme.eta * got.m[i] / got.rho[i] * h_inverse - 1);
             worst_keep(&worst, residual);

@@ -13,7 +13,7 @@ static bool stop(void *context, double time, uint64_t steps)
     return steps % 32 != 0;
 }
 
-/* To t_end, at one go or stopping wherever a run can be stopped. */
+/* Runs to t_end, at once or with a stop at every possible time. */
 static enum status run_on(struct simulation *simulation, double t_end, bool stops,
                           struct error *error)
 {
@@ -37,8 +37,8 @@ static double field_difference(size_t n, const double *a, const double *b)
     return worst == 0 ? 0 : worst / scale;
 }
 
-/* Two setups, run for the same time, the second one perhaps with stops; the largest difference of
- * any state variable, relative to the largest value of it; NaN where one did not run. */
+/* Runs two setups for the same time, the second one with stops if asked; the largest difference of
+ * any state variable relative to its largest value; NaN if one did not run. */
 static double difference(const struct setup *a, const struct setup *b, bool stops, double t_end,
                          struct error *error)
 {
@@ -67,7 +67,7 @@ done:
     return worst;
 }
 
-/* What is changed in the second setup beside what is measured. */
+/* A further change of the second setup. */
 typedef void spoiler(struct setup *setup, struct hydro_state *state);
 
 static void one_ulp(struct setup *setup, struct hydro_state *state)
@@ -113,12 +113,12 @@ static const struct same_subject with_one_ulp = {one_ulp}, with_one_ulp_mass = {
                                  with_swapped_kernel = {swapped_kernel},
                                  with_swapped_forms = {swapped_forms};
 
-/* A run, and the same one done otherwise. */
+/* A run, and the same run computed differently. */
 struct same_run {
     const struct scheme *scheme;
     const struct hydro_state *state;
     double t_end, bound;
-    int threads; /* the other one's; and: */
+    int threads; /* threads of the second run */
     bool generic, skip;
     const char *what;
 };
@@ -152,7 +152,7 @@ static void measure_threads(struct check_run *run, const void *subject)
     fancy.viscosity = VISCOSITY_RECONSTRUCTED;
     fancy.integrator = hydro_integrator("predicted_midpoint");
     fancy.energy = ENERGY_TOTAL;
-    /* odd, and enough for threads to be used at all: src/core/solver.h, WORTH_A_THREAD */
+    /* odd, and enough particles for several threads: src/core/solver.h, WORTH_A_THREAD */
     hydro_disordered(&state, 2113);
     for (int threads = 2; threads <= 7; threads += 5) {
         struct same_run same = {.scheme = &standard,
@@ -175,7 +175,7 @@ static const struct check_mutant threads_mutants[] = {
 CHECK_DEFINE(hydro, threads, 750, .cost = 0.9, .property = "the same bits with 1, 2 and 7 threads",
              .measure = measure_threads, .mutants = threads_mutants);
 
-/* A run with skips: some work must have been left out, and momentum must still be conserved. */
+/* A run with skips must omit some work and conserve momentum. */
 static void measure_skipped_run(struct check_run *run, const struct hydro_state *state,
                                 const struct scheme *scheme, double t_end)
 {
@@ -220,7 +220,7 @@ static void measure_skip(struct check_run *run, const void *subject)
             scheme.pair_width = PAIR_WIDTH_MAX;
         }
         if (c == 4 || c == 6) scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
-        if (c == 4) { /* wide, and with a pass of its own for the time step */
+        if (c == 4) { /* a wide kernel, and a separate pass for the time step */
             hydro_set_kernel(&scheme, "wendland_c4");
             scheme.integrator = hydro_integrator("leapfrog");
         }
@@ -251,7 +251,7 @@ CHECK_DEFINE(
     .property = "the same answer, to round-off, with and without leaving out idle particles",
     .measure = measure_skip, .mutants = skip_mutants);
 
-/* A stop solves for h once more, so bits may differ. */
+/* A stop iterates h again, so bits may differ. */
 static void measure_stops(struct check_run *run, const void *subject)
 {
     static struct hydro_state state, other;
@@ -284,7 +284,7 @@ CHECK_DEFINE(
     .measure = measure_stops, .mutants = stops_mutants);
 
 /* Every entry of the tables of specialised loops: kernel x gradient x form, formulation x viscosity
- * x energy, and what the volume element adds to the density sum. */
+ * x energy, and the volume element's terms in the density sum. */
 static void measure_specialised(struct check_run *run, const void *subject)
 {
     static struct hydro_state state;

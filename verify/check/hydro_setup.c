@@ -21,7 +21,8 @@ void hydro_disordered(struct hydro_state *state, size_t n)
         at += spacing;
     }
     for (size_t i = 0; i < n; i++) {
-        const size_t k = i * (n % 7 ? 7 : 11) % n; /* a permutation: not in the order of x */
+        const size_t k =
+            i * (n % 7 ? 7 : 11) % n; /* a permutation, so that particles are not sorted by x */
         state->x[0][i] = state->lo[0] + (state->hi[0] - state->lo[0]) * x[k] / at;
         state->v[0][i] = 0.8 * (gsl_rng_uniform(rng) - 0.45);
         state->m[i] = (0.7 + 0.6 * gsl_rng_uniform(rng)) / (double)n;
@@ -162,7 +163,7 @@ size_t hydro_combinations(void)
            scheme_members(&scheme_viscosity_family, 1);
 }
 
-/* The last digit of *c in the base n, which is taken off. */
+/* Removes the last digit of *c in base n and returns it. */
 static int digit(size_t *c, size_t n)
 {
     const size_t last = *c % n;

@@ -13,9 +13,9 @@ struct hydro_state {
     double x[3][HYDRO_MAX], v[3][HYDRO_MAX], m[HYDRO_MAX], u[HYDRO_MAX];
 };
 
-/* A setup of this state: the arrays stay the state's; threads 1, no skips. */
+/* A setup of this state, which keeps ownership of the arrays; threads 1, no skips. */
 struct setup hydro_setup(const struct hydro_state *state, const struct scheme *scheme);
-/* By name. */
+/* Finds an integrator by name. */
 const struct integrator *hydro_integrator(const char *name);
 /* Sets the kernel and its default width; the name is a built-in one. */
 void hydro_set_kernel(struct scheme *scheme, const char *name);
@@ -25,12 +25,11 @@ void hydro_set_kernel(struct scheme *scheme, const char *name);
 /* Unequal masses and spacings (8:1), random velocities and energies; the order is not that of x,
  * the box neither symmetric nor of length 2, and particles sit close to its ends. */
 void hydro_disordered(struct hydro_state *state, size_t n);
-/* 64 particles at 20 times the density of the rest, side by side: neighbours reach far on one side.
- */
+/* 64 adjacent particles at 20 times the density of the rest: neighbourhoods are one-sided. */
 void hydro_contact(struct hydro_state *state, size_t n);
-/* Everything recedes from the dense middle, which limits the time step, except at the cold ends. */
+/* Gas expands from the dense middle, which limits the time step, except at the cold ends. */
 void hydro_expanding(struct hydro_state *state, size_t n);
-/* Disordered, with two particles in one place. */
+/* hydro_disordered with two coincident particles. */
 void hydro_coincident(struct hydro_state *state, size_t n);
 /* A smooth wave of 10 % in all fields, on [0, 1]. */
 void hydro_wave(struct hydro_state *state, size_t n);
@@ -39,11 +38,11 @@ void hydro_tube(struct hydro_state *state, size_t n);
 
 /* cubic_spline standard vanilla_ice mass, constant viscosity, modified leapfrog, h to 1e-14. */
 struct scheme hydro_scheme(void);
-/* Every gradient with every formulation, volume element, energy and viscosity: scheme c of so many;
- * the rest of the scheme stays. Some exclude each other, see scheme_check. */
+/* Number of combinations of gradient, formulation, volume element, energy and viscosity; sets those
+ * of number c and leaves the rest. Some exclude each other, see scheme_check. */
 size_t hydro_combinations(void);
 void hydro_combine(struct scheme *scheme, size_t c);
-/* "cubic_spline 2 ia lagrangian ...": what tells a scheme from hydro_scheme(). */
+/* "cubic_spline 2 ia lagrangian ...": the differences from hydro_scheme(). */
 void hydro_describe(const struct scheme *scheme, char text[HYDRO_TEXT]);
 
 /* ---- in 2D and 3D ---- */
@@ -53,21 +52,21 @@ void hydro_describe(const struct scheme *scheme, char text[HYDRO_TEXT]);
  * of the box differ, and none begins at 0. */
 void hydro_cloud_disordered(struct hydro_state *state, int dim, size_t side);
 
-/* The same with velocities that are mostly smooth, shear and compression: limiters and projectors
- * are neither 0 nor 1. */
+/* hydro_cloud_disordered with mostly smooth velocities, shear and compression, so that limiters and
+ * projectors are neither 0 nor 1. */
 void hydro_cloud_sheared(struct hydro_state *state, int dim, size_t side);
 
 /* cubic_spline standard vanilla_ice mass, constant viscosity, mean width, modified leapfrog, h to
  * 1e-15, with parameters that differ from all defaults. */
 struct scheme hydro_cloud_scheme(int dim);
 
-/* Choices: the gradient, formulation, volume element and width of a pair; those of its viscosity
- * and energy. Scheme c of so many; the rest of the scheme stays. Some exclude each other
+/* Two numbered families of schemes: gradient, formulation, volume element and width of a pair;
+ * viscosity and energy. Sets the choices of number c and leaves the rest. Some exclude each other
  * (scheme_check). */
 size_t hydro_cloud_geometries(void);
 void hydro_cloud_geometry(struct scheme *scheme, size_t c);
 size_t hydro_cloud_physics(void);
 void hydro_cloud_physic(struct scheme *scheme, size_t c);
 
-/* What tells a scheme from hydro_cloud_scheme(). */
+/* The differences of a scheme from hydro_cloud_scheme(). */
 void hydro_cloud_describe(const struct scheme *scheme, int dim, char text[HYDRO_TEXT]);

@@ -8,12 +8,12 @@
 
 enum { PARTICLES = 34, FAR_PARTICLES = 150, STEPS = 5 };
 
-/* Gas that runs to the left end of the box and through it; cold gas whose outermost particles pass
- * each other there in the first step; a contact with neighbours far to one side. */
+/* Gas that crosses the left end of the box; cold gas whose outermost particles pass each other
+ * there in the first step; a contact with one-sided neighbourhoods. */
 enum start { RUNNING, PASSING, CONTACT };
 
-/* A run; or a mutant: what is done to the solver's setup, where the right one is hydro_scheme()
- * with this integrator and viscosity. */
+/* A run, or a mutant's change of the solver's setup, where the right one is hydro_scheme() with
+ * this integrator and viscosity. */
 struct steps_subject {
     struct hydro_fault fault;
     const char *integrator; /* of a mutant */
@@ -33,13 +33,15 @@ static void subjects(struct check_run *run)
             s.viscosity = c % 3 == 0 ? VISCOSITY_TIME_DEPENDENT : VISCOSITY_CONSTANT;
             s.energy = c % 2 ? ENERGY_TOTAL : ENERGY_INTERNAL;
             if (c == 2 || c == 3) s.gradient = GRADIENT_IA;
-            if (c >= 7) { /* widths that are predicted, once as by default */
+            if (c >= 7) { /* predicted smoothing lengths, once as by default */
                 s.h_method = H_PREDICTED;
                 s.pair_width = c == 7 ? PAIR_WIDTH_MAX : PAIR_WIDTH_HARMONIC;
                 if (c == 7) hydro_set_kernel(&s, "quadratic_spline");
                 if (c == 8) s.gradient = GRADIENT_IA, s.viscosity = VISCOSITY_RECONSTRUCTED;
             }
-            if (c == 6) s.viscosity = VISCOSITY_NONE, s.eta = 4.8; /* coincident ones have an h */
+            if (c == 6)
+                s.viscosity = VISCOSITY_NONE,
+                s.eta = 4.8; /* with eta = 4.8 coincident particles have an h */
             if (c == 4 || c == 5) {
                 s.formulation = FORMULATION_LAGRANGIAN;
                 s.volume_element = c == 5 ? VOLUME_ENERGY : VOLUME_MASS;

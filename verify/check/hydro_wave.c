@@ -15,13 +15,13 @@ static const double amplitude = 1e-3, speed = 1.1832159566199232; /* (1.4)^(1/2)
 
 /* Runs of three sizes. */
 struct wave {
-    const char *direction, *hi; /* keys: a strip is as good as the whole box, and cheaper */
+    const char *direction, *hi; /* keys: a strip replaces the whole box and is cheaper */
     int dim;
     double volume;             /* of the box */
-    int side[LEVELS];          /* particles on a unit of length */
-    const char *const *kernel; /* it and its width, as keys */
-    /* How far the order may be from 2 and what error the last may have, relative to the wave's
-     * velocity: oblique waves are shorter, so that h is a larger part of them. */
+    int side[LEVELS];          /* particles per unit length */
+    const char *const *kernel; /* kernel and width, as keys */
+    /* allowed: deviation of the order from 2; bound: error of the last level, relative to the
+     * wave's velocity. Oblique waves are shorter, so h is a larger fraction of them. */
     double allowed, bound;
 };
 
@@ -43,14 +43,14 @@ static const struct wave fine_waves[] = {
 enum { QUICK = sizeof quick_waves / sizeof *quick_waves };
 enum { FINE = sizeof fine_waves / sizeof *fine_waves };
 
-/* What a mutant does: a key more, or another field's error. */
+/* A mutant: an additional key, or another field's error. */
 struct wave_subject {
     const char *key;
     enum field field;
 };
 static const struct wave_subject right = {"alpha_u=0", FIELD_VELOCITY};
 
-/* L1 of the velocity after a tenth of a unit of time; NaN after noting why there is none. */
+/* L1 of the velocity at t = 0.1; NaN after noting the reason. */
 static double error_of(struct check_run *run, const struct wave *wave,
                        const struct wave_subject *subject, int side, const char *direction,
                        const char *hi)
@@ -104,7 +104,7 @@ static void measure_wave(struct check_run *run, const struct wave *wave,
                   wave->direction);
 }
 
-/* The lattice knows neither its axes from each other nor left from right. */
+/* Exchanging the axes, or left and right, must not change the result. */
 static void measure_same(struct check_run *run, const struct wave_subject *subject)
 {
     static const struct wave wave = {NULL, NULL, 2, 0.5, {24}, c4, 0, 0};

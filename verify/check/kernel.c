@@ -11,7 +11,7 @@
 #include "property.h"
 #include "user_figures.h"
 
-/* The sinc family at its default and its ends. */
+/* Orders of the sinc family: default, least and greatest. */
 static const int sinc_orders[] = {5, 3, 12};
 enum { SINC_ORDERS = sizeof sinc_orders / sizeof *sinc_orders };
 
@@ -22,7 +22,7 @@ static void add(struct check_run *run, const char *name, int sinc_order)
     check_subject(run, &kernel, sizeof kernel);
 }
 
-/* The family's members, sinc again at its other orders, the user's kernel. */
+/* The family's members, sinc at its other orders, the user's kernel. */
 static void subjects(struct check_run *run)
 {
     for (size_t k = 0; k < kernel_family.n; k++)
@@ -56,7 +56,7 @@ static void take(struct property_sink *sink, const struct finding *figure)
     context->failed = context->failed || figure->status == FINDING_FAIL;
 }
 
-/* For the plot of a failure: w, dw, and what dw should be. */
+/* Adds curves for the plot of a failure: w, dw and the correct dw. */
 static void show_shape(struct check_run *run, const struct kernel *kernel, int dim)
 {
     enum { POINTS = 421 };
@@ -76,7 +76,7 @@ static void show_shape(struct check_run *run, const struct kernel *kernel, int d
     check_series(run, "slope of w", POINTS, q, slope);
 }
 
-/* The user's kernel has been measured elsewhere. */
+/* Passes on figures of the user's kernel, which another process has measured. */
 static void pass_on(struct check_run *run, const struct user_figures *user, const char *property)
 {
     size_t n = 0;

@@ -7,7 +7,7 @@
 
 #include "kernel.h"
 
-/* The right ones that are spoilt here. */
+/* The correct kernels that the mutants change. */
 #define KERNEL(name, ...)
 #include "kernel/cubic_spline.h"
 #include "kernel/quadratic_spline.h"
@@ -60,7 +60,7 @@ static double nearly_dw(const struct kernel *kernel, double q, int dim)
 }
 static const struct kernel gradient_ninth_digit = {.w = wendland_c2_w, .dw = nearly_dw, WENDLAND};
 
-/* Vanishing total, so that only differences over single intervals see it. */
+/* The total error vanishes, so that only differences over single intervals detect it. */
 static double balanced_dw(const struct kernel *kernel, double q, int dim)
 {
     return cubic_spline_dw(kernel, q, dim) + (q < 1 ? 1e-8 * sin(2 * M_PI * q) : 0);
@@ -224,7 +224,7 @@ static const struct kernel knot_declared_049 = {.member = {"cubic_spline", "", "
                                                 .knots = early_list,
                                                 .smoothness = {0, 2, 2, 2}};
 
-/* w'' jumps by 1e-6 of its own value there, w and w' do not. */
+/* w'' jumps by 1e-6 of its value at the knot; w and w' are continuous. */
 static double kink_w(const struct kernel *kernel, double q, int dim)
 {
     const double b = 0.5 - q > 0 ? 0.5 - q : 0;
@@ -263,7 +263,7 @@ static double small_dh(double r, double h, int dim)
 }
 static const struct kernel dh_small = {CUBIC_SHAPE, CUBIC, .plugin_dw_dh = small_dh};
 
-/* Between the nodes of any series, and a decimal at its end. */
+/* A point between the nodes of any series, with a long decimal. */
 static double flipped_dw(const struct kernel *kernel, double q, int dim)
 {
     const double dw = cubic_spline_dw(kernel, q, dim);
@@ -299,7 +299,7 @@ static const struct kernel slip = {.member = {"cubic_spline", "", ""},
                                    .constant = CUBIC_CONSTANT,
                                    .knot_count = -1};
 
-/* Not a function of its arguments. */
+/* The value depends on the call, not only on the arguments. */
 static double moody_w(const struct kernel *kernel, double q, int dim)
 {
     static unsigned calls;
@@ -322,7 +322,7 @@ static const struct kernel class_overstated = {
     .knots = (const double[]){1. / 3},
     .smoothness = {0, 2, 2, 2}};
 
-/* (1-q)^3: normalised rightly, but with a kink at the origin. */
+/* (1-q)^3: correctly normalised, but with a kink at the origin. */
 static double peaked_w(const struct kernel *kernel, double q, int dim)
 {
     UNUSED;
@@ -366,7 +366,8 @@ static double single_dw(const struct kernel *kernel, double q, int dim)
 }
 static const struct kernel shape_float = {.w = single_w, .dw = single_dw, CUBIC};
 
-/* Expanded about the origin: 1e-16 of the terms, not of the value, is left near the edge. */
+/* The polynomial expanded about the origin: near the edge the rounding error is 1e-16 of the terms,
+ * not of the value. */
 static double expanded_w(const struct kernel *kernel, double q, int dim)
 {
     UNUSED;

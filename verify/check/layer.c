@@ -16,8 +16,8 @@ struct layer_subject {
 
 static const struct layer_subject right = {layer_mode_find, layer_mode_values};
 
-/* gamma, k, width, rho, step, U, P, g, periodic, wall, node; omega as computed independently, by
- * another program's shooting and collocation (NaN: not in its table). */
+/* gamma, k, width, rho, step, U, P, g, periodic, wall, node; omega from an independent program by
+ * shooting and collocation (NaN: not in its table). */
 static const struct {
     const char *name;
     struct layer layer;
@@ -58,7 +58,7 @@ enum { LAYERS = sizeof layers / sizeof *layers };
 
 enum { EQUATIONS = 4 };
 
-/* d/dx, d/dy and d/dt by central differences of sixth order. */
+/* d/dx, d/dy and d/dt by sixth-order central differences. */
 static struct layer_values difference(const struct layer_subject *subject,
                                       const struct layer_mode *mode, const double at[3], int axis)
 {
@@ -77,8 +77,8 @@ static struct layer_values difference(const struct layer_subject *subject,
     return sum;
 }
 
-/* Of mass, both momenta and energy, over the sum of the sizes of their terms; the base state's own
- * derivatives are differences as well. */
+/* Residual of mass, both momenta and energy, relative to the sum of the sizes of the terms; the
+ * base state is differentiated numerically as well. */
 static double residual(const struct layer_subject *subject, const struct layer_mode *mode,
                        const double at[3])
 {
@@ -101,7 +101,7 @@ static double residual(const struct layer_subject *subject, const struct layer_m
         {b.rho * dt.v[1], b.rho * b.U * dx.v[1], dy.p, g * q.rho, 0},
         {dt.p, b.U * dx.p, q.v[1] * P_dy, layer->gamma * b.P * div, 0},
     };
-    const double floors[EQUATIONS] = {b.rho, b.rho, b.rho, b.P}; /* times the mode's growth */
+    const double floors[EQUATIONS] = {b.rho, b.rho, b.rho, b.P}; /* times the growth rate */
     double worst = fabs(P_dy + b.rho * g) / layer->P;
     for (int e = 0; e < EQUATIONS; e++) {
         double sum = 0, size = 1e-3 * floors[e] * cimag(mode->omega);
@@ -122,7 +122,7 @@ static double worst_residual(const struct layer_subject *subject, const struct l
     const double end = layer->periodic ? 0.5 : layer->wall - 4e-3;
     double worst = 0;
     for (int i = 1; i <= PLACES; i++) {
-        /* every second place within the layer; some where mirror images join */
+        /* every second point in the layer; some where mirror images join */
         const double part = 2 * fmod(i * 0.7548776662466927, 1) - 1;
         const double y = i % 9 == 0 && layer->periodic ? copysign(0.25, part)
                          : i % 2                       ? end * part
@@ -133,8 +133,8 @@ static double worst_residual(const struct layer_subject *subject, const struct l
     return worst;
 }
 
-/* Nothing flows through walls; a periodic layer repeats itself. unit: how far the greatest |v| is
- * from 1. */
+/* Defect of the boundary conditions: no flow through walls, and periodicity. *unit: deviation of
+ * the greatest |v| from 1. */
 static double edges(const struct layer_subject *subject, const struct layer_mode *mode,
                     double *unit)
 {

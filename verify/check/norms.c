@@ -217,8 +217,9 @@ static size_t bin_of(double x)
     return bin >= 0 && bin < NORM_BINS ? (size_t)bin : NORM_BINS;
 }
 
-/* Particles whose volume-weighted mean in each bin is off the exact one by exactly +-amount, though
- * they scatter with their volumes; bin 7 is empty, outside the window the values are far off. */
+/* Particles whose volume-weighted mean in each bin differs from the exact one by exactly +-amount,
+ * with scatter that depends on the volumes; bin 7 is empty, and values outside the window are far
+ * off. */
 static size_t scatter_bins(double amount, const double *exact_means, double *x, double *volume,
                            double *value)
 {
@@ -267,7 +268,7 @@ static double empty_bins_counted(size_t n, const double *x, const double window[
     return norm_binned_l1(n, x, window, volume, value, bins, exact_means) * 19 / 20;
 }
 
-/* The seed program's: 21 bins from one width before the window, divided by 20. */
+/* The seed program's bins: 21, from one width before the window, divided by 20. */
 static double one_bin_more(size_t n, const double *x, const double window[2], const double *volume,
                            const double *value, size_t bins, const double *exact_means)
 {

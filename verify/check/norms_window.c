@@ -25,13 +25,13 @@ static double part_of_window(const struct prepared *p, const struct snapshot *s,
 struct setup_of_cells {
     const char *name;
     int dim, across;
-    double half;   /* of the window along x; the other directions are whole */
-    double radius; /* > 0: a disc or ball in place of that */
+    double half;   /* half width of the window along x; it spans the other directions */
+    double radius; /* > 0: the window is a disc or ball instead */
     double
         roughness; /* |volume of all parts/volume of the window - 1| at most: cubes at a sphere */
 };
 
-/* Columns of cells stand on the edge (x = +-0.5, R = 0.625), or would if they were not moved. */
+/* Columns of unmoved cells lie on the window's edge (x = +-0.5, R = 0.625). */
 static const struct setup_of_cells setups[] = {
     {"interval", 1, 80, 0.5 - 0.0125, 0, 1e-13},
     {"slab in 2D", 2, 40, 0.5 - 0.025, 0, 1e-13},
@@ -48,7 +48,7 @@ struct cells {
         exact[CELLS_MOST];
 };
 
-/* Moved by shift and wrapped; the error is 1 + x^2, of either sign. */
+/* Makes the cells, moved by shift and wrapped; the error is 1 + x^2 with either sign. */
 static void make_cells(struct cells *c, const struct setup_of_cells *setup, double shift)
 {
     const double side = 2. / setup->across;
@@ -88,7 +88,7 @@ static double volume_of_window(const struct setup_of_cells *setup)
     return 2 * setup->half * pow(2, setup->dim - 1);
 }
 
-/* The change of L1 for displacements of 1e-7 each way, over 1e-7. */
+/* The change of L1 for displacements of +-1e-7, over 1e-7. */
 static double steepness(struct cells *c, part_function *part)
 {
     enum { DRAWS = 4 };
@@ -104,7 +104,7 @@ static double steepness(struct cells *c, part_function *part)
         for (size_t i = 0; i < c->s.n; i++) {
             double u[3];
             gsl_qrng_get(sobol, u);
-            /* all of a draw the same way, and a little more or less */
+            /* all particles of a draw in one direction, by slightly different amounts */
             for (int d = 0; d < c->p.domain.dim; d++)
                 moved->x[d][i] += step * ((draw % 2 ? 0.5 : -0.5) + (u[d] - 0.5));
         }
@@ -119,7 +119,7 @@ static void measure_setup(struct check_run *run, const struct setup_of_cells *se
                           struct cells *c, part_function *part)
 {
     double filled = 0;
-    /* as they stand, a column is cut in halves by the edge; moved, somewhere */
+    /* unmoved, the edge halves a column; moved, it cuts elsewhere */
     for (int moved = 0; moved < 2; moved++) {
         double sum = 0;
         make_cells(c, setup, moved ? 0.37 * 2 / setup->across : 0);
@@ -152,7 +152,7 @@ static void measure_by_hand(struct check_run *run, struct cells *c, part_functio
 {
     const double nan = (double)NAN, volume[] = {1, 0.5, 1}, value[] = {2, 0.5, 70};
     c->p = (struct prepared){.domain = {1, {0}, {10}}, .window.dim = 1};
-    /* one cell of [0, 1] of which a quarter is inside, one that is inside, one that is not */
+    /* cells: a quarter inside [0, 1], wholly inside, outside */
     const double got = one_dimension(c, part, 3, (double[]){0.5, 1.25, 8}, volume, value, 0.75, 2);
     check_measure(run, off(got, (0.25 * 2 + 0.5 * 0.5) / 0.75), 1e-14, 4e-16,
                   "a quarter of one cell, the whole of another");
@@ -193,7 +193,7 @@ static void measure_parts(struct check_run *run, const void *subject)
     free(c);
 }
 
-/* ---- wrong ones ---- */
+/* ---- wrong part functions ---- */
 
 static double not_cut(const struct prepared *p, const struct snapshot *s, size_t i)
 {
@@ -202,7 +202,7 @@ static double not_cut(const struct prepared *p, const struct snapshot *s, size_t
     return window_contains(&p->window, x) ? s->volume[i] : 0;
 }
 
-/* Only the side of a cube is another one. */
+/* Cuts a cube with a wrong side. */
 static double with_side(const struct prepared *p, const struct snapshot *s, size_t i, double side)
 {
     const double cube = pow(side, p->domain.dim);

@@ -118,7 +118,7 @@ static void measure_class(struct check_run *run, const void *subject)
         {ORDER_ASYMPTOTIC, {16, 11, 7.6, 5.2, 3.6}},
         {ORDER_FLOOR_LIMITED, {16, 8, 4, 3.6, 3.5}},
         {ORDER_FLOOR_LIMITED, {16, 8, 4, 3.6, 3.7}},
-        {ORDER_FLOOR_LIMITED, {5.13, 5.12, 5.11, 5.1, 5.09}}, /* sat there from the start */
+        {ORDER_FLOOR_LIMITED, {5.13, 5.12, 5.11, 5.1, 5.09}}, /* at the floor from the start */
         {ORDER_FLOOR_LIMITED, {5.13, 5.13, 5.13, 5.13, 5.13}},
         {ORDER_FLOOR_LIMITED, {5.13, 5.131, 5.13, 5.131, 5.1301}},
         {ORDER_OSCILLATING, {16, 4, 8, 1, 2}},
@@ -136,7 +136,7 @@ static void measure_class(struct check_run *run, const void *subject)
     }
 }
 
-/* Whatever falls a little, from level to level, converges. */
+/* Mutant: every error that falls from level to level, however little, converges. */
 static enum status floor_converges(size_t n, const double *spacing, const double *error,
                                    const struct order_noise *noise, struct order_fit *fit,
                                    struct error *failure)

@@ -19,15 +19,15 @@ struct fit_subject {
     fit_function *fit;
 };
 
-/* What a ladder of synthetic errors is like: error = 0.3 spacing^1.37 exp(noise), noise normal; its
- * deviation at the coarsest level, and that over the one at the finest. */
+/* A kind of synthetic ladder: error = 0.3 spacing^1.37 exp(noise), noise normal. noise: its
+ * deviation at the coarsest level; falls: that over the deviation at the finest. */
 struct ladder_kind {
     double noise, falls;
     size_t replicates;
 };
 static const double true_order = 1.37;
 
-/* Errors (geometric means of the replicates), and the variances that the replicates show. */
+/* Draws errors (geometric means of the replicates) and the variances that the replicates show. */
 static void noisy_ladder(gsl_rng *rng, const struct ladder_kind *kind, double *spacing,
                          double *error, double *variance)
 {
@@ -62,8 +62,8 @@ static void measure_coverage(struct check_run *run, fit_function *fit,
         mean += got.order / LADDERS;
     }
     gsl_rng_free(rng);
-    /* Three standard errors of a proportion and of a mean: noise the ladders cannot resolve. With
-     * replicates one percent more: weights are as uncertain as the variances they come from. */
+    /* Floors: three standard errors of a proportion and of a mean over the ladders. Replicates
+     * allow one per cent more, because variances estimated from them set uncertain weights. */
     const double proportion = 3 * sqrt(0.95 * 0.05 / LADDERS);
     const double slope = 3 * kind->noise / (log(2) * sqrt(10)) / sqrt(LADDERS);
     check_measure(run, fabs((double)covered / LADDERS - 0.95),
@@ -75,7 +75,7 @@ static void measure_coverage(struct check_run *run, fit_function *fit,
                   kind->replicates);
 }
 
-/* Of levels one of which is noisy the fit must make more than of levels taken for alike. */
+/* With one noisy level, the weighted fit must do better than an unweighted one. */
 static void measure_weights(struct check_run *run, fit_function *fit)
 {
     const double spacing[LEVELS] = {1, 0.5, 0.25, 0.125, 0.0625};
@@ -86,8 +86,8 @@ static void measure_weights(struct check_run *run, fit_function *fit)
     check_measure(run, fabs(got.order - 1), 0.05, 0.005, "a level whose error may be off by half");
 }
 
-/* Levels that lie off the line by far more than their noise: the scatter of replicates does not
- * contain curvature. */
+/* Levels far off the line compared with their noise: the scatter of replicates does not contain
+ * curvature. */
 static void measure_curved(struct check_run *run, fit_function *fit)
 {
     double spacing[LEVELS], error[LEVELS], variance[LEVELS];
@@ -161,7 +161,7 @@ static enum status one_standard_error(size_t n, const double *spacing, const dou
     return rescaled(n, spacing, error, noise, fit, failure, 1 / 3.182446);
 }
 
-/* The residual variance divided by n, not by n - 2. */
+/* Mutant: the residual variance divided by n, not by n - 2. */
 static enum status biased_variance(size_t n, const double *spacing, const double *error,
                                    const struct order_noise *noise, struct order_fit *fit,
                                    struct error *failure)
@@ -189,7 +189,7 @@ static enum status drops_nan(size_t n, const double *spacing, const double *erro
     return order_fit(kept, s, e, kept == n ? noise : NULL, fit, failure);
 }
 
-/* Student's t for the levels alone, and never narrower than the scatter about the line. */
+/* Mutant: Student's t for the levels alone, never narrower than the scatter about the line. */
 static enum status few_freedoms(size_t n, const double *spacing, const double *error,
                                 const struct order_noise *noise, struct order_fit *fit,
                                 struct error *failure)
@@ -216,7 +216,7 @@ static enum status unweighted(size_t n, const double *spacing, const double *err
     return order_fit(n, spacing, error, NULL, fit, failure);
 }
 
-/* The variance of one run where that of the mean belongs. */
+/* Mutant: the variance of one run instead of that of the mean. */
 static enum status variance_of_one(size_t n, const double *spacing, const double *error,
                                    const struct order_noise *noise, struct order_fit *fit,
                                    struct error *failure)
@@ -229,7 +229,7 @@ static enum status variance_of_one(size_t n, const double *spacing, const double
                      failure);
 }
 
-/* The replicates' noise alone, however far the levels are off the line. */
+/* Mutant: only the replicates' noise, even if the levels are far off the line. */
 static enum status no_curvature(size_t n, const double *spacing, const double *error,
                                 const struct order_noise *noise, struct order_fit *fit,
                                 struct error *failure)

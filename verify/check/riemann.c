@@ -66,7 +66,8 @@ static void measure_table(struct check_run *run, const void *subject)
             worst_keep(&worst, relative(s.rho_star_left, row->star.rho_left));
             worst_keep(&worst, relative(s.rho_star_right, row->star.rho_right));
         }
-        /* the floor: inputs such as 1.4 and 5.99924 are rounded, and 1e-16 there is felt */
+        /* floor: inputs such as 1.4 and 5.99924 are rounded, and an error of 1e-16 there is
+         * amplified */
         check_measure(run, worst, 1e-13, 5e-15, "%s: p*, v*, rho* on both sides", row->name);
     }
 }
@@ -86,7 +87,7 @@ CHECK_DEFINE(riemann, star_states, 405,
 
 /* ---- waves ---- */
 
-/* The worst defects over random problems; problem[k] is where figure k was worst. */
+/* The worst defects over random problems; problem[k] has the worst figure k. */
 static void measure_waves(struct check_run *run, const void *subject)
 {
     enum { FIGURES = 7 };
@@ -204,7 +205,7 @@ static void measure_symmetries(struct check_run *run, const void *subject)
     size_t boosted = 0;
     for (int i = 0; i < PROBLEMS / 2; i++) {
         struct riemann_problem p = riemann_random(random, 2);
-        /* velocities on a grid, so that the boost itself rounds nothing */
+        /* velocities on a grid, so that the boost is exact */
         const double dv = 512, grain = 0x1p-24;
         p.left.v = nearbyint(p.left.v / grain) * grain;
         p.right.v = nearbyint(p.right.v / grain) * grain;

@@ -24,7 +24,7 @@ static double jump(double gamma, const struct riemann_state *k, double p, bool s
     return 2 * c / (gamma - 1) * (pow(p / k->P, z) - 1);
 }
 
-/* All that follows from a star pressure (Toro section 4.5). */
+/* Completes a solution from its star pressure (Toro section 4.5). */
 static void complete(struct riemann_solution *s, double p, bool only_shocks)
 {
     const double gamma = s->gamma, g = (gamma - 1) / (gamma + 1);
@@ -152,7 +152,7 @@ SOLVE(tail_speed)
     return NULL;
 }
 
-/* Gases that part so fast that there must be vacuum: what the plain formula makes of it. */
+/* Mutant: the plain formula applied to gases that separate fast enough to leave a vacuum. */
 static void fill_vacuum(struct riemann_solution *s)
 {
     if (!s->vacuum || !(s->left.rho > 0 && s->right.rho > 0)) return;
@@ -215,7 +215,7 @@ SOLVE(right_not_mirrored)
     static struct riemann_state name(const struct riemann_solution *s, double x, double x0,        \
                                      double t)
 
-/* The fan that (x - x0)/t lies in, seen in a mirror where it is the right one. */
+/* The fan that contains (x - x0)/t; the right one is mirrored. */
 struct fan {
     const struct riemann_state *gas;
     double sign, xi, v, c, head, tail;

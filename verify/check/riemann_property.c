@@ -48,7 +48,7 @@ struct riemann_problem riemann_random(gsl_rng *random, double decades)
     const double c =
         sound_speed(p.gamma, p.left.rho, p.left.P) + sound_speed(p.gamma, p.right.rho, p.right.P);
     const double escape = 2 * c / (p.gamma - 1);
-    double dv = 0; /* velocity at which the gases part */
+    double dv = 0; /* velocity of separation */
     switch (gsl_rng_uniform_int(random, 6)) {
     case 0:
         dv = uniform(random, -3, 1) * c;
@@ -56,7 +56,7 @@ struct riemann_problem riemann_random(gsl_rng *random, double decades)
     case 1:
         dv = -log_uniform(random, -6, 3) * c;
         break;
-    case 2: /* towards vacuum, never nearer than a hundredth */
+    case 2: /* close to vacuum, but not within a hundredth */
         dv = escape * (1 - log_uniform(random, -2, 0));
         break;
     case 3:
@@ -79,10 +79,10 @@ struct riemann_problem riemann_random(gsl_rng *random, double decades)
     return p;
 }
 
-/* ---- defects, one side at a time; the right one is looked at in a mirror ---- */
+/* ---- defects of one side; the right one is mirrored ---- */
 
 struct seen {
-    double gamma, rho, v, P, c;      /* before the wave */
+    double gamma, rho, v, P, c;      /* ahead of the wave */
     double rho_star, v_star, P_star; /* behind it */
     double head, tail;
     enum riemann_wave wave;
@@ -131,7 +131,7 @@ static void rarefaction_defects(const struct seen *k, struct riemann_defects *d)
     const double scale = fabs(k->v) + k->c, to_v = 2 / (k->gamma - 1);
     const double c_star = sound_speed(k->gamma, k->rho_star, k->P_star);
     const double v_star = k->vacuum ? k->tail : k->v_star;
-    /* a star state below the normal numbers has too few digits to say anything */
+    /* a subnormal star state has too few digits to be tested */
     const bool digits = k->P_star > DBL_MIN && k->rho_star > DBL_MIN;
     if (digits) {
         const double fall = log(k->P_star / k->P);
@@ -194,7 +194,7 @@ double riemann_fan_defect(const struct riemann_subject *subject, const struct ri
         const double to_v = 2 / (k.gamma - 1), scale = fabs(k.v) + (1 + to_v) * k.c + fabs(x0) / t;
         if (k.wave != RIEMANN_RAREFACTION || !(k.tail - k.head > 1e-6 * scale)) continue;
         fan = true;
-        /* up to the tail; at the edge of a vacuum the rounding of x decides whether there is gas */
+        /* up to the tail, except in vacuum, where the rounding of x decides whether there is gas */
         for (int i = 0; i <= POINTS + !s->vacuum; i++) {
             const double xi = k.head + (k.tail - k.head) * i / (POINTS + 1);
             const double x = x0 + (right ? -xi : xi) * t;

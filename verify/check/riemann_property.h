@@ -24,8 +24,9 @@ struct riemann_problem {
     struct riemann_state left, right;
 };
 
-/* All kinds: collisions, expansions up to vacuum and beyond, vacuum on a side, equal pressures,
- * weak waves, ratios of density and pressure up to 10^decades, gamma from 1.01 to 11. */
+/* Random problems of all kinds: collisions, expansions up to vacuum and beyond, vacuum on a side,
+ * equal pressures, weak waves, ratios of density and pressure up to 10^decades, gamma from 1.01 to
+ * 11. */
 struct riemann_problem riemann_random(gsl_rng *random, double decades);
 
 struct riemann_defects {
@@ -35,10 +36,11 @@ struct riemann_defects {
     double order;                  /* waves in order, shocks compress, rarefactions expand */
 };
 
-/* All of it; NaN where a figure that must exist does not. */
+/* All defects of a solution; NaN for a missing figure that must exist. */
 struct riemann_defects riemann_defects_of(const struct riemann_solution *solution);
 
-/* 1 if solution says vacuum where there is none or the reverse, or a star value with vacuum. */
+/* 1 if the solution has a vacuum where there is none or the reverse, or a star value with
+ * vacuum. */
 double riemann_vacuum_defect(const struct riemann_solution *solution);
 
 /* Inside the fans, at time t around x0: v -+ c = (x - x0)/t, isentrope and Riemann invariant; at
@@ -50,13 +52,13 @@ double riemann_fan_defect(const struct riemann_subject *subject,
 struct riemann_problem riemann_mirrored(const struct riemann_problem *problem);
 struct riemann_problem riemann_boosted(const struct riemann_problem *problem, double dv);
 
-/* The same done to a solution (star values, waves and speeds; the states stay). */
+/* The same transformations of a solution (star values, waves and speeds; the states stay). */
 struct riemann_solution riemann_solution_mirrored(const struct riemann_solution *solution);
 struct riemann_solution riemann_solution_boosted(const struct riemann_solution *solution,
                                                  double dv);
 
-/* Largest relative difference of star values and speeds; 1 where kinds of waves differ.
- * Differences of speeds are relative to `speed`. */
+/* Largest relative difference of star values and speeds; 1 if kinds of waves differ. Differences of
+ * speeds are relative to `speed`. */
 double riemann_difference(const struct riemann_solution *a, const struct riemann_solution *b,
                           double speed);
 

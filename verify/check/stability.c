@@ -14,7 +14,7 @@
 
 enum { PARTICLES = 24, STEPS = 32 };
 
-/* A scheme; or what a mutant does to the theory of lattice_scheme(). */
+/* A scheme, or what a mutant changes in the theory of lattice_scheme(). */
 struct theory {
     void (*spoil)(struct stability *lattice);
     struct scheme scheme;
@@ -128,7 +128,8 @@ static void measure_rates(struct check_run *run, const void *subject)
         status = solver_response(&lattice, kappa, DISPLACEMENT, &x, &ignored, &error);
         if (!status) status = solver_response(&lattice, kappa, VELOCITY, &v, &heat, &error);
         if (!status) status = solver_response(&lattice, kappa, HEAT, &u, &ignored, &error);
-        /* viscous heating has no linear part, and a quadratic one that the differences keep */
+        /* viscous heating has no linear term, and a quadratic one that the differences do not
+         * remove */
         if (scheme.viscosity != VISCOSITY_NONE) heat = r.energy;
         const double off[] = {x - r.x, v - r.v, u - r.u, heat - r.energy};
         for (size_t i = 0; i < sizeof off / sizeof *off; i++) worst_keep(&worst, fabs(off[i]));
@@ -194,8 +195,8 @@ CHECK_DEFINE(stability, rates, 908,
 /* --- time steps ------------------------------------------------------------------------------- */
 
 struct stepping {
-    const char *followed; /* the integrator that the theory takes; NULL: the right ones */
-    bool newton;          /* theory without predicted widths */
+    const char *followed; /* the integrator of the theory; NULL: the solver's own */
+    bool newton;          /* the theory ignores predicted smoothing lengths */
 };
 
 static bool stop(void *context, double time, uint64_t steps)
@@ -204,7 +205,7 @@ static bool stop(void *context, double time, uint64_t steps)
     return steps < STEPS;
 }
 
-/* The wave after the first STEPS steps of the solver, and their length. */
+/* The wave after the solver's first STEPS steps, and the length of these steps. */
 static enum status run_wave(const struct stability *lattice, double kappa, double *dt, double *x,
                             double *v, struct error *error)
 {
@@ -234,7 +235,7 @@ static void measure_wave(struct check_run *run, const struct stepping *stepping,
     struct error error = {0};
     double dt = 0, x = 0, v = 0, x_theory, v_theory;
     struct integrator even = *integrator;
-    even.first_step = 0; /* steps of one length, as the theory's */
+    even.first_step = 0; /* equal steps, as in the theory */
     scheme.integrator = &even;
     scheme.viscosity = VISCOSITY_NONE;
     scheme.h_method = method;
@@ -283,8 +284,8 @@ CHECK_DEFINE(stability, steps, 950,
 
 /* --- limits of eta ---------------------------------------------------------------------------- */
 
-/* The eta at which a wave first grows, as the kernel's descriptor states it; the plan warns from
- * there on. */
+/* The eta at which a wave first grows, as the kernel's descriptor declares it; above it the plan
+ * warns. */
 struct limit {
     const char *kernel;
     enum gradient gradient;

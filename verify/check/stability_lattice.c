@@ -8,14 +8,14 @@
 #include "lattice_waves.h"
 #include "stress_part.h"
 
-/* What the greatest frequency of a wave is compared with: sound, of (gamma P/rho)^(1/2). */
+/* The greatest frequency of a wave is compared with that of sound, (gamma P/rho)^(1/2). */
 struct lattice_subject {
-    double speed; /* over the sound speed */
+    double speed; /* relative to the sound speed */
 };
 
 static const struct lattice_subject right = {1};
 
-/* On a lattice of so many particles a side. */
+/* Measures a wave on a lattice of `side` particles a side. */
 static void measure_wave(struct check_run *run, const struct lattice_subject *subject, int dim,
                          int side, const int whole[3], const char *gradient)
 {
@@ -48,8 +48,8 @@ static void measure_wave(struct check_run *run, const struct lattice_subject *su
                   dim, whole[0], whole[1]);
 }
 
-/* Noise runs with leapfrog: a step that is short enough keeps noise as it is; one that is so long
- * that all is over at the first look is growth, too. */
+/* Runs noise with leapfrog: a short enough step does not amplify it. A step so long that the run
+ * breaks down before the first measurement counts as growth, too. */
 static void measure_noise(struct check_run *run, const char *cfl, bool grows)
 {
     char *keys[] = {"n=10^2",         "jitter=1e-6",         "viscosity=none", "energy=internal",

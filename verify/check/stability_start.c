@@ -11,7 +11,8 @@
 
 enum { PARTICLES = 24 };
 
-/* What mutants change: the widths of the two kernels, and the mass of a light particle. */
+/* Parameters that mutants change: the widths of the two kernels, and the mass of a light
+ * particle. */
 struct start {
     double narrow, wide, light;
 };
@@ -26,7 +27,7 @@ static struct scheme scheme_of(const char *kernel, double eta)
     return scheme;
 }
 
-/* Pairs at one place, two spacings apart. */
+/* Pairs of coincident particles, two spacings apart. */
 static void coincident(struct hydro_state *state)
 {
     *state = (struct hydro_state){.dim = 1, .n = PARTICLES, .hi = {PARTICLES}, .gamma = 1.4};
@@ -37,8 +38,8 @@ static void coincident(struct hydro_state *state)
     }
 }
 
-/* Distance between the two of a pair, the same for all pairs, in units of a thousandth of the
- * spacing; NaN where the solver did not start. */
+/* Distance between the particles of a pair, the same for all pairs, in thousandths of the spacing;
+ * NaN if the solver did not start. */
 static double distance(const struct scheme *scheme)
 {
     static struct hydro_state state;

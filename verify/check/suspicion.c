@@ -23,7 +23,8 @@ static void expect(struct check_run *run, bool got, bool expected, const char *w
                   expected ? "must be suspected" : "must be left alone");
 }
 
-/* Three profiles of a tube, the solution 1 % off each; density and pressure may be exchanged. */
+/* Three profiles of a tube, each 1 % off the exact solution; density and pressure may be
+ * exchanged. */
 static bool tube_suspected(const struct suspicion_subject *s, bool exchanged, double scale)
 {
     static const char *const names[] = {"density", "velocity", "pressure"};
@@ -41,7 +42,8 @@ static bool tube_suspected(const struct suspicion_subject *s, bool exchanged, do
     return s->swapped(3, names, PARTICLES, volume, values, exacts, NULL);
 }
 
-/* A coarse run: pressure is as far off as it is from density, and errs towards it. */
+/* A coarse run: the pressure's error is as large as its distance from the density, and has that
+ * sign. */
 static bool coarse_suspected(const struct suspicion_subject *s)
 {
     static const char *const names[] = {"density", "pressure"};
@@ -50,8 +52,8 @@ static bool coarse_suspected(const struct suspicion_subject *s)
     return s->swapped(2, names, 2, volume, values, exacts, NULL);
 }
 
-/* Density that lies this part of the way from its own exact solution to that of pressure. It is
- * suspected beyond two thirds of the way. */
+/* Density at this fraction of the way from its own exact solution to that of pressure. Suspicious
+ * beyond two thirds. */
 static bool between_suspected(const struct suspicion_subject *s, double part)
 {
     static const char *const names[] = {"density", "pressure"};
@@ -61,9 +63,9 @@ static bool between_suspected(const struct suspicion_subject *s, double part)
     return s->swapped(2, names, 2, volume, values, exacts, NULL);
 }
 
-/* A coarse blast, whose shock has passed all of the window: gas that should fall is at rest
- * everywhere, and its velocity 0 is near the small energy of gas ahead of the shock. difference:
- * twice that of the two velocities; where it is 0 the velocity is uniform, and follows no field. */
+/* A coarse blast whose shock has left the window: gas that should fall is at rest, and its velocity
+ * 0 is close to the small energy ahead of the shock. difference: twice that of the two velocities;
+ * at 0 the velocity is uniform and follows no field. */
 static bool even_suspected(const struct suspicion_subject *s, double difference)
 {
     static const char *const names[] = {"velocity", "energy"};

@@ -12,14 +12,14 @@
 
 enum { ROWS_MAX = 6, KEYS_MAX = 12, COMMAND_TEXT = 512 };
 
-/* Errors that differ by less are no difference. */
+/* Errors that differ by less than this factor count as equal. */
 static const double matters = 1.25;
 
 static const struct claim {
     const char *name, *text, *case_name;
     const char *day, *night;        /* sizes */
-    const char *without, *with;     /* what is claimed to be better: with */
-    const char *figure;             /* a functional */
+    const char *without, *with;     /* the claim: `with` is better */
+    const char *figure;             /* name of a functional */
     const char *rows[ROWS_MAX + 1]; /* keys of both */
 } claims_made[] = {
     {"ia_shear",
@@ -113,7 +113,7 @@ enum status claims_plan(struct claims *claims, bool nightly, struct pool *pool, 
     return STATUS_OK;
 }
 
-/* How far a run is from what is exact; infinite where it broke down, NaN where it says nothing. */
+/* Error of a run's figure; infinite if the run broke down, NaN if it has no such figure. */
 static double error_of(const struct claim *claim, const struct claim_run *run,
                        const struct pool *pool)
 {

@@ -14,7 +14,7 @@ struct claims {
     size_t count;
 };
 
-/* Adds the runs to a pool; claims, which begin as {0}, must outlive it. */
+/* Adds the runs to a pool; claims, initialised with {0}, must outlive it. */
 enum status claims_plan(struct claims *claims, bool nightly, struct pool *pool,
                         struct error *error);
 

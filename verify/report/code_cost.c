@@ -7,7 +7,7 @@
 #include "result.h"
 #include "value.h"
 
-/* Of level l: L1 of a field, or how far a functional is from its exact value. */
+/* Error at level l: L1 of a field, or the distance of a functional from its exact value. */
 static double error_of(const json_t *study, const char *what, size_t l)
 {
     const json_t *level = json_array_get(json_object_get(study, "levels"), l);
@@ -29,7 +29,7 @@ static void add_points(const json_t *study, const char *what, json_t *points)
                         value_member(level, "cpu_s"), (void *)json_false()));
 }
 
-/* The document of the study's case. */
+/* The bench document of the study's case. */
 static json_t *bench_of(json_t *bench, const json_t *study, const char *what)
 {
     const char *name = value_text(study, "case");

@@ -11,13 +11,13 @@
 #include "problem_list.h"
 #include "value.h"
 
-/* Settings that change the problem that is solved, in addition to the problem's own keys; results
- * that differ in other settings are compared. */
+/* Settings that change the solved problem, in addition to the problem's own keys; results that
+ * differ only in other settings are compared. */
 static const enum setting problem_keys[] = {
     SETTING_kind,   SETTING_gamma, SETTING_t_end, SETTING_lo,       SETTING_hi,     SETTING_window,
     SETTING_jitter, SETTING_seed,  SETTING_n,     SETTING_boundary, SETTING_gravity};
 
-/* Members of a document that say the same; command "": of every document. */
+/* Members of a document that also define the problem; command "": of every document. */
 static const struct {
     const char *command, *member;
 } problem_members[] = {
@@ -32,7 +32,7 @@ static bool differs(const json_t *a, const json_t *b)
     return a && b && !json_equal(a, b);
 }
 
-/* The name of the key if two documents' settings differ in it, else NULL. */
+/* The key's name if the settings of two documents differ in it, else NULL. */
 static const char *differing(const json_t *old, const json_t *new, enum setting key)
 {
     const char *name = setting_keys[key].name;
@@ -54,7 +54,8 @@ static const char *differing_problem(const json_t *old, const json_t *new)
     return what;
 }
 
-/* Are two documents about one problem? Where they do not say, yes. */
+/* Sets diff->problem if the documents solve different problems. Missing information counts as
+ * equal. */
 static void compare_problems(const json_t *old, const json_t *new, struct diff *diff)
 {
     const char *what = NULL, *command = json_string_value(json_object_get(new, "command"));
@@ -90,8 +91,8 @@ static bool is_timing(const struct difference *d)
     return d->new && d->new->kind == READING_TIMING;
 }
 
-/* The rank of the check that it is a figure of; last without. A check names the cause, what breaks
- * down in a run is its consequence. */
+/* The rank of the check that the figure belongs to; others come last. A failed check names the
+ * cause; a broken run is its consequence. */
 static double rank_of(const struct difference *d)
 {
     return (d->new ? d->new : d->old)->rank;
@@ -121,13 +122,14 @@ static void judge(struct diff *diff, const struct metric *old, const struct metr
     d->verdict = metric_judge(old, new, &d->amount, &fault);
     if (diff->problem[0] && old && new)
         d->verdict = VERDICT_INCOMPARABLE, d->amount = 0, fault = false;
-    const bool order = new &&new->kind == READING_ORDER; /* its interval is its threshold */
+    const bool order =
+        new &&new->kind == READING_ORDER; /* an order has its interval as threshold */
     d->regression = d->verdict == VERDICT_WORSE && fault && (order || d->amount > threshold);
 }
 
-/* ---- figures that belong together ---- */
+/* ---- related figures ---- */
 
-/* Of the figure at path: the length of its object's path. */
+/* Length of the path of the object that contains the figure at path. */
 static size_t object_length(const char *path)
 {
     size_t end = 0;
@@ -139,7 +141,7 @@ static size_t object_length(const char *path)
     return end;
 }
 
-/* Is another figure within the object of the one at path? */
+/* True if the other figure is in the object of the figure at path. */
 static bool within(const char *path, size_t object, const char *other)
 {
     return other != path && strncmp(path, other, object) == 0 && (!object || other[object] == '.');
@@ -150,8 +152,8 @@ static bool says_broke_down(const struct metric *metric)
     return metric && metric->word && strcmp(metric->word, "broke_down") == 0;
 }
 
-/* Where a run broke down, before or after, its figures are of other times, or none: what became of
- * the run is compared, and nothing else of it. */
+/* If a run broke down, before or now, its figures belong to other times or are missing: only the
+ * breakdown is compared. */
 static void leave_out_broken(struct diff *diff)
 {
     struct difference *list = diff->list;
@@ -182,7 +184,7 @@ static void leave_out_times(struct diff *diff)
     diff->count = kept;
 }
 
-/* Do both documents name a processor, and not the same? */
+/* True if the documents name two different processors. */
 static bool of_two_processors(const json_t *old, const json_t *new)
 {
     const char *before = value_text(json_object_get(old, "machine"), "processor");
@@ -190,7 +192,7 @@ static bool of_two_processors(const json_t *old, const json_t *new)
     return *before && *after && strcmp(before, after) != 0;
 }
 
-/* The status of a whole that fails because a part of it does is no regression of its own. */
+/* A status that fails because a part fails is not a regression of its own. */
 static void count_causes(struct diff *diff)
 {
     for (size_t i = 0; i < diff->count; i++) {

@@ -5,12 +5,12 @@
 
 #include "metric.h"
 
-/* Worse by more than this part of the old value is a regression (of an order: beyond its interval;
- * of a word: it says fail). Timings and counts of work never are. */
+/* A figure that is worse by more than this fraction of the old value is a regression (an order: by
+ * more than its interval; a word: if it is a failure). Timings and counts of work never are. */
 #define DIFF_THRESHOLD 0.05
 
 struct difference {
-    const struct metric *old, *new; /* NULL: on the other side only */
+    const struct metric *old, *new; /* NULL: only in the other document */
     enum metric_verdict verdict;
     double amount; /* see metric_judge */
     bool regression;
@@ -20,16 +20,15 @@ struct diff {
     struct metrics old, new;
     struct difference *list; /* regressions first, then vanished, incomparable, worse, better ... */
     size_t count, verdicts[READING_VERDICTS], regressions;
-    size_t compared; /* figures that both documents have and that say something about each other */
-    size_t left_out; /* figures of runs that broke down: the breakdown is what is compared */
-    size_t left_out_times; /* of two processors, which say nothing about each other */
-    char
-        problem[256]; /* "", or why no figures can be compared: two cases, nothing to compare ... */
-    bool well;        /* no problem, no regression, nothing vanished, nothing incomparable */
+    size_t compared;       /* comparable figures that both documents have */
+    size_t left_out;       /* figures of broken runs: only the breakdown is compared */
+    size_t left_out_times; /* timings of different processors */
+    char problem[256]; /* "", or why nothing can be compared: two cases, no common figures ... */
+    bool well;         /* no problem, regression, vanished or incomparable figure */
 };
 
-/* STATUS_OK or STATUS_CHECK_FAILED (not well); STATUS_BAD_INPUT: documents of two commands, or a
- * figure that no rule covers. */
+/* Returns STATUS_OK or STATUS_CHECK_FAILED (not well); STATUS_BAD_INPUT: documents of two commands,
+ * or a figure without a rule. */
 enum status diff_documents(const json_t *old, const json_t *new, double threshold,
                            struct diff *diff, struct error *error);
 void diff_free(struct diff *diff);
@@ -40,6 +39,6 @@ json_t *diff_figures_json(const struct diff *diff, size_t most);
 /* Adds "figures", "summary", "problem" and "status". */
 void diff_add_json(const struct diff *diff, json_t *document);
 
-/* Why it is not well, if so; then a table of everything that is not the same, on standard output;
- * exact: with that column. */
+/* Prints why the comparison fails, if it does, and a table of all changes on standard output;
+ * exact: with the column of exact values. */
 void diff_print(const struct diff *diff, double threshold, bool exact, bool color);

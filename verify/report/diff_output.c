@@ -10,15 +10,14 @@
 
 enum { LINES_MAX = 60 };
 
-/* new/old; NaN where that says nothing. */
+/* new/old; NaN if the ratio has no meaning. */
 static double ratio_of(const struct difference *d)
 {
     if (!d->old || !d->new || d->old->word || d->new->word) return (double)NAN;
     return d->new->value / d->old->value;
 }
 
-/* The value that a figure would have at its best: an error's 0, a functional's exact value; NaN
- * where it is unknown. */
+/* The best value of a figure: 0 for an error, the exact value of a functional; NaN if unknown. */
 static double exact_of(const struct difference *d)
 {
     const struct metric *metric = d->new ? d->new : d->old;
@@ -110,7 +109,7 @@ static void print_difference(const struct difference *d, bool exact,
     printf("  %s\n", path_of(d));
 }
 
-/* The first line: what it comes to, and why. */
+/* Prints the verdict and its reason in one line. */
 static void print_verdict(const struct diff *diff, const struct table_style *style)
 {
     const size_t regressions = diff->regressions, vanished = diff->verdicts[VERDICT_VANISHED],

@@ -14,14 +14,15 @@
 #include "result.h"
 #include "value.h"
 
-/* What a figure may move by without having changed: an error relatively, an order absolutely. */
+/* Noise of figures: relative for an error, absolute for an order. */
 static const double error_noise = 0.01, order_noise = 0.03;
-static const double error_least = 1e-15; /* a logarithm needs one */
+static const double error_least = 1e-15; /* lower limit for logarithms */
 enum { PATH_LENGTH = 1024 };
 
 /* ---- this night's line ---- */
 
-/* Thousands of checks are too many for every night: of each, the value nearest its bound. */
+/* Thousands of figures of checks are too many for the history: keeps the one closest to its bound
+ * of each check. */
 static void add_checks(const json_t *checks, json_t *figures)
 {
     for (size_t i = 0; i < json_array_size(checks); i++) {
@@ -42,7 +43,7 @@ static json_t *value_of(const struct metric *metric)
     return metric->word ? json_string(metric->word) : result_number(metric->value);
 }
 
-/* {path: value} of the headline figures. */
+/* {path: value} of the headline metrics. */
 static json_t *figures_of(const struct metrics *metrics, const json_t *results)
 {
     json_t *figures = json_object();
@@ -69,7 +70,7 @@ static json_t *line_of(const json_t *results, struct error *error)
     return line;
 }
 
-/* One write, which begins on a line of its own even where an earlier one was cut off. */
+/* Appends with one write, on a new line even if an earlier write was cut off. */
 enum status history_append(const json_t *results, const char *path, struct error *error)
 {
     json_t *line = line_of(results, error);
@@ -94,7 +95,7 @@ enum status history_append(const json_t *results, const char *path, struct error
 
 /* ---- earlier nights ---- */
 
-/* Lines of this mode, the newest ones, oldest first; a line that is none is counted. */
+/* Reads the newest lines of this mode, oldest first; counts lines that are not valid. */
 static enum status read_nights(const char *path, const char *mode, json_t *nights,
                                size_t *unreadable, struct error *error)
 {
@@ -122,14 +123,14 @@ static enum status read_nights(const char *path, const char *mode, json_t *night
 
 /* ---- order ---- */
 
-/* How far a figure has moved, up or down; a word, or one that was not finite: farther than any. */
+/* Relative change of a figure, up or down; infinite for a word or a value that was not finite. */
 static double distance(const json_t *entry)
 {
     const double ratio = value_member(entry, "ratio");
     return ratio > 0 ? fabs(log(ratio)) : (double)INFINITY;
 }
 
-/* What fails a diff, then what has moved most; counts of work after figures of quality. */
+/* Failures first, then by change; counts of work after figures of quality. */
 static int worst_first(const void *a, const void *b)
 {
     static const char *const keys[] = {"fault", "work"};
@@ -203,7 +204,7 @@ static json_t *series_of(const json_t *nights, const char *path)
     return series;
 }
 
-/* A curve has a point where its night has the figure. */
+/* True if a curve has at least one finite point. */
 static bool has_points(const json_t *series)
 {
     size_t i;
@@ -213,7 +214,8 @@ static bool has_points(const json_t *series)
     return false;
 }
 
-/* The first of the fields that the study is judged by whose error and order the nights know. */
+/* The trend of the first field that judges the study and of which the nights have error and
+ * order. */
 static json_t *trend_of(const json_t *nights, const json_t *study)
 {
     const char *name = value_text(study, "case"), *label = value_text(study, "label");
@@ -265,12 +267,12 @@ static json_t *change_json(const struct metric *metric, const json_t *nights, co
         (after > before) == order ? "better" : "worse");
 }
 
-/* Change points of one figure; nights without it are left out. */
+/* Adds the change points of one figure; nights without it are left out. */
 static void add_changes(const struct metric *metric, const json_t *nights, json_t *changes)
 {
     double value[HISTORY_NIGHTS_MAX];
     size_t night[HISTORY_NIGHTS_MAX], n = 0;
-    struct trend_change found[HISTORY_NIGHTS_MAX]; /* no more than nights */
+    struct trend_change found[HISTORY_NIGHTS_MAX]; /* at most one per night */
     const bool order = metric->kind == READING_ORDER;
     for (size_t i = 0; i < json_array_size(nights); i++) {
         const json_t *figures = json_object_get(json_array_get(nights, i), "figures");

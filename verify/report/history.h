@@ -9,7 +9,7 @@
 
 #include "status.h"
 
-/* At most so many nights, the newest ones of the same mode, are read. */
+/* The newest nights of a mode, up to this number, are read. */
 enum { HISTORY_NIGHTS_MAX = 120 };
 
 /* The results' place in the history at path (which need not be there yet; lines that cannot be
@@ -26,11 +26,11 @@ enum { HISTORY_NIGHTS_MAX = 120 };
 enum status history_tell(const json_t *results, const char *path, json_t **history,
                          struct error *error);
 
-/* Adds this night's line, whole or not at all. */
+/* Appends this night's line, completely or not at all. */
 enum status history_append(const json_t *results, const char *path, struct error *error);
 
-/* Change points of a figure's history, by medians: one odd night is not one, unless it is the last
- * (what is new must be seen at once); a level that stays is. */
+/* Change points of a figure's history, from medians: a single odd night is none, unless it is the
+ * last one (new changes must show at once); a lasting change of level is one. */
 
 enum { TREND_NIGHTS_MAX = 400 };
 
@@ -41,8 +41,9 @@ struct trend_change {
 
 #define TREND_WINDOW 5
 
-/* value: n <= TREND_NIGHTS_MAX nights, oldest first, all finite (logarithms of what varies
- * relatively). A change point is where the medians differ by more than noise plus three times the
- * scatter (1.4826 median |residual|) about them. Rising order; returns their number, <= most. */
+/* value: n <= TREND_NIGHTS_MAX nights, oldest first, all finite (logarithms of figures with
+ * relative noise). At a change point the medians differ by more than noise plus three times the
+ * scatter (1.4826 median |residual|) about them. Writes them in rising order; returns their number,
+ * <= most. */
 size_t trend_changes(size_t n, const double *value, double noise, struct trend_change *changes,
                      size_t most);

@@ -11,15 +11,15 @@
 
 enum { PATH_MAX_LENGTH = 1536, NAME_MAX_LENGTH = 900, KEYS_MAX = 64 };
 
-/* A check's value means nothing below as many of its floors. */
+/* A check's value below this many of its floors is noise. */
 static const double check_floors = 10;
 
-/* Members that hold no figures: what was asked for, how it was drawn. */
+/* Members without figures: requests and how results are drawn. */
 static const char *const closed[] = {"machine",  "profile",  "plan",        "settings",
                                      "gate",     "spread",   "pairwise",    "history",
                                      "failures", "excluded", "through_time"};
 
-/* Members that say what an entry of a list is about, in this order: words, then numbers. */
+/* Members that identify an entry of a list, in this order: words, then numbers. */
 static const char *const words[] = {
     "case",    "label", "scheme", "group",  "row",      "column",   "check", "name",
     "subject", "fault", "mutant", "kernel", "operator", "gradient", "of",    "what",
@@ -34,7 +34,7 @@ static bool one_of(const char *word, const char *const *list, size_t n)
     return false;
 }
 
-/* ---- walking through a document ---- */
+/* ---- document traversal ---- */
 
 static void add(struct metrics *metrics, struct metric metric, const char *path)
 {
@@ -55,12 +55,12 @@ static void add(struct metrics *metrics, struct metric metric, const char *path)
     metrics->list[metrics->count++] = metric;
 }
 
-/* level: the entry of "levels" that encloses this object, or NULL; field: its field. */
+/* level: the enclosing entry of "levels", or NULL; field: its field. */
 struct place {
     char path[PATH_MAX_LENGTH];
     const json_t *level;
     const char *field;
-    double rank; /* of the entry of "checks" that encloses it; infinite: none does */
+    double rank; /* of the enclosing entry of "checks"; infinite: none */
 };
 
 static double exact_of(const json_t *parent, const char *name)
@@ -69,7 +69,7 @@ static double exact_of(const json_t *parent, const char *name)
     return value_member(parent, strcmp(name, "value") ? "exact" : "reference");
 }
 
-/* What the figure's neighbours know about its noise. */
+/* Sets a figure's noise from other members of the same object. */
 static void refine(struct metric *metric, const json_t *parent, const char *name)
 {
     if (metric->kind == READING_ORDER) {
@@ -87,7 +87,7 @@ static void refine(struct metric *metric, const json_t *parent, const char *name
     }
 }
 
-/* Replicates say themselves how far an error may move: two standard deviations of the mean. */
+/* Noise from replicates: two standard deviations of the mean. */
 static double level_noise(const json_t *level, const char *field, const char *norm)
 {
     const double spread =
@@ -116,7 +116,7 @@ static bool is_headline(const struct place *at, const json_t *parent, const char
     return headline;
 }
 
-/* The member `name` of parent, at the end of a path. */
+/* Takes the member `name` of parent. */
 static void take(struct metrics *metrics, const struct place *at, const json_t *parent,
                  const char *name, const json_t *value)
 {
@@ -151,7 +151,7 @@ static void take(struct metrics *metrics, const struct place *at, const json_t *
     add(metrics, metric, path);
 }
 
-/* The components of a vector that is a figure itself. */
+/* Takes the components of a vector that is itself a figure. */
 static void take_vector(struct metrics *metrics, const struct place *at, const char *name,
                         const json_t *list)
 {
@@ -167,8 +167,8 @@ static void take_vector(struct metrics *metrics, const struct place *at, const c
         take(metrics, &inside, list, components[i], json_array_get(list, i));
 }
 
-/* Numbers of five digits and more behind the point say where something was found ("q 0.564762"),
- * and that moves with what was found: they are no part of a name. */
+/* Removes numbers with five or more decimals from a name: they are positions of extrema ("q
+ * 0.564762"), which move when the results change. */
 static void leave_out_places(char *name)
 {
     char *to = name;
@@ -188,7 +188,7 @@ static void leave_out_places(char *name)
     *to = '\0';
 }
 
-/* Adds ", text" to a name; brackets would be taken for the path's. */
+/* Appends ", text" to a name; replaces brackets, which delimit names in a path. */
 static void add_name(char name[NAME_MAX_LENGTH], const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 static void add_name(char name[NAME_MAX_LENGTH], const char *format, ...)
@@ -212,8 +212,8 @@ static int by_name(const void *a, const void *b)
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* What was asked for, where it is all in words; the settings of a whole run say nothing more than
- * the other names, and change with defaults. */
+/* Appends settings that are all words. The settings of a whole run add nothing to the other names,
+ * and change with defaults. */
 static void add_settings(char name[NAME_MAX_LENGTH], const json_t *settings)
 {
     const char *key, *keys[KEYS_MAX];
@@ -228,7 +228,7 @@ static void add_settings(char name[NAME_MAX_LENGTH], const json_t *settings)
         add_name(name, "%s=%s", keys[i], json_string_value(json_object_get(settings, keys[i])));
 }
 
-/* "sod, default": what tells an entry from others, never its place among them. */
+/* Names an entry by its members ("sod, default"), never by its index. */
 static void name_entry(const json_t *entry, char name[NAME_MAX_LENGTH])
 {
     const json_t *value;
@@ -268,11 +268,11 @@ static void walk_list(struct metrics *metrics, const struct place *at, const cha
         struct place inside = *at;
         if (!json_is_object(entry)) continue; /* raw data */
         name_entry(entry, name);
-        if (strcmp(key, "snapshots") == 0) /* of one run as a rule, each at its time */
+        if (strcmp(key, "snapshots") == 0) /* usually of one run at different times */
             add_name(name, "time %.10g", value_member(entry, "time"));
         const char *computed = json_string_value(json_object_get(entry, "reproduce"));
         if (computed &&
-            (!strcmp(key, "skips") || !strcmp(key, "autopsies"))) /* of one case twice */
+            (!strcmp(key, "skips") || !strcmp(key, "autopsies"))) /* a case may occur twice */
             add_name(name, "%s", computed);
         const int length = snprintf(inside.path, sizeof inside.path, "%s%s%.80s[%s]", at->path,
                                     *at->path ? "." : "", key, name);
@@ -328,8 +328,8 @@ static int by_path(const void *a, const void *b)
     return order ? order : (x->number > y->number) - (x->number < y->number);
 }
 
-/* Entries that nothing tells apart become one, the worst of them: to pair them by their place would
- * compare different things as soon as one is missing. How many there are is a part of the name. */
+/* Joins indistinguishable entries into one with the worst value: pairing them by index would
+ * compare different things as soon as one is missing. Their number becomes part of the name. */
 static void join_alike(struct metrics *metrics)
 {
     struct metric *list = metrics->list;

@@ -13,74 +13,73 @@
 
 enum metric_kind {
     READING_ERROR,   /* less is better; noise is relative */
-    READING_CHECK,   /* less is better, a factor of 3 means nothing; its own status judges it */
+    READING_CHECK,   /* less is better, factors below 3 are noise; the check has its own status */
     READING_ORDER,   /* more is better; noise is absolute */
-    READING_PART,    /* less is better, but what it is a part of is judged itself: never a fault */
-    READING_EXACT,   /* nearer `exact` is better; noise is relative, of the distance */
-    READING_COUNT,   /* of work: less is better, never a fault; noise is relative */
+    READING_PART,    /* less is better, but its whole is judged instead: never a fault */
+    READING_EXACT,   /* closer to `exact` is better; noise is relative to the distance */
+    READING_COUNT,   /* amount of work: less is better, never a fault; noise is relative */
     READING_TIMING,  /* less is better, never a fault; noise is a ratio */
     READING_STATUS,  /* a word */
-    READING_NEUTRAL, /* neither more nor less is better: any change must be looked at */
+    READING_NEUTRAL, /* no direction is better: every change is reported */
 };
 
 struct metric {
     char *path; /* studies[sod, default].levels[198].errors.density.l1 */
     enum metric_kind kind;
     double value;               /* NaN for a word */
-    double noise, floor, exact; /* up to the floor all values are the same */
-    char *word;                 /* of a STATUS, else NULL */
-    double rank;                /* of the check that it is a figure of; infinite: of none */
-    size_t number;              /* in the document */
-    bool headline;              /* goes into the history */
+    double noise, floor, exact; /* values below the floor are equal */
+    char *word;                 /* for READING_STATUS, else NULL */
+    double rank;                /* rank of the check it belongs to; infinite: none */
+    size_t number;              /* position in the document */
+    bool headline;              /* kept in the history */
 };
 
 struct metrics {
     struct metric *list; /* sorted by path, each once */
     size_t count, room;
     bool failed;       /* no memory */
-    char trouble[400]; /* "", or the first figure that no rule covers, which is not in the list */
+    char trouble[400]; /* "", or the first figure without a rule, which is not in the list */
 };
 
-/* All metrics of a document. Entries of a list that nothing tells apart are one reading, the worst
- * of them, with their number in its path. STATUS_ENVIRONMENT: no memory. */
+/* Collects all metrics of a document. Indistinguishable entries of a list become one metric with
+ * the worst value, and their number in its path. STATUS_ENVIRONMENT: no memory. */
 enum status metric_collect(const json_t *document, struct metrics *metrics, struct error *error);
 void metric_free(struct metrics *metrics);
 
-/* The reading at a path, or NULL. */
+/* The metric at a path, or NULL. */
 const struct metric *metric_find(const struct metrics *metrics, const char *path);
 
 enum metric_verdict {
     VERDICT_SAME,
     VERDICT_BETTER,
     VERDICT_WORSE,
-    VERDICT_INCOMPARABLE, /* it changed, and neither way is better */
+    VERDICT_INCOMPARABLE, /* changed, and no direction is better */
     VERDICT_VANISHED,     /* only the old document has it */
     VERDICT_NEW,          /* only the new one has it */
 };
 enum { READING_VERDICTS = VERDICT_NEW + 1 };
 extern const char *const metric_verdicts[READING_VERDICTS];
 
-/* Judges how a metric has changed; either may be NULL if it is there on one side only. *amount: how
- * much worse it is, relative to the old value (for an order: absolute); infinite if a word or a
- * finite number got lost; 0 unless it is worse. *fault: can this change fail a comparison with a
- * threshold? */
+/* Judges the change of a metric; old or new may be NULL. *amount: how much worse it is, relative to
+ * the old value (absolute for an order); infinite if a word or a finite number was lost; 0 unless
+ * it is worse. *fault: true if this change can fail a comparison with a threshold. */
 enum metric_verdict metric_judge(const struct metric *old, const struct metric *new, double *amount,
                                  bool *fault);
 
-/* Is a the worse one of two metrics of one kind? For those without better or worse: no. */
+/* True if a is worse than b, both of one kind; false for kinds without a direction. */
 bool metric_worse(const struct metric *a, const struct metric *b);
 
 struct metric_rule {
-    /* inside: a name on the way to the figure, "" for anywhere. name: the figure's own; "*x" ends
-     * in x, "x*" begins with x. The first rule that fits counts. */
+    /* inside: a member on the path to the figure, "" for any. name: the figure's own; "*x" matches
+     * names that end in x, "x*" those that begin with x. The first matching rule applies. */
     const char *inside, *name;
-    enum { RULE_FIGURE, RULE_LEFT_OUT } use; /* left out: a context, or judged elsewhere */
+    enum { RULE_FIGURE, RULE_LEFT_OUT } use; /* left out: context, or judged elsewhere */
     enum metric_kind kind;
     double noise, floor;
 };
 
-/* The rule for a member of the object at path; NULL: there is none. */
+/* The rule for this member of the object at path; NULL: none. */
 const struct metric_rule *metric_rule(const char *path, const char *name);
 
-/* Is name one of the path's parts outside brackets? */
+/* True if name is a component of the path outside brackets. */
 bool metric_passes(const char *path, const char *name);

@@ -7,13 +7,13 @@
 
 /* Timings below this are noise. */
 static const double timing_least = 0.02;
-/* A check's value: a factor that means nothing. */
+/* Changes of a check's value within this factor are noise. */
 static const double check_factor = 3;
 
 const char *const metric_verdicts[READING_VERDICTS] = {"same",         "better",   "worse",
                                                        "incomparable", "vanished", "new"};
 
-/* How bad a word is; -1: not known. From FAULT on it is a fault. */
+/* Severity of a word; -1: unknown. From FAULT on it is a fault. */
 enum { FAULT = 3 };
 static int rank(const char *word, bool suspicion)
 {
@@ -47,7 +47,7 @@ static enum metric_verdict judge_word(const struct metric *old, const struct met
     if (before == after) return VERDICT_SAME;
     if (after < before) return VERDICT_BETTER;
     *amount = (double)INFINITY;
-    /* what passed and is not judged any more is lost, too */
+    /* a passed test that is no longer judged is lost */
     *fault =
         after >= FAULT || (strcmp(old->word, "pass") == 0 &&
                            (!strcmp(new->word, "none") || !strcmp(new->word, "skip") ||
@@ -55,13 +55,13 @@ static enum metric_verdict judge_word(const struct metric *old, const struct met
     return VERDICT_WORSE;
 }
 
-/* a before, b after, less being better. */
+/* a: before, b: after; less is better. */
 static enum metric_verdict judge_less(double a, double b, double noise, double floor,
                                       double *amount)
 {
     if (a <= floor && b <= floor) return VERDICT_SAME;
     const double base = fmax(a, floor);
-    const double change = (b - base) / base; /* infinite where there was nothing */
+    const double change = (b - base) / base; /* infinite if the old value was 0 */
     if (fabs(b - a) <= noise * base) return VERDICT_SAME;
     if (change < 0) return VERDICT_BETTER;
     *amount = change;

@@ -6,12 +6,12 @@
 #define OUT RULE_LEFT_OUT, 0, 0, 0
 
 static const struct metric_rule rules[] = {
-    /* what depends on timings, or is a sum over what is judged one by one */
+    /* depends on timings, or sums figures that are judged one by one */
     {"cheapest", "*", OUT},
-    {"estimate", "*", OUT}, /* of the run that follows */
+    {"estimate", "*", OUT}, /* estimate of the run that follows */
     {"comparison", "only_seed_survives", 0, READING_PART, 0, 0},
     {"comparison", "*", OUT},
-    {"checks", "seconds", OUT}, /* of thousands some are always slow */
+    {"checks", "seconds", OUT}, /* among thousands some are always slow */
     {"", "limit_over_this", OUT},
     {"", "seed_plain_over_this", OUT},
     {"", "saves", OUT},
@@ -20,7 +20,7 @@ static const struct metric_rule rules[] = {
     {"", "on_front", OUT},
     {"threads", "gain*", OUT},
     /* time, memory, work */
-    {"", "wall_s", 0, READING_TIMING, 3, 0}, /* what else runs counts */
+    {"", "wall_s", 0, READING_TIMING, 3, 0}, /* other processes affect it */
     {"", "*_s", 0, READING_TIMING, 1.5, 0},
     {"", "cpu_s_*", 0, READING_TIMING, 1.5, 0},
     {"", "seconds", 0, READING_TIMING, 3, 0},
@@ -40,14 +40,14 @@ static const struct metric_rule rules[] = {
     /* words */
     {"faults", "status", 0, READING_STATUS, 0, 0},
     {"faults", "*", OUT},
-    {"score", "score", 0, READING_ORDER, 0.05, 0}, /* another sample each night */
+    {"score", "score", 0, READING_ORDER, 0.05, 0}, /* a new sample each night */
     {"score", "*", OUT},
-    {"findings", "*", OUT}, /* named by files; the status is all of them */
+    {"findings", "*", OUT}, /* names contain file names; the status sums them up */
     {"", "status", 0, READING_STATUS, 0, 0},
-    {"kernel", "*", OUT},         /* of a snapshot: found, not judged */
-    {"", "foreign", OUT},         /* its status says whether that passes */
-    {"code", "exit_status", OUT}, /* reason says what it means for the run */
-    /* of an autopsy: what an error is made of is smaller or larger, as the error is */
+    {"kernel", "*", OUT},         /* of a snapshot: identified, not judged */
+    {"", "foreign", OUT},         /* the status tells whether this passes */
+    {"code", "exit_status", OUT}, /* the reason is compared instead */
+    /* autopsies: the parts of an error grow and shrink with the error */
     {"power", "*", OUT},
     {"shares", "order",
      OUT}, /* of the sizes of parts it is compared; in reports of the whole alone */
@@ -66,11 +66,11 @@ static const struct metric_rule rules[] = {
     {"levels", "density", 0, READING_PART, 0.1, 1e-12},
     {"levels", "density_regular", 0, READING_PART, 0.1, 1e-12},
     {"", "from", OUT},
-    {"", "lost", OUT}, /* the orders are compared */
+    {"", "lost", OUT}, /* derived from the orders */
     {"", "floor", OUT},
-    {"printed", "*", OUT}, /* by a plug-in; its status says so */
+    {"printed", "*", OUT}, /* printed by a plug-in; its status is compared */
     {"noise", "*", 0, READING_PART, 0.1, 1e-12},
-    {"gates", "*", OUT}, /* bounds, and errors that are read where they stand */
+    {"gates", "*", OUT}, /* bounds, and errors that are compared elsewhere */
     {"", "detected", 0, READING_STATUS, 0, 0},
     {"", "suspicion", 0, READING_STATUS, 0, 0},
     {"", "outcome", 0, READING_STATUS, 0, 0},
@@ -78,11 +78,11 @@ static const struct metric_rule rules[] = {
     {"", "same_bits", 0, READING_STATUS, 0, 0},
     {"", "*_wave", 0, READING_STATUS, 0, 0},
     {"orders", "class", 0, READING_STATUS, 0, 0},
-    /* errors, and what they are made of */
+    /* errors and their parts */
     {"", "still", 0, READING_CHECK, 0, 1e-9},
     {"still_gas", "value", 0, READING_CHECK, 0, 1e-9},
     {"still_gas", "bound", 0, READING_NEUTRAL, 1e-9, 0},
-    {"errors", "linf", 0, READING_PART, 1e-3, 1e-13}, /* of one particle at a jump */
+    {"errors", "linf", 0, READING_PART, 1e-3, 1e-13}, /* a single particle at a jump */
     {"errors", "*", 0, READING_ERROR, 1e-3, 1e-13},
     {"budget", "*", 0, READING_PART, 1e-2, 1e-13},
     {"regions", "l1", 0, READING_PART, 1e-2, 1e-13},
@@ -93,7 +93,7 @@ static const struct metric_rule rules[] = {
     {"regularity", "spread", 0, READING_PART, 0.1, 1e-12},
     {"regularity", "*", OUT}, /* nearest: better is neither more nor less; pairs are few */
     {"start", "*", 0, READING_PART, 0.1, 1e-12},
-    {"matrix", "*", 0, READING_PART, 0.1, 1e-6}, /* of matrices; angles in degrees */
+    {"matrix", "*", 0, READING_PART, 0.1, 1e-6}, /* condition of matrices; angles in degrees */
     {"floors", "density", 0, READING_CHECK, 0, 1e-13},
     {"floors", "gradient", 0, READING_CHECK, 0, 1e-13},
     {"floors", "*", OUT},
@@ -107,14 +107,14 @@ static const struct metric_rule rules[] = {
     {"skips", "asleep", OUT},
     {"skips", "difference", 0, READING_CHECK, 0, 1e-9},
     {"skips", "bound", 0, READING_NEUTRAL, 1e-9, 0},
-    {"claims", "*", OUT}, /* about schemes that are no default */
+    {"claims", "*", OUT}, /* about other schemes than the default */
     {"functionals", "extrapolated", 0, READING_EXACT, 0.05, 1e-13},
     {"functionals", "exact", OUT},
     {"functionals", "gci*", OUT},
     {"functionals", "order", OUT},
     {"functionals", "reference", 0, READING_NEUTRAL, 1e-9, 1e-13},
     {"functionals", "*", 0, READING_EXACT, 0.05, 1e-13},
-    {"", "error_over_signal", 0, READING_PART, 1e-3, 1e-13}, /* the same as error */
+    {"", "error_over_signal", 0, READING_PART, 1e-3, 1e-13}, /* proportional to error */
     {"", "error", 0, READING_ERROR, 1e-3, 1e-13},
     {"", "error_spread", OUT},
     {"", "error_*", 0, READING_ERROR, 1e-2, 1e-12},
@@ -123,18 +123,18 @@ static const struct metric_rule rules[] = {
     {"", "order_*", 0, READING_ORDER, 0.05, 0},
     {"", "exact_degree_*", 0, READING_ORDER, 0.5, 0},
     {"", "normalisation", 0, READING_EXACT, 1, 1e-12},
-    /* maps of stability; the outcome is what judges a cell */
+    /* maps of stability; the outcome judges a cell */
     {"cells", "measured", 0, READING_PART, 0.1, 1e-13},
     {"cells", "predicted", 0, READING_NEUTRAL, 1e-6, 1e-13},
     {"groups", "bound", 0, READING_NEUTRAL, 1e-9, 0},
     {"groups", "stable_below", 0, READING_NEUTRAL, 1e-9, 0},
-    /* sums over what is judged one by one: one fault is one regression */
+    /* sums of figures that are judged one by one: one fault is one regression */
     {"verdict", "*", OUT},
     {"summary", "*", OUT},
-    /* of operators on clouds */
+    /* operators on clouds */
     {"rows", "neighbours", 0, READING_COUNT, 0.01, 0},
     {"rows", "condition", 0, READING_PART, 0.1, 0},
-    /* without better or worse: exact solutions, kernels, gradients and rates of given particles */
+    /* no direction is better: exact solutions, kernels, gradients and rates of given particles */
     {"speeds", "*", 0, READING_NEUTRAL, 1e-9, 1e-13},
     {"samples", "*", 0, READING_NEUTRAL, 1e-9, 1e-13},
     {"values", "*", 0, READING_NEUTRAL, 1e-9, 1e-13},
@@ -158,7 +158,7 @@ static const struct metric_rule rules[] = {
     {"points", "neighbours", 0, READING_NEUTRAL, 0, 0},
     {"points", "condition", 0, READING_NEUTRAL, 1e-6, 0},
     {"points", "h", 0, READING_NEUTRAL, 1e-9, 0},
-    /* contexts: what follows from settings, what says how sure another figure is */
+    /* context: consequences of settings, uncertainties of other figures */
     {"precision", "*", OUT},
     {"resolution", "*", OUT},
     {"window", "*", OUT},

@@ -12,15 +12,15 @@
 
 enum { LADDER_MAX = 12, KEYS_MAX = 12, TEXT = 256 };
 
-/* Particles that start up to 0.4 spacings beside a lattice, plain viscosity that lets them rest. */
+/* Particles start up to 0.4 spacings from a lattice and come to rest by plain viscosity. */
 static const char *const usual = "jitter=0.4 viscosity=constant";
-/* Share of the particles that may stand nearer to another one than half a spacing. */
+/* Largest share of particles with a neighbour closer than half a spacing. */
 static const double bound = 0.01;
 
-/* Every kernel with one gradient in one dimension, from few neighbours to many. */
+/* Runs of every kernel with one gradient in one dimension, from few neighbours to many. */
 static const struct crowd {
     int dim;
-    bool nightly; /* by night only; else what day and night each have */
+    bool nightly; /* only at night; other crowds run day and night */
     const char *gradient, *case_name;
     const char *day, *night; /* sizes */
     int by_day[LADDER_MAX + 1], by_night[LADDER_MAX + 1];
@@ -56,7 +56,7 @@ enum { CROWDS = sizeof crowds / sizeof *crowds };
 
 struct pairing_run {
     const struct crowd *crowd;
-    const char *kernel; /* its name, static */
+    const char *kernel; /* its name, a static string */
     int neighbours;
     char keys[TEXT];
     struct run run;
@@ -103,15 +103,15 @@ enum status pairing_plan(struct pairing *pairing, bool nightly, struct pool *poo
     return STATUS_OK;
 }
 
-/* ---- what has come out ---- */
+/* ---- results ---- */
 
-/* Of one kernel in one crowd. */
+/* Results of one kernel in one crowd. */
 struct ladder {
     const struct pairing_run *runs;
-    size_t count, sound, first /* in which there are pairs; count: none */;
+    size_t count, sound, first /* first with pairs; count: none */;
     double paired[LADDER_MAX], nearest[LADDER_MAX];
-    bool known;                 /* what theory says: */
-    double predicted, negative; /* NaN: never, nowhere */
+    bool known;                 /* predictions of the theory: */
+    double predicted, negative; /* NaN: never or nowhere */
 };
 
 static struct ladder ladder_read(const struct pairing_run *runs, size_t most,
@@ -180,11 +180,12 @@ static json_t *ladder_json(const struct ladder *ladder, const char *verdict)
                          (void *)result_numbers(ladder->nearest, ladder->count), verdict, command);
 }
 
-/* What all ladders of a gradient say of the claim. */
+/* The evidence of all ladders of a gradient for the claim. */
 struct balance {
-    size_t kept, broken, others; /* kernels nowhere negative without and with pairs; others with */
-    size_t unknown;              /* nowhere negative, without pairs in those runs that were sound */
-    char worst[TEXT];            /* the first that is broken */
+    size_t kept, broken, others; /* kernels without a negative transform, without and with pairs;
+                                    others with pairs */
+    size_t unknown;              /* no negative transform, no pairs in the sound runs */
+    char worst[TEXT];            /* the first ladder that breaks the claim */
 };
 
 static void balance_add(struct balance *balance, const struct ladder *ladder)

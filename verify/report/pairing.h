@@ -15,14 +15,14 @@ struct pairing {
     size_t count;
 };
 
-/* Adds the runs to a pool; pairing, which begins as {0}, must outlive it. */
+/* Adds the runs to a pool; pairing, initialised with {0}, must outlive it. */
 enum status pairing_plan(struct pairing *pairing, bool nightly, struct pool *pool,
                          struct error *error);
 
 /* After the pool has run, one claim for each gradient: [{"name", "claim", "verdict", "bound",
  * "ladders": [{"kernel", "dim", "first_negative_kh", "predicted" (null: never), "neighbours",
- * "paired", "nearest" (lists; NaN where the run broke down), "verdict", "reproduce"}]}]. kernels:
- * documents of `sphproof kernel`, for what theory says of each. New reference. */
+ * "paired", "nearest" (lists; NaN if the run broke down), "verdict", "reproduce"}]}]. kernels:
+ * documents of `sphproof kernel` with the theory of each. New reference. */
 json_t *pairing_judge(const struct pairing *pairing, const struct pool *pool,
                       const json_t *kernels);
 

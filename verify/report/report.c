@@ -23,12 +23,12 @@
 #include "suite.h"
 #include "value.h"
 
-/* The default scheme, and in 1D the two gradients with all else equal; in 2D and 3D the default
- * with the other gradient, and SPH as textbooks have it. */
+/* The default scheme, and in 1D the two gradients with equal other settings; in 2D and 3D the
+ * default with the other gradient, and textbook SPH. */
 static const struct scheme_label {
     const char *label, *keys;
-    const struct run_settings *other; /* another code computes it; */
-    const char *option;               /* what says so on a command line */
+    const struct run_settings *other; /* the settings if another code computes it; */
+    const char *option;               /* its option on a command line */
 } line_schemes[] =
     {
         {.label = "default", .keys = ""},
@@ -48,41 +48,41 @@ static const struct scheme_label {
 enum { SCHEMES = sizeof line_schemes / sizeof *line_schemes };
 enum { ENTRIES = SCHEMES + REPORT_CODES_MAX };
 enum { KEYS_MAX = 16, COMMAND_TEXT = 1024 };
-enum { COMPARED = 8000 }; /* particles by day up to which other schemes are compared */
+enum { COMPARED = 8000 }; /* largest number of particles by day for which other schemes run */
 enum { QUICK = 1000 };    /* particles by day of a case in 2D or 3D without a ladder */
 
-/* What a report has of a case. */
+/* The schemes, runs and studies of one case. */
 struct reported {
     const char *name;
-    int dimension, schemes, studied; /* so many of the entries have a run, and a study */
+    int dimension, schemes, studied; /* number of entries that have a run, and a study */
     struct scheme_label entries[ENTRIES];
-    char more[ENTRIES][256]; /* what the command lines of the studies have beside their keys */
-    char size[32];           /* what those of the runs have: "n=48^2", or nothing */
+    char more[ENTRIES][256]; /* additional words on the command lines of the studies */
+    char size[32];           /* size on the command lines of the runs: "n=48^2", or nothing */
     struct study studies[ENTRIES];
 };
 
 struct report {
     bool nightly;
-    double began; /* of clock_wall */
+    double began; /* start, by clock_wall */
     struct pool pool;
     struct reported *cases;
-    struct report_piece **pieces; /* one by one: the pool keeps where they are */
+    struct report_piece **pieces; /* allocated one by one: the pool keeps pointers to them */
     size_t case_count, piece_count;
     struct stress stress;
     struct claims claims;
     struct pairing pairing;
-    const struct report_code *codes; /* of a report of other codes */
+    const struct report_code *codes; /* set in a report of other codes */
     size_t code_count;
 };
 
-/* ---- what is to be computed ---- */
+/* ---- plan ---- */
 
 static const struct scheme_label *scheme_of(const struct reported *of, int s)
 {
     return &of->entries[s];
 }
 
-/* KEY=VALUE words. */
+/* Applies KEY=VALUE words. */
 static enum status apply(const char *words, struct settings *settings, struct error *error)
 {
     char text[512], *arguments[KEYS_MAX], *rest = text;
@@ -97,7 +97,7 @@ static enum status apply(const char *words, struct settings *settings, struct er
     return settings_apply(settings, n, arguments, error);
 }
 
-/* The case with the scheme's keys. Beside other codes ours is not judged. */
+/* The case with the scheme's keys. In a report of other codes our own schemes are not judged. */
 static enum status prepare(const struct reported *of, int s, struct run_settings *settings,
                            struct error *error)
 {
@@ -111,7 +111,8 @@ static enum status prepare(const struct reported *of, int s, struct run_settings
                : apply(scheme->keys, &settings->settings, error);
 }
 
-/* The ladder of a case: its own, by day a smaller one if it has one, by night with more on top. */
+/* Sets the ladder of a case: its own, by day the smaller one if there is one, by night with added
+ * levels. */
 static void take_ladder(const struct report *report, struct reported *of, int s)
 {
     struct study *study = &of->studies[s];
@@ -160,8 +161,8 @@ static enum status add_piece(struct report *report, struct report_piece piece, s
     return report_piece_add(&report->pool, kept, error);
 }
 
-/* What a report has of a case, from its file. By day in 2D and 3D runs are as large as the ladder's
- * finest level, of which they are then a part; and only the default scheme has a ladder. */
+/* Plans a case from its file. By day in 2D and 3D a run is as large as the ladder's finest level
+ * and part of the ladder; only the default scheme has a ladder. */
 static void plan_case(const struct report *report, const struct case_file *file,
                       struct reported *of)
 {
@@ -175,7 +176,7 @@ static void plan_case(const struct report *report, const struct case_file *file,
     const size_t n = levels ? ladder[levels - 1] : QUICK;
     snprintf(of->size, sizeof of->size, "n=%zu", n);
     of->studied = levels >= ORDER_LEVELS_MIN;
-    /* what takes long has no time for other schemes */
+    /* expensive cases run with one scheme */
     if (n > COMPARED) of->schemes = 1;
 }
 
@@ -195,7 +196,7 @@ static enum status find_cases(struct report *report, struct error *error)
     return STATUS_OK;
 }
 
-/* The runs first: a study takes what is there of its levels. */
+/* Adds the runs first: a study reuses them as levels. */
 static enum status add_case(struct report *report, size_t c, struct error *error)
 {
     struct reported *of = &report->cases[c];
@@ -212,8 +213,8 @@ static enum status add_case(struct report *report, size_t c, struct error *error
     return STATUS_OK;
 }
 
-/* Every case with every scheme; what an error costs in those that have a ladder, in 2D and 3D by
- * night. */
+/* Adds every case with every scheme, and cost against error for cases with a ladder, in 2D and 3D
+ * only at night. */
 static enum status add_cases(struct report *report, struct error *error)
 {
     if (find_cases(report, error)) return error->status;
@@ -230,7 +231,8 @@ static enum status add_cases(struct report *report, struct error *error)
     return STATUS_OK;
 }
 
-/* What sleep saves in tubes and blasts, early and in full, and in inflow that converges. */
+/* Measures what skipped work saves in tubes and blasts, early and late, and in converging
+ * inflow. */
 static enum status add_skips(struct report *report, struct error *error)
 {
     static const struct {
@@ -258,7 +260,7 @@ static enum status add_skips(struct report *report, struct error *error)
     return STATUS_OK;
 }
 
-/* What orders are lost to: in vortices, and in waves that run across the lattice. */
+/* Autopsies of lost orders in vortices and in waves oblique to the lattice. */
 static enum status add_autopsies(struct report *report, struct error *error)
 {
     static const struct {
@@ -320,9 +322,9 @@ static enum status add_all(struct report *report, struct error *error)
     return stress_plan(&report->stress, report->nightly, 0, NULL, &report->pool, error);
 }
 
-/* ---- what has come out ---- */
+/* ---- results ---- */
 
-/* more: beside the keys, with a blank before it, or "". */
+/* more: text after the keys, beginning with a blank, or "". */
 static void describe(const char *command, const struct reported *of, int s, const char *more,
                      json_t *document)
 {
@@ -357,7 +359,7 @@ static json_t *study_document(const struct reported *of, int s)
     return document;
 }
 
-/* Two schemes of a case with the same errors to the last bit: one setting was not read. */
+/* Two schemes of a case with bitwise equal errors suggest that a setting was not read. */
 static void suspect_same(const struct reported *of, json_t *documents[ENTRIES])
 {
     for (int s = 1; s < of->studied; s++) {
@@ -369,7 +371,7 @@ static void suspect_same(const struct reported *of, json_t *documents[ENTRIES])
     }
 }
 
-/* What gave no result: a piece whose process crashed, or which was refused. */
+/* Records a piece without a result: its process crashed, or it was refused. */
 static void add_trouble(json_t *results, const char *name, const char *message)
 {
     json_t *list = json_object_get(results, "trouble");
@@ -377,7 +379,7 @@ static void add_trouble(json_t *results, const char *name, const char *message)
     json_array_append_new(list, result_object("name=%s message=%s", name, message));
 }
 
-/* In 2D and 3D: what every run conserves, and errors where no ladder is judged. */
+/* In 2D and 3D: gates on what every run conserves, and on errors of cases without a ladder. */
 static void add_gates(const struct reported *of, const struct report_piece *piece, json_t *document)
 {
     struct case_file file = piece->settings.file;
@@ -413,7 +415,7 @@ static void add_documents(struct report *report, json_t *results)
         }
         switch (piece->kind) {
         case REPORT_RUN:
-            /* a copy: schemes that come to the same settings share the job */
+            /* a copy: schemes with equal settings share the job */
             json_array_append_new(runs, run_document(report, piece, job));
             break;
         case REPORT_KERNEL:
@@ -448,7 +450,7 @@ static void add_documents(struct report *report, json_t *results)
     json_object_set_new(results, "autopsies", autopsies);
 }
 
-/* FOLDER/NAME.json, which a script may have written. */
+/* Adds FOLDER/NAME.json, which a script may have written. */
 static void add_written(json_t *results, const char *name, const char *folder)
 {
     struct error error;
@@ -462,7 +464,7 @@ static void add_written(json_t *results, const char *name, const char *folder)
         add_trouble(results, name, error.message);
 }
 
-/* What only a report of our own program has. */
+/* Adds the parts that only a report of our own program has. */
 static void add_own(struct report *report, const char *folder, json_t *results)
 {
     json_t *stress = result_new("stress");
@@ -504,8 +506,8 @@ static json_t *collect(struct report *report, const char *folder, double seconds
     return results;
 }
 
-/* No memory, no process: another day it may be there. A crash is a result, and so is a refusal,
- * which only an error of the program's own brings about: see add_trouble. */
+/* Lack of memory or processes ends the report, as it may pass. A crash is a result, and so is a
+ * refusal, which only a defect of this program can cause: see add_trouble. */
 static enum status sound(const struct pool *pool, struct error *error)
 {
     for (size_t k = 0; k < pool->count; k++) {
@@ -553,7 +555,7 @@ static struct reported *reported_of(struct report *report, const struct case_fil
     return of;
 }
 
-/* The codes come first: by them a case is judged. */
+/* The codes come first: the first entry of a case judges it. */
 static enum status add_codes(struct report *report, struct error *error)
 {
     for (size_t k = 0; k < report->code_count; k++)

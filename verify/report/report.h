@@ -11,8 +11,8 @@
 
 enum report_mode { REPORT_QUICK, REPORT_NIGHTLY };
 
-/* Another code: what it is called, what has to stand on a command line for it to compute, and the
- * cases that it can run. Nothing is owned. */
+/* Another code: its name, the command-line option that selects it, and the cases that it can run.
+ * Nothing is owned. */
 struct report_code {
     const char *title, *option;
     size_t count;
@@ -22,23 +22,23 @@ enum { REPORT_CODES_MAX = 5 };
 
 struct report;
 
-/* All that a report of this mode computes, in its pool; nothing has run. Owned by the caller. */
+/* Creates a report of this mode with all its jobs in a pool; nothing has run. Owned by the
+ * caller. */
 enum status report_create(enum report_mode mode, struct report **report, struct error *error);
 
-/* The same of other codes, REPORT_CODES_MAX at most: all that they can run, beside our own default
- * scheme and SPH as textbooks have it. */
+/* Likewise for other codes, REPORT_CODES_MAX at most: all cases that they can run, beside our
+ * default scheme and textbook SPH. */
 enum status report_create_codes(const struct report_code *codes, size_t count,
                                 struct report **report, struct error *error);
 
-/* To be run; the report's own. */
+/* The pool to run; owned by the report. */
 struct pool *report_pool(struct report *report);
 
-/* After pool_run of all of it: judges it. *results is a document of command "report" as
- * reports/verdict.h describes it, owned by the caller; it has no history and no verdict yet. A gate
- * that fails, or a run that breaks down, is part of the results; anything else that goes wrong is
- * returned, and *results is then NULL. folder: faults.json and score.json, which
- * verify/test/faults.py and verify/mutants/score write, are shown if they are there; NULL: nowhere.
- */
+/* Call after pool_run. Judges the report; *results is a document of command "report" as in
+ * reports/verdict.h, owned by the caller, without history and verdict. A failed gate or a run that
+ * broke down is part of the results; any other failure is returned, with *results NULL. folder:
+ * shows faults.json and score.json, which verify/test/faults.py and verify/mutants/score write, if
+ * they are there; NULL: does not. */
 enum status report_judge(struct report *report, const char *folder, json_t **results,
                          struct error *error);
 

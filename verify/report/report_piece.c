@@ -91,8 +91,8 @@ static enum status compute_league(const struct report_piece *piece, json_t **doc
     return status;
 }
 
-/* Schemes that answer the first two questions: which kernel is best, and then which gradient at
- * shocks, or which viscosity in smooth flow; in 2D and 3D also what shifting is worth. */
+/* Schemes that answer the first two questions: which kernel is best, and which gradient at shocks
+ * or which viscosity in smooth flow; in 2D and 3D also the benefit of shifting. */
 static const char *vary(const struct settings *settings)
 {
     if (settings->dim > 1)
@@ -181,7 +181,7 @@ static enum status compute(const void *context, json_t **document, struct error 
     return computes[piece->kind](piece, document, error);
 }
 
-/* An estimate of the seconds that a piece takes which is not a run. */
+/* Estimated seconds of a piece that is not a run. */
 static double weight_of(const struct report_piece *piece)
 {
     static const double weights[] = {0, 0, 0.1, 2, 5, 3, 4};

@@ -23,22 +23,22 @@ struct report_piece {
     enum report_kind kind;
     const char *where;            /* case, group, kernel */
     int dim;                      /* of a kernel */
-    char keys[80];                /* of skips and autopsies, as words; */
+    char keys[80];                /* of skips and autopsies, as words */
     const char *sizes;            /* of autopsies: 16^2,24^2,... */
-    bool slow;                    /* the slow checks too */
-    size_t case_number;           /* of a run, */
-    int scheme;                   /* and what it is compared as */
+    bool slow;                    /* includes slow checks */
+    size_t case_number;           /* of a run */
+    int scheme;                   /* of a run: index of its scheme */
     struct run_settings settings; /* of a run, a bench, skips, an autopsy */
-    struct run run;               /* the same, from report_piece_add */
-    size_t job;                   /* its number, from report_piece_add */
+    struct run run;               /* resolved by report_piece_add */
+    size_t job;                   /* set by report_piece_add */
 };
 
 /* Adds the piece to a pool; it must outlive the pool. */
 enum status report_piece_add(struct pool *pool, struct report_piece *piece, struct error *error);
 
-/* Adds the checks of a verify document to another one. */
+/* Appends the checks of the verify document `part` to `verify`. */
 void report_piece_join(json_t *verify, json_t *part);
 
-/* Adds to results "bench": a document for each case of results' "studies", "schemes" and "points"
- * as those of `sphproof bench` have them, as far as levels say it. */
+/* Adds "bench" to the results: for each case of their "studies" the members "schemes" and "points"
+ * of a document of `sphproof bench`, as far as the levels have the figures. */
 void code_cost_add(json_t *results);

@@ -9,7 +9,7 @@
 
 static const double scatters = 3, normal = 1.4826; /* MAD to standard deviation */
 
-/* Of an even number the middle value nearer to `other`: in doubt nothing has changed. */
+/* For an even number, the middle value closer to `other`, which favours "no change". */
 static double median(const double *value, size_t n, double other)
 {
     double sorted[TREND_WINDOW];
@@ -21,11 +21,11 @@ static double median(const double *value, size_t n, double other)
 
 struct split {
     double before, after;
-    double merit; /* jump less the mean residual; between equals, the larger step decides */
+    double merit; /* jump minus mean residual; among equals the larger jump wins */
     bool accepted;
 };
 
-/* A split in front of night k of first..end - 1. */
+/* Tries a split before night k of first..end - 1. */
 static struct split try_split(const double *value, size_t first, size_t end, size_t k, double noise)
 {
     const size_t left = k - first < TREND_WINDOW ? k - first : TREND_WINDOW;
@@ -54,7 +54,7 @@ struct search {
     size_t count, most;
 };
 
-/* The clearest change first, then each side by itself, so that levels do not mix. */
+/* Splits at the clearest change and searches both sides separately, so that levels do not mix. */
 static void search_part(struct search *search, size_t first, size_t end)
 {
     struct split best = {.accepted = false};
