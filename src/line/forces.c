@@ -7,8 +7,8 @@
 #include "specialise.h"
 #include "state.h"
 
-/* Do velocities never fall with the place? The first vector tells it of most ranges where they do.
- */
+/* True if velocities never decrease with position. In ranges where they do, the first vector
+ * usually shows it. */
 static bool never_falls(const double *v, ptrdiff_t count)
 {
     for (ptrdiff_t i = 0; i < count; i += 8) {
@@ -20,8 +20,8 @@ static bool never_falls(const double *v, ptrdiff_t count)
     return true;
 }
 
-/* Sets how far the pairs of a range reach, and whether they all recede: in the order of places
- * velocities never fall. One walk over particles tells it of all pairs. */
+/* Sets the reach of a range's pairs, and whether all of them recede: particles are sorted, so this
+ * holds if velocities never decrease from one to the next. */
 static void look_at_pairs(const struct simulation *simulation, struct range *range)
 {
     const ptrdiff_t reach = range->force_reach = reach_of_pairs(simulation, range);
@@ -77,7 +77,8 @@ static void force_pass(struct simulation *simulation, struct range *range, struc
         loop(&line->loops, a, range->first, range->len, range->force_reach, scratch);
     tally->without_viscosity += range->recedes ? (uint64_t)range->len : 0;
     tally->rate = largest(tally->rate, rate);
-    /* visited: both sides of every sum in the own-width sums, each pair once in the forces */
+    /* pair evaluations: sums with a particle's own h visit each pair from both sides, forces once
+     */
     const int sums = 1 + (line->loops.matrix != NULL);
     tally->pairs += (uint64_t)(range->len * (2 * sums * range->reach + range->force_reach));
     if (simulation->plan.alpha) state_dalpha(a, range->first, range->len, &simulation->scheme);

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What stands at both ends of the arrays: copies of the periodic images, mirror images in walls, or
- * particles too far away to act on any other. */
+ * Ghosts at both ends of the arrays: copies of the periodic images, mirror images in walls, or
+ * particles too far away to interact. */
 #include "line.h"
 
 void ghosts_fill(const struct particles *particles, double *array, ptrdiff_t count, double shift)
 {
     const ptrdiff_t n = particles->n;
-    /* counted upwards and downwards from the ends: images of images where count > n */
+    /* in this order, so that for count > n the copies are copied in turn */
     for (ptrdiff_t k = 0; k < count; k++) array[n + k] = array[k] + shift;
     for (ptrdiff_t k = 1; k <= count; k++) array[-k] = array[n - k] - shift;
 }
 
-/* Image k = 0, 1, ... beyond an end, counted from there: of the particle `from` places inside, and
+/* Image k = 0, 1, ... beyond an end: of the particle with index `from` counted from that end,
  * `turns` periods of two boxes away. Every other box of images is mirrored. */
 struct image {
     ptrdiff_t from;
@@ -26,7 +26,8 @@ static struct image image_of(ptrdiff_t n, ptrdiff_t k)
                        : (struct image){2 * n - 1 - in_pair, (double)(k / (2 * n)) + 1, false};
 }
 
-/* A particle's image in the walls [0, length]; x: its place from the wall that is passed first. */
+/* Position of a particle's image in the walls [0, length]; x: distance from the wall beyond which
+ * the image is. */
 static double mirrored_place(const struct image *image, double x, double length)
 {
     return 2 * image->turns * length + (image->mirrored ? x : -x);
@@ -52,7 +53,7 @@ static void fill_mirrored(const struct simulation *simulation, double *array, pt
     }
 }
 
-/* Like the outermost particles, farther away than any width. */
+/* Copies of the outermost particles, beyond any smoothing length. */
 static void fill_far(const struct simulation *simulation, double *array, ptrdiff_t count,
                      enum ghost_value value)
 {
@@ -81,7 +82,7 @@ enum status ghosts_of_density(struct simulation *simulation, ptrdiff_t count, st
 {
     struct particles *a = &simulation->particles;
     struct line *line = line_of(simulation);
-    /* loops in whole vectors read a little beyond, and drop it */
+    /* loops in whole vectors read beyond the last ghost */
     if (count + 8 > a->ghosts) {
         const enum status status = particles_grow_ghosts(a, count + count / 2 + 8, error);
         if (status) return status;

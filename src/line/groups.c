@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Sleep in 1D: groups of successive particles, spans of awake groups, ranges of the spans. */
+ * Sleep in 1D: groups of consecutive particles, spans of awake groups, ranges of the spans. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,9 +14,8 @@ static int group_len(const struct simulation *simulation, ptrdiff_t group)
     return left < GROUP ? (int)left : GROUP;
 }
 
-/* The velocity next to the outermost particle i, which in a periodic box is that of the other
- * end's.
- */
+/* The velocity of the next particle beyond the outermost particle i; in a periodic box that of
+ * particle `other` at the other end. */
 static double beyond_end(const struct simulation *simulation, ptrdiff_t i, ptrdiff_t other)
 {
     const double *v = simulation->particles.v[0];
@@ -24,7 +23,7 @@ static double beyond_end(const struct simulation *simulation, ptrdiff_t i, ptrdi
     return simulation->boundary[0] == BOUNDARY_REFLECTING ? -v[i] : v[i];
 }
 
-/* The speed at which a particle and its right neighbour move against each other, in tolerances. */
+/* Relative speed of a particle and its right neighbour, in units of the tolerance. */
 static double against_right(const struct simulation *simulation, ptrdiff_t i, double in_tolerances)
 {
     const struct particles *a = &simulation->particles;
@@ -33,7 +32,7 @@ static double against_right(const struct simulation *simulation, ptrdiff_t i, do
     return in_tolerances * fabs(right - a->v[0][i]) / (a->c[i] < sound ? sound : a->c[i]);
 }
 
-/* The same with its image in the wall on its left, 0 where there is none. */
+/* The same for its image in the wall on its left; 0 if there is none. */
 static double against_wall(const struct simulation *simulation, ptrdiff_t i, double in_tolerances)
 {
     const struct particles *a = &simulation->particles;
@@ -42,9 +41,9 @@ static double against_wall(const struct simulation *simulation, ptrdiff_t i, dou
     return in_tolerances * fabs(2 * a->v[0][i]) / (a->c[i] < sound ? sound : a->c[i]);
 }
 
-/* The largest disturbance of these particles, in tolerances: their rates, and the speeds at which
- * they and their right neighbours move against each other. Cold gas that streams apart has no
- * rates, but its density changes. NaN where a value is no number. */
+/* The largest disturbance of these particles, in units of the tolerance: from their rates and their
+ * speeds relative to the right neighbours. Cold gas that streams apart has no rates, but its
+ * density changes. NaN if a value is NaN. */
 static double disturbance_of(const struct simulation *simulation, ptrdiff_t first, ptrdiff_t len)
 {
     const double in_tolerances = 1 / simulation->sleep.tolerance;
@@ -63,7 +62,7 @@ static bool group_disturbed(const struct simulation *simulation, ptrdiff_t group
     return !(disturbance_of(simulation, group * GROUP, group_len(simulation, group)) <= 1);
 }
 
-/* Most gas that is awake shows it in one velocity, before anything else is looked at. */
+/* Tests one velocity first, which settles it for most awake gas. */
 static bool group_calm(const struct simulation *simulation, ptrdiff_t group)
 {
     const ptrdiff_t first = group * GROUP;
@@ -71,15 +70,15 @@ static bool group_calm(const struct simulation *simulation, ptrdiff_t group)
            disturbance_of(simulation, first, group_len(simulation, group)) <= SLEEP_CALM;
 }
 
-/* How many groups on either side of a disturbed one are kept awake: in one step a disturbance
- * passes through the sum of density and that of forces, each of which carries it by the reach of
- * pairs. */
+/* Number of groups kept awake on either side of a disturbed one: within one step a disturbance
+ * passes through the density sum and the force sum, each of which carries it by the reach of pairs.
+ */
 static ptrdiff_t margin(ptrdiff_t reach)
 {
     return 2 * reach / GROUP + 1;
 }
 
-/* Wakes a group and `reach` groups on either side of it, across the ends of the periodic box. */
+/* Wakes a group and `reach` groups on either side of it, also across the ends of a periodic box. */
 static void wake(struct groups *groups, ptrdiff_t group, ptrdiff_t reach)
 {
     const ptrdiff_t count = groups->count;
@@ -90,8 +89,8 @@ static void wake(struct groups *groups, ptrdiff_t group, ptrdiff_t reach)
     }
 }
 
-/* The first group from the given one on that is awake (or that sleeps, as `awake` says); the number
- * of groups where there is none. */
+/* The first awake (or, with awake = false, sleeping) group at or after `from`; the number of groups
+ * if there is none. */
 static ptrdiff_t find_group(const struct groups *groups, ptrdiff_t from, bool awake)
 {
     const unsigned char *found =
@@ -99,7 +98,7 @@ static ptrdiff_t find_group(const struct groups *groups, ptrdiff_t from, bool aw
     return found ? found - groups->awake : groups->count;
 }
 
-/* Spans from the groups. */
+/* Makes the spans from the groups. */
 static void find_spans(struct simulation *simulation)
 {
     const struct groups *groups = &line_of(simulation)->groups;
@@ -117,7 +116,7 @@ static void find_spans(struct simulation *simulation)
     sleep->on = sleep->awake_count < n;
 }
 
-/* Spans from the groups, ranges from the spans. */
+/* Makes the spans from the groups and the ranges from the spans. */
 static void lay_out(struct simulation *simulation)
 {
     struct line *line = line_of(simulation);
@@ -134,8 +133,8 @@ static void lay_out(struct simulation *simulation)
         }
 }
 
-/* Sends a group to sleep. It keeps the limit that its signal speed sets to the time step: nothing
- * about it changes while it sleeps. Ghosts of positions and velocities are up to date. */
+/* Puts a group to sleep and keeps its signal speed / h, which limits the time step and does not
+ * change while it sleeps. Ghosts of positions and velocities must be up to date. */
 static void fall_asleep(struct simulation *simulation, ptrdiff_t group, ptrdiff_t reach)
 {
     const struct particles *a = &simulation->particles;
@@ -154,7 +153,7 @@ static enum status allocate(struct simulation *simulation, struct error *error)
     groups->count = (n + GROUP - 1) / GROUP;
     groups->awake = calloc((size_t)groups->count, 1);
     groups->stirred = calloc((size_t)groups->count, 1);
-    /* whole vectors */
+    /* padded to whole vectors */
     groups->rate = calloc((size_t)(groups->count + 7), sizeof *groups->rate);
     sleep->spans = malloc((size_t)groups->count * sizeof *sleep->spans);
     return groups->awake && groups->stirred && groups->rate && sleep->spans
@@ -187,13 +186,13 @@ void groups_wake_all(struct simulation *simulation)
     struct groups *groups = &line_of(simulation)->groups;
     memset(groups->awake, 1, (size_t)groups->count);
     memset(groups->rate, 0, (size_t)groups->count * sizeof *groups->rate);
-    if (simulation->plan.sleep) simulation->sleep.at_rest = true; /* there are no sleepers */
+    if (simulation->plan.sleep) simulation->sleep.at_rest = true; /* no particle sleeps */
     lay_out(simulation);
 }
 
-/* Disturbances reach sleepers from inside the awake spans. Looks from one end of a span inwards, in
- * the direction `step`, for the outermost disturbed group, and wakes the groups around it. Returns
- * whether there was one. */
+/* Disturbances reach sleeping groups from inside the awake spans. Searches from one end of a span
+ * inwards, in the direction `step`, for the outermost disturbed group, and wakes the groups around
+ * it. Returns whether there was one. */
 static bool wake_beyond(struct simulation *simulation, ptrdiff_t end, ptrdiff_t step,
                         ptrdiff_t reach, ptrdiff_t count)
 {
@@ -205,7 +204,7 @@ static bool wake_beyond(struct simulation *simulation, ptrdiff_t end, ptrdiff_t 
     return false;
 }
 
-/* Wakes the sleepers that a disturbance inside an awake span is about to reach. */
+/* Wakes the sleeping groups that a disturbance inside an awake span is about to reach. */
 static bool wake_ahead(struct simulation *simulation)
 {
     const struct sleep *sleep = &simulation->sleep;
@@ -216,14 +215,15 @@ static bool wake_ahead(struct simulation *simulation)
         const ptrdiff_t first = span->first / GROUP;
         const ptrdiff_t last = (span->first + span->len - 1) / GROUP;
         woken |= wake_beyond(simulation, first, 1, margin(range->force_reach), last - first + 1);
-        range += (span->len + BATCH_MAX - 1) / BATCH_MAX - 1; /* the last one of the span */
+        range += (span->len + BATCH_MAX - 1) / BATCH_MAX - 1; /* last range of the span */
         woken |= wake_beyond(simulation, last, -1, margin(range->force_reach), last - first + 1);
         range++;
     }
     return woken;
 }
 
-/* Is a group within the margin of this one stirred, across the ends of the periodic box? */
+/* True if a group within the margin of this one is stirred, also across the ends of a periodic box.
+ */
 static bool stirred_near(const struct groups *groups, ptrdiff_t group, ptrdiff_t around)
 {
     const ptrdiff_t count = groups->count;
@@ -233,12 +233,12 @@ static bool stirred_near(const struct groups *groups, ptrdiff_t group, ptrdiff_t
     return false;
 }
 
-/* Integrators pass over sleepers only while none of them has a velocity. Groups that fall asleep
- * again mostly have one, so they stay awake if they are fewer than one in FEW. */
+/* Integrators skip sleeping particles only while all of them have zero velocity. Groups that fall
+ * asleep again usually have a velocity, so they stay awake if they are fewer than one in FEW. */
 enum { FEW = 16 };
 
-/* Sends every awake group to sleep that has only calm groups within the margin, calm being well
- * below what wakes. Returns whether there was one. */
+/* Puts every awake group to sleep that has only calm groups within the margin; the limit of calm is
+ * well below that of waking. Returns whether there was one. */
 static bool sleep_again(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;

@@ -1,31 +1,31 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Sums in 1D: particles sorted by position, so that neighbours are a contiguous stretch; images in
- * what is at the ends of the box are ghost copies there; loops run over neighbour offsets d
- * = 1..reach and vectorise over the particles of a range. For the files of this folder (and
- * measurements of its loops). */
+ * Sums in 1D: particles are sorted by position, so that neighbours are a contiguous range; images
+ * beyond the ends of the box are ghost copies; loops run over neighbour offsets d = 1..reach and
+ * vectorise over the particles of a range. For the files of this folder (and measurements of its
+ * loops). */
 #pragma once
 
 #include "loops.h"
 #include "solver.h"
 
-/* Up to BATCH_MAX neighbouring particles that are worked on together. */
+/* A batch of up to BATCH_MAX consecutive particles. */
 struct range {
     ptrdiff_t first;
     int len;
-    ptrdiff_t reach;       /* neighbour offsets that suffice for the particles' own h */
-    ptrdiff_t force_reach; /* and for pairs within max(h_i, h_j) */
-    bool recedes;          /* none of its pairs approaches: viscosity is exactly 0 */
-    uint64_t done;         /* the density pass in which the widths were found */
-    uint64_t predicted;    /* the one in which they were predicted */
+    ptrdiff_t reach;       /* largest neighbour offset within the particles' own h */
+    ptrdiff_t force_reach; /* the same for pairs within max(h_i, h_j) */
+    bool recedes;          /* no pair approaches, so viscosity is exactly 0 */
+    uint64_t done;         /* number of the last density pass that found its h */
+    uint64_t predicted;    /* number of the last density pass that predicted its h */
 };
 
-enum { GROUP = 8 }; /* particles that sleep and wake together */
+enum { GROUP = 8 }; /* particles of a group: they sleep and wake together */
 
 struct groups {
     ptrdiff_t count;
     unsigned char *awake;   /* of each group */
-    unsigned char *stirred; /* of each group: awake and not calm; scratch */
-    double *rate;           /* signal speed / h of each group when it fell asleep, 0 awake */
+    unsigned char *stirred; /* of each group: awake and not calm; work array */
+    double *rate;           /* signal speed / h of each sleeping group; 0 if awake */
 };
 
 /* The workspace of a simulation in 1D. */
@@ -34,10 +34,10 @@ struct line {
     struct range *ranges; /* of the awake particles */
     ptrdiff_t range_count;
     ptrdiff_t ghosts_filled;
-    ptrdiff_t reach;         /* largest of the ranges */
-    double predict_ratio;    /* of the present pass */
-    uint64_t density_passes; /* so far; ranges know by it what belongs to this one */
-    double *scratch;         /* scratch_size of each thread */
+    ptrdiff_t reach;         /* largest reach of the ranges */
+    double predict_ratio;    /* of the current pass */
+    uint64_t density_passes; /* number so far; see range.done and range.predicted */
+    double *scratch;         /* work array, scratch_size for each thread */
     size_t scratch_size;
     struct groups groups;
 };
@@ -49,10 +49,10 @@ static inline struct line *line_of(const struct simulation *simulation)
 
 /* --- order.c ---------------------------------------------------------------------------------- */
 
-/* Sorts by position, also across the ends of a periodic box (all into one period that starts at the
- * first particle). false: a position is not finite, and nothing has been done. */
+/* Sorts by position; a periodic box is unwrapped into one period that starts at the first particle.
+ * false: a position is not finite, and nothing has been changed. */
 bool order_sort(struct particles *particles);
-/* Neighbours out of order among the first len + 1 particles from first (NaN counts). */
+/* Number of adjacent pairs out of order among the len + 1 particles from first (NaN counts). */
 double order_crossings(const struct particles *particles, ptrdiff_t first, ptrdiff_t len);
 /* Members of struct sums. */
 void order_begin(struct simulation *simulation);
@@ -60,32 +60,31 @@ enum status order_arrange(struct simulation *simulation, struct error *error);
 
 /* --- ghosts.c --------------------------------------------------------------------------------- */
 
-/* Copies the periodic images of count particles to both ends of an array; shift: what is added per
- * period (the period for x, 0 for the rest). */
+/* Copies the periodic images of count particles to both ends of an array; shift: added for each
+ * period (the period for x, otherwise 0). */
 void ghosts_fill(const struct particles *particles, double *array, ptrdiff_t count, double shift);
 enum ghost_value { GHOST_SCALAR, GHOST_VECTOR, GHOST_PLACE };
 
-/* The same with whatever is at the ends of the simulation's box: periodic images; mirror images,
- * whose vectors point the other way; or copies of the outermost particles far away (open ends, and
- * fixed ones, whose layers are particles). */
+/* The same for any boundary of the box: periodic images; mirror images, with vectors reversed; or
+ * distant copies of the outermost particles (open ends, and fixed ones, whose layers are
+ * particles). */
 void ghosts_set(const struct simulation *simulation, double *array, ptrdiff_t count,
                 enum ghost_value value);
-/* Ghosts of what the density sums read, at least count of them; grows their memory. */
+/* Sets at least count ghosts of the inputs of density sums; allocates if needed. */
 enum status ghosts_of_density(struct simulation *simulation, ptrdiff_t count, struct error *error);
-/* Ghosts of what the pair sums read, as many as the reach asks for. */
+/* Sets the ghosts of the inputs of pair sums, as many as the reach requires. */
 void ghosts_of_pairs(struct simulation *simulation);
 
 /* --- reach.c ---------------------------------------------------------------------------------- */
 
-/* Particles of the range with the neighbour at offset d inside their own width. */
+/* Number of particles of the range with a neighbour at offset d within their own h. */
 double reach_inside(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t d);
-/* Raises the range's reach until it covers the widths h; false where that takes more ghosts than
- * are filled. */
+/* Raises the range's reach until it covers h; false if that requires more ghosts than are set. */
 bool reach_cover(const struct simulation *simulation, struct range *range);
-/* Lowers a reach that has become larger than needed. */
+/* Lowers a reach that is larger than needed. */
 void reach_tighten(const struct simulation *simulation, struct range *range);
-/* Pairs reach as far as the wider of the two: the largest reach of all ranges whose own reach
- * touches this one. */
+/* The reach of pairs within max(h_i, h_j): the largest reach of all ranges whose own reach touches
+ * this range. */
 ptrdiff_t reach_of_pairs(const struct simulation *simulation, const struct range *range);
 
 /* --- the passes: widths.c, forces.c, groups.c; members of struct sums ------------------------- */
@@ -100,5 +99,6 @@ enum status forces_reserve_scratch(struct simulation *simulation, ptrdiff_t reac
 enum status groups_begin(struct simulation *simulation, struct error *error);
 void groups_update(struct simulation *simulation);
 bool groups_sleep(const struct simulation *simulation, ptrdiff_t i);
-/* Wakes all groups: the order of particles has changed, and groups are others now. */
+/* Wakes all groups, because the order of particles, and so the members of the groups, have changed.
+ */
 void groups_wake_all(struct simulation *simulation);

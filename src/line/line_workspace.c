@@ -12,7 +12,7 @@ static enum status create(struct simulation *simulation, ptrdiff_t n, struct err
     struct line *line = simulation->workspace = calloc(1, sizeof *line);
     if (!line) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     loops_choose(&simulation->plan, &simulation->scheme, &line->loops);
-    /* room for spans of every length, each of which ends in a range that is not full */
+    /* enough for spans of any length, each of which may end with a partial range */
     const ptrdiff_t groups = (n + GROUP - 1) / GROUP;
     line->range_count = (n + BATCH_MAX - 1) / BATCH_MAX;
     line->ranges = calloc((size_t)(groups + 1), sizeof *line->ranges);
@@ -45,16 +45,16 @@ static void free_workspace(struct simulation *simulation)
     free(line);
 }
 
-/* Memory for neighbours eight times as far apart in the order as they are at the start, which is
- * more than a shock brings. Only where they get beyond that does a step ask for memory, each time
- * for half as much again at least. */
+/* Allocates for neighbours RESERVE times as far apart in the order as at the start, which is more
+ * than a shock needs. Only beyond that does a step allocate memory, at least half as much again
+ * each time. */
 static enum status reserve(struct simulation *simulation, struct error *error)
 {
     struct line *line = line_of(simulation);
     const ptrdiff_t reach = RESERVE * line->reach;
     if (reach + 8 > simulation->particles.ghosts) {
         enum status status = particles_grow_ghosts(&simulation->particles, reach + 8, error);
-        /* The groups that fall asleep next read ghosts, which are filled at once. */
+        /* The groups that fall asleep next read ghosts, so these are set at once. */
         line->ghosts_filled = 0;
         if (!status) status = ghosts_of_density(simulation, line->reach + 2, error);
         if (status) return status;
@@ -71,7 +71,7 @@ static double count_within(const struct particles *a, ptrdiff_t i, ptrdiff_t ste
     return count;
 }
 
-/* A matrix of 1D is a number. */
+/* In 1D the matrix is a number. */
 static void describe(const struct simulation *simulation, description_visit *visit, void *context)
 {
     const struct particles *a = &simulation->particles;

@@ -6,8 +6,8 @@
 #include "loops.h"
 #include "specialise.h"
 
-/* The pairs at offset d, on both sides. The first offset sets the sums, with the particle itself,
- * the others add to them. */
+/* Sums over the pairs at offset d, on both sides. The first offset sets the sums to the particle's
+ * own terms plus its pairs, further offsets add to them. */
 ALWAYS_INLINE void pairs_at(bool add, ptrdiff_t d, const struct kernel *kernel, kernel_shape *w,
                             kernel_shape *dw, enum density_terms terms, const double *restrict x,
                             const double *restrict m, const double *restrict U, int count,

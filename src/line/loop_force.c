@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Pair forces in 1D (CONVENTIONS section 5; pair.h). A half loop: for each offset d the fluxes of
- * the pairs (i, i+d) go into strips, then every particle collects its right and its left pair:
- * the order of summation is fixed, and momentum is conserved to round-off. The kernel stands in
- * loop_gradient.c alone. With j right of i: r = x_j - x_i >= 0, G = grad_i W > 0. */
+ * the pairs (i, i+d) are stored in strips, then each particle collects its right and its left pair:
+ * the order of summation is fixed, and momentum is conserved to round-off. Only loop_gradient.c
+ * evaluates the kernel. With j right of i: r = x_j - x_i >= 0, G = grad_i W > 0. */
 #include <math.h>
 #include <string.h>
 
 #include "loops.h"
 #include "specialise.h"
 
-/* What a particle gathers at offset d: its pair to the left is strip[i], to the right strip[i + d].
- * The first offset sets the sums, the others add to them. */
+/* Collects the pairs of each particle at offset d: the left one is strip[i], the right one strip[i
+ * + d]. The first offset sets the sums, further offsets add to them. */
 ALWAYS_INLINE void gather(bool add, enum energy energy, int count, ptrdiff_t d,
                           const double *restrict f, const double *restrict e_i,
                           const double *restrict e_j, double *restrict F, double *restrict de)
@@ -26,14 +26,14 @@ ALWAYS_INLINE void gather(bool add, enum energy energy, int count, ptrdiff_t d,
 
 size_t loop_force_scratch(ptrdiff_t D)
 {
-    return FORCE_STRIPS * (size_t)(BATCH_MAX + D + 8); /* and the rest of a vector */
+    return FORCE_STRIPS * (size_t)(BATCH_MAX + D + 8); /* rounded up by a vector */
 }
 
 struct force_sums {
     double F[BATCH_MAX], de[BATCH_MAX], div_v[BATCH_MAX];
 };
 
-/* Particle k as one side of a pair. */
+/* The values of particle k for a pair. */
 ALWAYS_INLINE struct pair_side side_of(const struct particles *a, const double *Z, ptrdiff_t k)
 {
     return (struct pair_side){.m = a->m[k],
@@ -49,7 +49,7 @@ ALWAYS_INLINE struct pair_side side_of(const struct particles *a, const double *
                               .slope = a->dv[k]};
 }
 
-/* The pairs at one offset. Returns their largest speed / h. */
+/* Adds the pairs at one offset. Returns their largest signal speed / h. */
 ALWAYS_INLINE double pairs_at(ptrdiff_t d, enum formulation formulation, enum viscosity viscosity,
                               enum energy energy, const struct loops *loops,
                               const struct particles *particles, ptrdiff_t first, int len,
@@ -92,7 +92,7 @@ ALWAYS_INLINE double pairs_at(ptrdiff_t d, enum formulation formulation, enum vi
             e_i[i] = heating.i;
             e_j[i] = heating.j;
         }
-        /* of both particles: speed/h, and 2c/h of the left one alone */
+        /* for both particles: speed/h; for the left one also 2c/h */
         const double speed = pair_within(r, left.h_inverse, right.h_inverse)
                                  ? pair_signal_speed(left.c, right.c, closing)
                                  : 0;
@@ -118,7 +118,7 @@ ALWAYS_INLINE double force_body(enum formulation formulation, enum viscosity vis
     struct force_sums sums;
     if (loops->div_v)
         for (int i = 0; i < len; i++) sums.div_v[i] = 0;
-    /* most ranges need no more than the first offset: it stands with constant addresses */
+    /* most ranges need only the first offset, which so has constant addresses */
     double rate = pairs_at(1, formulation, viscosity, energy, loops, particles, first, len, strip,
                            scratch, &sums);
     for (ptrdiff_t d = 2; d <= D; d++)
@@ -131,7 +131,7 @@ ALWAYS_INLINE double force_body(enum formulation formulation, enum viscosity vis
     return rate;
 }
 
-/* Every formulation with every viscosity and every energy. */
+/* Expands X for every formulation, viscosity and energy. */
 #define OVER_VISCOSITIES(f, name, label, paper, X)   VISCOSITY_LIST(OVER_ENERGIES, X, f)
 #define OVER_ENERGIES(v, name, X, f)                 ENERGY_LIST(OVER_NOTHING, X, f, v)
 #define OVER_NOTHING(e, name, label, paper, X, f, v) X(f, v, e)
@@ -152,7 +152,7 @@ ALL(STAMP)
 #define ENTRY(f, v, e) [f][v][e] = force_##f##_##v##_##e,
 static force_loop *const specialised[FORMULATIONS][VISCOSITIES][ENERGIES] = {ALL(ENTRY)};
 
-/* The generic body: every choice is looked up at run time. */
+/* The generic loop: all choices at run time. */
 static double generic(const struct loops *loops, const struct particles *particles, ptrdiff_t first,
                       int len, ptrdiff_t D, double *scratch)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Gradients of the pairs (i, i+d) in 1D, the one part of the pair force that knows the kernel.
+ * Gradients of the pairs (i, i+d) in 1D, the only part of the pair force that evaluates the kernel.
  * With j right of i, r = x_j - x_i >= 0 and the component of grad_i W is positive:
  * standard: -C/h^2 w'(r/h), ia: g r w(r/h), g = 1/sum V x^2 w (CONVENTIONS eqs. 4.1 and 4.3). */
 #include <math.h>
@@ -61,7 +61,7 @@ ALWAYS_INLINE void gradients_of_pairs(const struct kernel *kernel, kernel_shape 
         gradients_of_pairs(kernel, w, dw, gradient, width, particles, first, pairs, d, G, G_j);    \
     }
 
-/* Every gradient at every width, for one kernel k. */
+/* Expands X for every gradient and pair width, for one kernel k. */
 #define AT_WIDTHS(g, name, X, k)                     PAIR_WIDTH_LIST(AT_WIDTH, X, k, g) X(k, g, PAIR_WIDTH_OWN)
 #define AT_WIDTH(width, name, label, paper, X, k, g) X(k, g, width)
 #define ALL(X, k)                                    GRADIENT_LIST(AT_WIDTHS, X, k)

@@ -8,7 +8,7 @@
 #include "loops.h"
 #include "specialise.h"
 
-/* The weight of a matrix at distance r; w: the shape there. */
+/* The weight of the matrix at q; w: w(q). */
 ALWAYS_INLINE double weight_at(const struct kernel *kernel, kernel_shape *dw,
                                enum gradient gradient, double q, double w)
 {
@@ -45,14 +45,14 @@ ALWAYS_INLINE void sum_moments(const struct kernel *kernel, kernel_shape *w, ker
     }
     double *restrict g = particles->g + first, *restrict dv = particles->dv + first;
     for (int i = 0; i < len; i++) {
-        const double inverse = second[i] > 0 ? 1 / second[i] : 0; /* no neighbour: no gradient */
+        const double inverse = second[i] > 0 ? 1 / second[i] : 0; /* 0 without neighbours */
         if (weight == WEIGHT_W) g[i] = inverse;
         if (apart) g[i] = own[i] > 0 ? 1 / own[i] : 0;
         if (slopes) dv[i] = inverse * slope[i];
     }
 }
 
-/* What gradients ask for that have a form in 1D; the standard one has no matrix. */
+/* Only for gradients that are defined in 1D; the standard one has no matrix. */
 #define BODY(function, w, dw, gradient, slopes, attributes)                                        \
     attributes static void function(const struct kernel *kernel,                                   \
                                     const struct particles *particles, ptrdiff_t first, int len,   \
@@ -63,7 +63,7 @@ ALWAYS_INLINE void sum_moments(const struct kernel *kernel, kernel_shape *w, ker
         sum_moments(kernel, w, dw, gradient, slopes, particles, first, len, D);                    \
     }
 
-/* Every gradient without and with slopes, for one kernel k. */
+/* Expands X for every gradient, without and with slopes, for one kernel k. */
 #define BOTH(g, name, X, k) X(k, g, 0) X(k, g, 1)
 #define ALL(X, k)           GRADIENT_LIST(BOTH, X, k)
 

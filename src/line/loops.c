@@ -36,7 +36,7 @@ void loops_signal(const struct particles *particles, ptrdiff_t first, int len, p
                  *c = particles->c + first, *h_inverse = particles->h_inverse + first;
     double *signal = particles->signal + first;
     for (int i = 0; i < len; i++) signal[i] = 0;
-    for (ptrdiff_t d = -D; d <= D; d++) { /* with itself: twice its own speed of sound */
+    for (ptrdiff_t d = -D; d <= D; d++) { /* d = 0: the pair with itself gives 2 c */
         const double side = d < 0 ? -1 : 1;
         for (int i = 0; i < len; i++) {
             const double r = side * (x[i + d] - x[i]), closing = side * (v[i] - v[i + d]);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The particle sums in 1D, over sorted particles: a loop over neighbour offsets d = 1..D, inside it
- * a loop over the particles of a range, which vectorises. Kernels are exactly 0 beyond their
- * support, so D only has to be sufficient and the result depends neither on D nor on the range.
- * Every sum exists specialised per kernel (run-time dispatch over instruction sets) and generic,
- * with the kernel behind a pointer: the oracle, and the path of a user's plug-in. */
+ * The particle sums in 1D, over sorted particles: a loop over neighbour offsets d = 1..D, with an
+ * inner loop over the particles of a range, which vectorises. Kernels are exactly 0 beyond their
+ * support, so D only has to be sufficient, and the result depends neither on D nor on the range.
+ * Every sum exists specialised for each kernel (run-time dispatch over instruction sets) and
+ * generic, with the kernel behind a pointer: the oracle, also used for a user's plug-in. */
 #pragma once
 
 #include <stdbool.h>
@@ -14,33 +14,32 @@
 #include "plan.h"
 #include "width.h"
 
-enum { FORCE_STRIPS = 6 }; /* of scratch, in a pair force */
+enum { FORCE_STRIPS = 6 }; /* strips in the work array of a pair force */
 
-/* --- kernel sums of one range, at width 1/h_inverse[i] -------------------------------------- */
+/* --- kernel sums of one range, at h = 1/h_inverse[i] ---------------------------------------- */
 
-/* Like the lists of families.h: enum and table of specialisations from one list. */
+/* A list like those of families.h, for the enum and the table of specialised loops. */
 #define DENSITY_LIST(TERMS, ...)                                                                   \
     TERMS(DENSITY_MASS, __VA_ARGS__)   /* sum m w, sum m (w + q w') */                             \
-    TERMS(DENSITY_ENERGY, __VA_ARGS__) /* and the same two with Z = U */
+    TERMS(DENSITY_ENERGY, __VA_ARGS__) /* and the same with Z = U */
 enum density_terms { DENSITY_LIST(FAMILY_SYMBOL, ) };
 enum { DENSITY_TERMS = 0 DENSITY_LIST(FAMILY_COUNTED, ) };
 
-/* h_inverse: of the len particles of the range. */
+/* h_inverse: len values, of the particles of the range. */
 typedef void density_loop(const struct kernel *kernel, const struct particles *particles,
                           ptrdiff_t first, int len, ptrdiff_t D, const double *h_inverse,
                           struct density_sums *sums);
 
-/* --- g = 1/sum V x^2 weight, of gradients that have a weight, and, where slopes are wanted,
- * dv = sum V (v_j - v_i) x w/sum V x^2 w ----------------------------------------------------------
- */
+/* --- g = 1/sum V x^2 weight for gradients with a weight, and, with slopes,
+ * dv = sum V (v_j - v_i) x w/sum V x^2 w ------------------------------------------------------- */
 
 typedef void matrix_loop(const struct kernel *kernel, const struct particles *particles,
                          ptrdiff_t first, int len, ptrdiff_t D);
 
 /* --- gradients of the pairs (i, i+d), i = first .. first+pairs-1 ------------------------------ */
 
-/* What a gradient loop finds: one gradient of the pair, in G, at a width of enum pair_width; or the
- * gradients at each particle's own width, at h_i in G and at h_j in G_j (lagrangian). */
+/* Output of a gradient loop: one gradient of the pair, in G, at a pair width of enum pair_width;
+ * or, with PAIR_WIDTH_OWN, the gradients at h_i in G and at h_j in G_j (lagrangian). */
 enum { PAIR_WIDTH_OWN = PAIR_WIDTHS, PAIR_GRADIENTS };
 
 typedef void gradient_loop(const struct kernel *kernel, const struct particles *particles,
@@ -50,8 +49,8 @@ typedef void gradient_loop(const struct kernel *kernel, const struct particles *
 
 struct loops;
 
-/* Returns the largest signal speed / h among the pairs of the range (of either particle) and of
- * the range's particles alone. scratch: loop_force_scratch(D) doubles of the thread. */
+/* Returns the largest signal speed / h of both particles of the pairs of the range, and of its
+ * particles alone. scratch: work array of loop_force_scratch(D) doubles. */
 typedef double force_loop(const struct loops *loops, const struct particles *particles,
                           ptrdiff_t first, int len, ptrdiff_t D, double *scratch);
 size_t loop_force_scratch(ptrdiff_t D);
@@ -60,28 +59,28 @@ size_t loop_force_scratch(ptrdiff_t D);
 
 struct loops {
     density_loop *density;
-    matrix_loop *matrix; /* NULL where nothing needs it */
+    matrix_loop *matrix; /* NULL if not needed */
     gradient_loop *gradient;
     force_loop *force;
-    /* the same two where no pair approaches: without velocity gradients, without viscosity */
+    /* for ranges without approaching pairs: without velocity gradients, without viscosity */
     matrix_loop *matrix_receding;
     force_loop *force_receding;
-    /* what the pair forces read beside the particles */
+    /* other inputs of the pair forces */
     const struct kernel *kernel;
     enum formulation formulation;
     enum viscosity viscosity;
     enum energy energy;
     bool energy_element; /* Z = U, else Z = m */
-    bool div_v;          /* wanted, for time-dependent viscosity */
+    bool div_v;          /* compute div v, for time-dependent viscosity */
     struct pair_numbers numbers;
 };
 
-/* Chooses the loops of a plan from the tables, once per simulation. The loops are specialised ones
- * if the plan allows it and the kernel is built in. They keep a pointer to the scheme's kernel. */
+/* Chooses the loops of a plan from the tables, once per simulation: specialised ones if the plan
+ * allows it and the kernel is built in. They keep a pointer to the scheme's kernel. */
 void loops_choose(const struct plan *plan, const struct scheme *scheme, struct loops *loops);
 
-/* The tables, one in each of the four files; kernel: position in kernels.def, -1: generic. The
- * files that specialisation kernels are compiled once with the tables and once for each kernel
+/* The tables, one in each of the four files; kernel: index in kernels.def, -1: generic. The files
+ * that depend on the kernel are compiled once with the tables and once for each kernel
  * (specialise.c.in). */
 density_loop *loop_density(int kernel, enum density_terms terms);
 matrix_loop *loop_matrix(int kernel, enum gradient gradient, bool slopes);
@@ -89,5 +88,5 @@ gradient_loop *loop_gradient(int kernel, enum gradient gradient, int width);
 force_loop *loop_force(bool specialised, enum formulation formulation, enum viscosity viscosity,
                        enum energy energy);
 
-/* The signal speed of each particle of the range, where it is asked for by itself. */
+/* Computes only the signal speed of each particle of the range. */
 void loops_signal(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D);

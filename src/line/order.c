@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The order of positions. */
+ * Keeps particles sorted by position. */
 #include <math.h>
 
 #include "breakdown.h"
@@ -22,7 +22,7 @@ double order_crossings(const struct particles *particles, ptrdiff_t first, ptrdi
     return crossings_in(particles, first, len);
 }
 
-/* Into the period that starts at the first particle. */
+/* Moves all particles into the period that starts at the first one. */
 static void bring_round(struct particles *particles)
 {
     const double period = particles->period[0];
@@ -35,7 +35,7 @@ static void bring_round(struct particles *particles)
     }
 }
 
-/* Particles that have passed a wall change places with their images, which come in by as much. */
+/* Replaces particles that have passed a wall by their mirror images inside. */
 static void bring_back(const struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
@@ -81,7 +81,7 @@ bool order_sort(struct particles *particles)
     return true;
 }
 
-/* Whatever is at the ends. */
+/* Sorts, for any boundary. */
 static bool sort_inside_ends(struct simulation *simulation)
 {
     struct particles *a = &simulation->particles;
@@ -92,8 +92,8 @@ static bool sort_inside_ends(struct simulation *simulation)
     return true;
 }
 
-/* Particles at one place whose own terms alone exceed what a narrow kernel allows have no root h:
- * they are moved apart by a thousandth of their spacing. Sorted positions. */
+/* Separates coincident particles by a thousandth of their spacing, if their own terms alone exceed
+ * the limit of a narrow kernel, so that h has no root. Positions are sorted. */
 static void separate(struct simulation *simulation)
 {
     struct particles *a = &simulation->particles;
@@ -124,7 +124,7 @@ void order_begin(struct simulation *simulation)
     separate(simulation);
 }
 
-/* Neighbours in a range, the end of the one before included. */
+/* Tests the adjacent pairs of a range, including the one with the previous range. */
 static void order_pass(struct simulation *simulation, struct range *range, struct tally *tally)
 {
     const struct particles *a = &simulation->particles;
@@ -133,7 +133,7 @@ static void order_pass(struct simulation *simulation, struct range *range, struc
     tally->crossings += order_crossings(a, first, (end < a->n ? end : a->n - 1) - first);
 }
 
-/* A periodic box holds one period, and walls hold all particles. */
+/* True if all particles are within one period, or between the walls. */
 static bool inside_ends(const struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
@@ -143,7 +143,7 @@ static bool inside_ends(const struct simulation *simulation)
            (first >= lo && last <= lo + a->period[0]);
 }
 
-/* Only what moves can get out of order. */
+/* Tests only particles that move. */
 static bool in_order(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
@@ -161,7 +161,7 @@ enum status order_arrange(struct simulation *simulation, struct error *error)
         for (ptrdiff_t i = 0; i < a->n; i++)
             if (!isfinite(a->x[0][i]))
                 return breakdown_of(simulation, i, "position", a->x[0][i], error);
-    line_of(simulation)->ghosts_filled = 0; /* of the masses */
+    line_of(simulation)->ghosts_filled = 0; /* ghosts of the masses */
     if (simulation->sleep.on) groups_wake_all(simulation);
     return STATUS_OK;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How far neighbours reach, in places of the order. */
+ * The reach of neighbours: the largest difference of their indices. */
 #include "line.h"
 #include "specialise.h"
 

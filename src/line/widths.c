@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Widths, densities and the equation of state, range by range: by Newton, or with one sum at a
- * predicted width. */
+ * Smoothing lengths, densities and the equation of state, range by range: by Newton's method, or
+ * with one sum at a predicted h. */
 #include <math.h>
 
 #include "breakdown.h"
@@ -9,11 +9,12 @@
 #include "specialise.h"
 #include "state.h"
 
-/* What becomes of a range: all is well, or more ghosts are needed, or (>= 0) the first particle
- * that has no root. */
+/* Result for a range: solved, or more ghosts needed, or (>= 0) the first particle without a root.
+ */
 enum { SOLVED = -1, NO_GHOSTS = -2 };
 
-/* h = eta m/rho(h) of a range; a particle that has converged keeps its h while the others go on. */
+/* Solves h = eta m/rho(h) for a range; converged particles keep their h while the others continue.
+ */
 static ptrdiff_t solve_range(struct simulation *simulation, struct range *range,
                              struct density_sums *sums)
 {
@@ -35,7 +36,7 @@ static ptrdiff_t solve_range(struct simulation *simulation, struct range *range,
     return without_root < 0 ? SOLVED : range->first + without_root;
 }
 
-/* One density sum at a predicted h. */
+/* Computes one density sum at a predicted h. */
 static ptrdiff_t sum_range(struct simulation *simulation, struct range *range,
                            struct density_sums *sums)
 {
@@ -97,7 +98,7 @@ static void predicted_pass(struct simulation *simulation, struct range *range, s
     conclude(line, range, result, tally);
 }
 
-/* A width that covers more of the box's images than any root would has run away. */
+/* Reports an h that exceeds any possible root. */
 static enum status too_wide(const struct simulation *simulation, struct error *error)
 {
     const struct particles *a = &simulation->particles;
@@ -107,7 +108,7 @@ static enum status too_wide(const struct simulation *simulation, struct error *e
     return breakdown_of(simulation, widest, "smoothing length", 1 / a->h_inverse[widest], error);
 }
 
-/* Repeats the pass over ranges that were short of ghosts. */
+/* Repeats the pass for ranges that need more ghosts. */
 enum status widths_find(struct simulation *simulation, bool newton, double ratio,
                         struct error *error)
 {
@@ -115,7 +116,7 @@ enum status widths_find(struct simulation *simulation, bool newton, double ratio
     range_pass *const pass = newton ? newton_pass : predicted_pass;
     ptrdiff_t ghosts = line->ghosts_filled > 8 ? line->ghosts_filled : 8;
     if (line->reach + 2 > ghosts) ghosts = line->reach + 2;
-    /* no root lies beyond eta times the box; a search may go twice as far */
+    /* no root exceeds eta times the box; a search may go twice as far */
     const double most = 64 + (2 * simulation->scheme.eta + 2) * (double)simulation->particles.n;
     line->density_passes++;
     line->predict_ratio = ratio;
