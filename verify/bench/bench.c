@@ -30,8 +30,8 @@ static enum status fail(struct bench_subject *subject, struct error *error)
     return error->status;
 }
 
-/* The first call warms up caches, pages and clocks and is forgotten, unless it is long enough to
- * be worth more than what it warms. The last of the doublings is the first sample. */
+/* The first call warms up caches, pages and clocks and is discarded, unless it is so long that the
+ * warm-up does not matter. The last doubling is the first sample. */
 static enum status calibrate(struct bench_subject *subject, const struct bench_rules *rules,
                              struct samples *samples, struct error *error)
 {

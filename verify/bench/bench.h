@@ -11,14 +11,14 @@
 #include "clock.h"
 #include "status.h"
 
-/* Does the work `times` times and adds what it took, and nothing else, to *taken. */
+/* Does the work `times` times and adds the time of the work alone to *taken. */
 typedef enum status bench_work(void *context, uint64_t times, struct clock_taken *taken,
                                struct error *error);
 
 struct bench_time {
-    double wall_s, cpu_s; /* of the work done once: the least of the samples */
+    double wall_s, cpu_s; /* of the work done once: the minimum over the samples */
     double spread;        /* median of the samples' cpu_s over the least one, minus 1 */
-    uint64_t times;       /* the work was done so often in a sample */
+    uint64_t times;       /* repetitions of the work in a sample */
     int samples;
 };
 
@@ -34,15 +34,15 @@ typedef void bench_progress(void *context, double done, double total);
 
 enum { BENCH_SAMPLES_MAX = 64 };
 struct bench_rules {
-    double least_s;           /* CPU time of a sample, at least */
-    double most_s;            /* of all of a subject's samples; two are taken in any case */
+    double least_s;           /* least CPU time of a sample */
+    double most_s;            /* greatest CPU time of a subject's samples; at least two are taken */
     int samples;              /* 1 .. BENCH_SAMPLES_MAX */
-    bench_progress *progress; /* told after each sample; may be NULL */
-    void *context;            /* its own */
+    bench_progress *progress; /* called after each sample; may be NULL */
+    void *context;            /* passed to progress */
 };
 extern const struct bench_rules bench_usual;
 
-/* Measures all subjects. One that breaks down is left out and says so in its failure; any other
- * status ends the measurement and is returned. */
+/* Measures all subjects. One that breaks down is left out, with the reason in its failure; any
+ * other status ends the measurement and is returned. */
 enum status bench_measure(struct bench_subject *subjects, size_t count,
                           const struct bench_rules *rules, struct error *error);

@@ -9,9 +9,9 @@
 struct watching {
     struct simulation *simulation;
     double tolerance, sound, heat; /* heat: u/c^2 */
-    struct grid *grid;             /* of the start: gas that is as it was stands as it stood */
+    struct grid *grid;             /* of the initial positions, where unchanged gas still is */
     struct grid_reader reader;
-    double *v[3], *rho, *u; /* of the start, by id */
+    double *v[3], *rho, *u; /* initial values, by id */
     bool *changed;          /* likewise */
     int dim;
     double share; /* summed over steps */
@@ -57,8 +57,8 @@ static bool watch(void *context, double time, uint64_t steps)
     return true;
 }
 
-/* Neighbours at the start, by id; in 1D on a line in the plane. values: room for v, rho, u, x and
- * h. */
+/* Finds the initial neighbours, by id; in 1D on a line in the plane. values: space for v, rho, u, x
+ * and h. */
 static enum status begin(struct watching *w, const struct setup *setup, double *values,
                          struct error *error)
 {

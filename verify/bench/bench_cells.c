@@ -10,7 +10,7 @@
 
 static const double jitter = 0.2, gamma_gas = 1.4;
 
-/* As the solver asks for them (src/cells/workspace.c). */
+/* The sums as the solver requests them (src/cells/workspace.c). */
 static struct cells_method method_of(const struct scheme *s, int dim, bool specialised)
 {
     const struct plan plan = plan_make(s, dim, false, specialised);
@@ -20,7 +20,7 @@ static struct cells_method method_of(const struct scheme *s, int dim, bool speci
     return method;
 }
 
-/* Arrays that are read, and those that are found. */
+/* Input and output arrays. */
 struct arrays {
     double *x[3], *v[3], *m, *U, *alpha, *balsara, *h_inverse, *P, *c, *rho, *V, *b, *grad_h;
 };
@@ -39,7 +39,7 @@ static bool allocate(struct bench_cells *bench, size_t n, struct arrays *of)
         &f->shift[0],    &f->shift[1],    &f->shift[2],     &f->de_shift,     &f->dp_shift[0],
         &f->dp_shift[1], &f->dp_shift[2], &f->potential[0], &f->potential[1], &f->potential[2]};
     enum { READ = sizeof read / sizeof *read, FOUND = sizeof found / sizeof *found };
-    const size_t stride = n + 16; /* whole vectors read a little beyond */
+    const size_t stride = n + 16; /* vector loads read beyond the end */
     double *next = bench->storage =
         calloc((READ + FOUND + CELLS_SYMMETRIC + CELLS_SQUARE) * stride, sizeof *next);
     if (!next) return false;

@@ -19,7 +19,7 @@ struct bench_cells {
     struct cells_fields fields;
     double *storage, *radius;
     unsigned passes; /* what bench_cells_work runs */
-    double pairs;    /* within the wider of two widths, each from both sides */
+    double pairs;    /* within the larger of two smoothing lengths, each counted from both sides */
 };
 
 /* side^dim particles in a periodic box, every array that the scheme's sums read. STATUS_BAD_INPUT:

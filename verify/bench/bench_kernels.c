@@ -16,14 +16,14 @@
 #include "run.h"
 
 enum { VARIANTS = 3, LIST = 1024 };
-enum { SOLVER_ROWS_MAX = 4 }; /* of a kernel and a gradient, see add_solver: steps and the loops */
-enum { CELLS_ROWS = 10 };     /* of a kernel in 2D or 3D, see add_cells */
+enum { SOLVER_ROWS_MAX = 4 }; /* rows of a kernel and a gradient, see add_solver */
+enum { CELLS_ROWS = 10 };     /* rows of a kernel in 2D or 3D, see add_cells */
 enum variant { STAMPED, UNSTAMPED, LIMIT };
 
-/* One measurement: what a row's column is made from. */
+/* A measurement, from which a column of a row is made. */
 struct job {
     enum { JOB_NONE, JOB_LOOPS, JOB_CELLS, JOB_STEP, JOB_OPERATOR, JOB_LIMIT, JOB_NEAR } kind;
-    double pairs, particles; /* of the work done once */
+    double pairs, particles; /* of the work, done once */
     struct bench_loops loops;
     struct bench_cells cells;
     struct run *run;
@@ -35,7 +35,7 @@ struct job {
     const struct bench_neighbours *list;
     const float *places[3]; /* LIST of them */
     int dim;
-    size_t near; /* of them that were found, lest the work be left out */
+    size_t near; /* neighbours found; stored so that the compiler keeps the work */
 };
 
 struct bench {
@@ -47,7 +47,7 @@ struct bench {
     double *fields[KERNEL_DIM_MAX], *scratch;
     struct bench_neighbours lists[KERNEL_DIM_MAX];
     double *list_memory;
-    float places[3][LIST]; /* in cells around the ball of radius 1 */
+    float places[3][LIST]; /* positions in cells around the ball of radius 1 */
     struct bench_kernels *result;
 };
 
@@ -99,7 +99,7 @@ static enum status work(void *context, uint64_t times, struct clock_taken *taken
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
-/* Neighbours at random in the ball of radius 1, all of them inside. */
+/* Random neighbours inside the ball of radius 1. */
 static void make_list(struct bench *bench, int dim, gsl_rng *rng)
 {
     struct bench_neighbours *list = &bench->lists[dim - 1];
@@ -190,14 +190,15 @@ static enum status prepare_loops(struct job *job, const struct scheme *scheme, b
     return STATUS_OK;
 }
 
-/* The solver with one kernel and gradient: each loop, and whole steps of a sound wave. */
+/* Adds jobs for the solver with one kernel and gradient: each loop, and whole steps of a sound
+ * wave. */
 static enum status add_solver(struct bench *bench, const char *kernel, const char *gradient,
                               struct error *error)
 {
     static const struct {
         const char *name;
         unsigned passes;
-        bool ia, both; /* belongs to ia; to both gradients, then named after it */
+        bool ia, both; /* only with ia; with both gradients, and named after the gradient */
     } loops[SOLVER_ROWS_MAX - 1] = {
         {"density", 1u << PASS_DENSITY, false, false},
         {"matrix", 1u << PASS_MATRIX, true, false},
@@ -238,8 +239,8 @@ static enum status add_solver(struct bench *bench, const char *kernel, const cha
     return STATUS_OK;
 }
 
-/* The arithmetic of a gradient operator on one contiguous array: what a pass comes to that does at
- * least as much so many times. */
+/* A lower limit for a pass: the arithmetic of a gradient operator on one contiguous array, `times`
+ * times. */
 static void set_limit(const struct bench *bench, struct job *limit, const struct kernel *kernel,
                       const char *form, int dim, double times)
 {
@@ -257,7 +258,7 @@ static void set_limit(const struct bench *bench, struct job *limit, const struct
 /* Textbook SPH; with the Integral Approach; the solver's defaults. */
 enum cells_scheme { CELLS_STANDARD, CELLS_IA, CELLS_DEFAULT };
 
-/* An evaluation in 2D or 3D and its parts; the first row of a scheme is the whole. */
+/* An evaluation in 2D or 3D and its parts; the first row of a scheme is the whole evaluation. */
 static const struct {
     const char *what;
     unsigned passes;
@@ -417,7 +418,8 @@ static void clean_up(struct bench *bench)
     free(bench->jobs), free(bench->scratch), free(bench->list_memory), free(bench->kernels);
 }
 
-/* The limit of an evaluation is that of its parts; with ia, too, it searches and sums densities. */
+/* The limit of an evaluation is the sum over its parts; with ia it also includes the search and the
+ * density. */
 static void add_limits(struct bench_kernels *result)
 {
     double parts = 0;

@@ -18,10 +18,10 @@ struct bench_kernel_row {
     const char *kernel, *what; /* what: "density", "step ia", an operator's name ... */
     bool on_cloud;             /* a gradient operator on a cloud of points, else the 1D solver */
     int dim;
-    double pairs; /* a particle */
+    double pairs; /* per particle */
     double ns_per_particle;
-    size_t whole; /* the row of the evaluation that this is a part of */
-    double share; /* of its time; NaN: it is no part of one */
+    size_t whole; /* row of the evaluation that contains this part */
+    double share; /* fraction of its time; NaN: not a part */
     struct bench_cost specialised, generic, limit;
     double error; /* operators: rms of |gradient error| h/max|f|, smooth field, jittered cloud */
 };
@@ -31,8 +31,8 @@ struct bench_kernels {
     struct bench_kernel_row *rows;
 };
 
-/* sweep: which kernels (its one key may be kernel; no key: all). Free with bench_kernels_free, also
- * after a failure. */
+/* sweep: the kernels (its only key may be kernel; no key: all). Call bench_kernels_free even after
+ * a failure. */
 enum status bench_kernels_measure(const struct sweep *sweep, const struct bench_rules *rules,
                                   struct bench_kernels *result, struct error *error);
 void bench_kernels_free(struct bench_kernels *result);

@@ -9,10 +9,10 @@
 #include "specialise.h"
 #include "matrix.h"
 
-/* Places of the sums. */
+/* Offsets of the sums. */
 enum { PF = 0, P = 3, PX = 6, W = 15, WF = 16, WX = 17, USED = 20 };
 
-/* The kinds of sums that the operators need; a matrix where the pair vector is not the gradient. */
+/* The kinds of sums that the operators need; a matrix if the pair vector is not the gradient. */
 #define DIMENSIONS(vector, tag, X, name)                                                           \
     X(name, tag, vector, 1) X(name, tag, vector, 2) X(name, tag, vector, 3)
 #define KINDS(X, name) VECTOR_LIST(DIMENSIONS, X, name)
@@ -121,7 +121,7 @@ bool bench_limit_gradient(const struct kernel *kernel, const struct operator_for
     for (int a = 0; a < dim; a++) {
         const double mean = normalised ? sums[P + a] / sums[W] : 0;
         pf[a] = sums[PF + a] - mean * sums[WF];
-        /* normalised vectors sum to nothing: the difference is for free */
+        /* normalised vectors sum to zero, so the difference costs nothing */
         if (form->difference) pf[a] -= f_0 * (sums[P + a] - mean * sums[W]);
         for (int b = 0; b < dim; b++)
             matrix[a * dim + b] = sums[PX + 3 * a + b] - mean * sums[WX + b];

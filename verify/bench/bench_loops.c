@@ -43,7 +43,8 @@ static void fill(struct bench_loops *loops)
     ghosts_fill(a, a->x[0], a->ghosts, a->period[0]);
 }
 
-/* As predicted_midpoint moves particles: to the end of a step and on to the middle of the next. */
+/* Moves particles like predicted_midpoint: to the end of a step and on to the middle of the
+ * next. */
 CLONES static void move(const struct particles *a, ptrdiff_t n, double dt)
 {
     double *restrict x = a->x[0], *restrict x_old = a->x_old[0], *restrict v = a->v[0],

@@ -10,24 +10,24 @@
 #include "line/line.h"
 #include "plan.h"
 
-enum { BENCH_LOOPS_PARTICLES = 1600 }; /* that tables are made with */
+enum { BENCH_LOOPS_PARTICLES = 1600 }; /* particles used for tables */
 
 struct bench_loops {
     struct scheme scheme;
     struct loops loops; /* points into scheme: do not move the struct */
     struct plan plan;
     struct particles particles;
-    ptrdiff_t reach; /* offsets that the widths cover */
+    ptrdiff_t reach; /* offsets within the smoothing lengths */
     double *scratch;
-    double dt;       /* 0, as only the program knows, not the compiler */
-    double rate;     /* what is found, so that no pass is without effect */
-    unsigned passes; /* what bench_loops_work runs: 1 << enum bench_pass */
-    uint64_t pairs;  /* of one run of these passes, counted as the solver counts */
+    double dt;       /* 0, which the compiler cannot know */
+    double rate;     /* a result, so that no pass is optimised away */
+    unsigned passes; /* passes of bench_loops_work: 1 << enum bench_pass */
+    uint64_t pairs;  /* of one run of these passes, counted as by the solver */
 };
 
-/* PASS_STATE: the arithmetic of a step without pairs, as predicted_midpoint with predicted h has
- * it: motion, widths, equation of state. PASS_ORDER, PASS_REACH: the tests that order and neighbour
- * ranges are still good; PASS_SORT, PASS_SEARCH: making them anew. */
+/* PASS_STATE: the arithmetic of a step without pairs, as in predicted_midpoint with predicted h:
+ * motion, smoothing lengths, equation of state. PASS_ORDER, PASS_REACH: the tests that order and
+ * neighbour ranges are still valid; PASS_SORT, PASS_SEARCH: rebuilding them. */
 enum bench_pass {
     PASS_STATE,
     PASS_DENSITY,

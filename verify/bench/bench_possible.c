@@ -8,8 +8,8 @@
 #include "solver.h"
 
 static const double reaches = 3;
-/* Rates of change, in c per h/c of the setup's mean sound speed, below which gas counts as calm. It
- * is far above what wakes gas, and far below what changes the errors of a run. */
+/* Rates of change, in c per h/c with the setup's mean sound speed, below which gas counts as calm:
+ * far above the rate that wakes gas, far below one that changes a run's errors. */
 static const double coarse = 1e-7;
 
 struct counting {
@@ -27,7 +27,7 @@ struct counting {
     double slept[BENCH_ROWS][BENCH_COLUMNS], gas[BENCH_ROWS][BENCH_COLUMNS];
 };
 
-/* Sound speed if all energy but that of the common motion were heat, as in sleep.h. */
+/* Sound speed if all energy except that of the common motion were heat, as in sleep.h. */
 static double setup_sound(const struct initial *initial, int dim, double gamma)
 {
     double mass = 0, energy = 0, momentum[3] = {0};
@@ -43,7 +43,7 @@ static double setup_sound(const struct initial *initial, int dim, double gamma)
     return sqrt(gamma * (gamma - 1) * fmax(energy, 0) / mass);
 }
 
-/* Gas ahead of all waves moves on as it started. */
+/* Position of gas ahead of all waves, which keeps its initial velocity. */
 static void place_at(const struct counting *counting, size_t i, double time, double x[3])
 {
     const struct prepared *p = counting->problem;
@@ -84,7 +84,7 @@ static void find_calm(struct counting *counting, const struct snapshot *s, doubl
     }
 }
 
-/* Of the box along x, counted from 0. */
+/* Column of the box along x, from 0. */
 static int column_at(const struct counting *counting, double x, int columns)
 {
     const struct domain *domain = &counting->problem->domain;
@@ -92,7 +92,7 @@ static int column_at(const struct counting *counting, double x, int columns)
     return (int)fmax(0, fmin(at * columns, columns - 1));
 }
 
-/* Is there, of so many columns, an empty one between two with particles? */
+/* True if one of so many columns is empty between two with particles. */
 static bool has_gap(const struct counting *counting, int columns)
 {
     const struct initial *initial = counting->initial;
@@ -108,7 +108,7 @@ static bool has_gap(const struct counting *counting, int columns)
     return first < last;
 }
 
-/* As many as the map has room for, but none empty at the start where gas is on both sides of it:
+/* The largest number of columns that fits into the map without empty ones at the start between gas:
  * few particles along x would leave stripes. */
 static int count_columns(const struct counting *counting)
 {
@@ -169,8 +169,8 @@ static bool has_gas(const struct counting *counting, int row)
     return gas > 0;
 }
 
-/* Steps may be longer than a row: such a row is as the one before, the first ones as the first that
- * a step ends in. */
+/* Steps may be longer than a row: a row without a step repeats the one before, and the first rows
+ * repeat the first one with a step. */
 static void fill_map(const struct counting *counting, struct bench_shares *shares)
 {
     int from = -1;

@@ -7,32 +7,32 @@
 
 enum { BENCH_ROWS = 32, BENCH_COLUMNS = 64 };
 
-/* Of the particle updates of a run. */
+/* Fractions of the particle updates of a run. */
 struct bench_shares {
     double skipped;
-    /* What could be: particles further than three smoothing lengths ahead of every wave of the
-     * exact solution; or, where that has no waves with an edge, particles whose velocity and
-     * density change more slowly than a coarse threshold. */
+    /* Could be skipped: particles more than three smoothing lengths ahead of every wave of the
+     * exact solution; if it has no waves with an edge, particles whose velocity and density change
+     * more slowly than a coarse threshold. */
     double possible;
-    /* What the promise of sleep allows by whatever rule, from a run without skips: bench_allowed();
+    /* Allowed by the promise of sleep under any rule, from a run without skips: bench_allowed();
      * NaN: the run has no tolerance of sleep. */
     double allowed;
     double tolerance; /* of sleep: sleep.h; 0: the run has none */
     bool coarse;      /* possible is found with the coarse threshold */
-    /* Of what is possible and was done: particles whose own rates are above the tolerance of sleep,
-     * so that a precursor has reached them; and particles that are awake for their neighbours. */
+    /* Possible but not skipped: particles with rates above the tolerance of sleep, which a
+     * precursor has reached; and particles that are active because of their neighbours. */
     double reached, layers;
-    /* Share of the gas that sleeps, by parts of t_end and parts of the box along x, of which there
-     * are so few that none between particles is empty at the start; NaN: no gas. */
+    /* Sleeping fraction of the gas, in intervals of t_end and of the box along x; the columns are
+     * few enough that none between particles is empty at the start. NaN: no gas. */
     int columns;
     double asleep[BENCH_ROWS][BENCH_COLUMNS];
 };
 
-/* Is at least four fifths skipped of what is allowed, but for two in a hundred of all updates? True
- * where nothing tells. */
+/* True if at least four fifths of the allowed work is skipped, apart from 2 % of all updates, or if
+ * nothing is known. */
 bool bench_shares_enough(const struct bench_shares *shares);
 
-/* Runs it, with or without skips as its keys say. STATUS_*: as run_execute. */
+/* Runs it, with or without skips according to its keys. STATUS_*: as run_execute. */
 enum status bench_possible(const struct run *run, struct bench_shares *shares, struct error *error);
 
 /* Runs it without skips. The share of particle updates after which velocity, density and internal

@@ -12,11 +12,11 @@
 #include "bench_skips.h"
 #include "precision.h"
 
-/* A step's time is that of a longer run less that of a shorter one: the set-up cancels. The solver
- * asks every 32 steps whether to go on. */
+/* The time of a step is the difference between a longer and a shorter run, which cancels the
+ * set-up. The solver asks every 32 steps whether to continue. */
 enum { STEPS_SHORT = 32, STEPS_LONG = 160 };
-/* Where threads are compared, wall time counts, which other people's load disturbs most: no
- * difference of two times, but a run long enough that its set-up matters little. */
+/* Comparisons of threads use wall time, which other load disturbs most: not a difference of two
+ * times, but a run long enough that its set-up matters little. */
 enum { STEPS_THREADS = 320 };
 enum { RUN_N_MAX = 10000 }; /* whole runs cost as n^2 */
 static const size_t thread_n[] = {800, 6400, 20000, 100000};
@@ -27,8 +27,8 @@ enum part { PART_SHORT, PART_LONG, PART_RUN, PARTS };
 struct job {
     struct run run;
     uint64_t most_steps; /* 0: to t_end */
-    int processes;       /* that do the work at once, each all of it */
-    bool keep;           /* the last state, to compare; else memory is measured without it */
+    int processes;       /* that do the whole work simultaneously */
+    bool keep; /* keep the last state for comparison; else memory is measured without it */
     struct run_result last;
     double peak_rss; /* after the first call */
 };
@@ -58,9 +58,8 @@ static enum status work(void *context, uint64_t times, struct clock_taken *taken
     return STATUS_OK;
 }
 
-/* The work of one thread, done by several processes at once, which share nothing but the machine:
- * what they gain, threads could gain if they never waited for one another. It takes until the last
- * process has ended. */
+/* Runs the work of one thread in several processes at once, which share only the machine: their
+ * gain is the limit for threads that never wait. Ends with the last process. */
 static enum status work_at_once(void *context, uint64_t times, struct clock_taken *taken,
                                 struct error *error)
 {
@@ -88,7 +87,7 @@ static enum status work_at_once(void *context, uint64_t times, struct clock_take
     return status;
 }
 
-/* Steps of a state in motion: no particle may sleep, and t_end does not come. */
+/* Prepares steps of a moving state: no particle may sleep, and t_end is not reached. */
 static enum status prepare(struct job *job, const struct run_settings *settings, size_t n,
                            uint64_t most_steps, int threads, struct error *error)
 {
@@ -107,7 +106,8 @@ static enum status prepare(struct job *job, const struct run_settings *settings,
 
 struct bench {
     struct scaling *scaling;
-    struct job *jobs; /* PARTS a level, then three a thread level: one thread, more, processes */
+    struct job
+        *jobs; /* PARTS per level, then three per thread level: one thread, several, processes */
     struct bench_subject *subjects;
     size_t count;
 };

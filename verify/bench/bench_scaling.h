@@ -14,11 +14,11 @@ enum { SCALING_THREADS_MAX = 8 };
 
 struct scaling_level {
     size_t n;
-    double step_cpu_s, set_up_cpu_s; /* one step with all particles awake; all before the first;
-                                      * NaN: lost in noise */
+    double step_cpu_s, set_up_cpu_s; /* one step with all particles active; everything before the
+                                        first step; NaN: lost in noise */
     double spread;
-    double peak_rss;                     /* bytes, of the process, after this level (they rise) */
-    double run_cpu_s;                    /* whole run as given; NaN where it would take too long */
+    double peak_rss;  /* bytes of the process after this level (non-decreasing) */
+    double run_cpu_s; /* whole run as given; NaN if it would take too long */
     double run_wall_s, run_pairs, error; /* of the whole run; error: L1 of density */
     bool on_front;
     uint64_t run_steps;
@@ -28,8 +28,8 @@ struct scaling_level {
 struct scaling_threads {
     size_t n;
     int threads;
-    double wall_s, gain;      /* of a step with its share of the set-up; one thread over it */
-    double gain_of_processes; /* the same for as many runs of one thread, at once */
+    double wall_s, gain;      /* of a step with its share of the set-up; speed-up over one thread */
+    double gain_of_processes; /* the same for as many simultaneous runs of one thread */
     bool same_bits;
 };
 

@@ -11,8 +11,7 @@
 #include "bench_possible.h"
 #include "integrator.h"
 
-/* Work that keys bring back; where the case's own scheme does not leave it out, nothing is shown.
- */
+/* Work that keys restore; a case whose scheme does not skip it has no entry. */
 enum when { ALWAYS, PREDICTED, INVISCID, UNIFORM, LOCAL };
 static const struct {
     /* ALPHA and CFL stand for the scheme's own: what is automatic depends on the viscosity */
@@ -45,7 +44,7 @@ static const struct {
 };
 enum { SWITCHES = sizeof switches / sizeof *switches };
 
-/* Passes by themselves: the loops of another scheme, less what the case does instead. */
+/* Single passes: the loops of another scheme, minus those that the case runs instead. */
 enum extra {
     EXTRA_ORDER,
     EXTRA_REACH,
@@ -90,7 +89,7 @@ double bench_skips_difference(const struct snapshot *a, const struct snapshot *b
             difference = fmax(difference, here);
             largest = fmax(largest, fabs(of_a[k][i]));
         }
-        /* bits that differ in the sign of a zero are a difference, too */
+        /* zeros of different sign are a difference, too */
         worst = fmax(worst, difference > 0 ? difference / largest : 1e-300);
     }
     return worst;
@@ -126,11 +125,11 @@ struct bench {
     struct bench_skips *result;
     size_t max;
     enum bench_part part;
-    struct job *jobs; /* BENCH_SIDES a skip; then one whole step of each case */
+    struct job *jobs; /* BENCH_SIDES per skip; then one whole step of each case */
     struct bench_subject *subjects;
 };
 
-/* Keys as words, ALPHA and CFL replaced. own: NULL where neither is there. */
+/* Applies keys, with ALPHA and CFL replaced. own: NULL if neither occurs. */
 static enum status apply(struct run_settings *settings, const char *keys, const struct scheme *own,
                          struct error *error)
 {
@@ -192,7 +191,7 @@ static struct job *jobs_of(const struct bench *bench, const struct bench_skip *s
     return &bench->jobs[(size_t)(skip - bench->result->skips) * BENCH_SIDES];
 }
 
-/* A run with more keys; malloced. NULL: they cannot be, or no memory. */
+/* A run with additional keys; malloced. NULL: invalid keys, or no memory. */
 static struct run *run_with(const struct run_settings *from, const char *keys,
                             const struct scheme *own, struct error *error)
 {
@@ -228,7 +227,7 @@ static enum status add_switches(struct bench *bench, size_t c, const struct sche
     return STATUS_OK;
 }
 
-/* The scheme whose loops contain the work; false where the case needs that work itself. */
+/* The scheme whose loops contain the work; false if the case itself needs that work. */
 static bool scheme_with(enum extra extra, struct scheme *scheme)
 {
     const struct scheme own = *scheme;
@@ -270,7 +269,7 @@ static enum status add_cells(struct job *job, const struct scheme *scheme, int d
     return bench_cells_create(job->cells, scheme, dim, dim == 2 ? 40 : 12, true, pass, error);
 }
 
-/* In 2D and 3D: the sums of another scheme, less those of the case's own. */
+/* In 2D and 3D: adds the sums of another scheme, minus those of the case's own. */
 static enum status add_cloud_extras(struct bench *bench, size_t c, int dim,
                                     const struct scheme *scheme, struct error *error)
 {
@@ -326,9 +325,8 @@ static enum status add_case(struct bench *bench, size_t c, struct error *error)
 
 /* --- all of them ------------------------------------------------------------------------------ */
 
-/* What steps that are longer by this part of themselves do to the answer: strong shocks
- * and noise behind them amplify round-off, and no promise can be kept to less. 0 where it cannot be
- * measured. */
+/* Difference caused by time steps longer by this fraction: strong shocks and the noise behind them
+ * amplify round-off, so no promise can be tighter. 0 if it cannot be measured. */
 static double sensitivity(const struct job *job, double nudge)
 {
     struct error ignored = {0};
@@ -346,7 +344,7 @@ static double sensitivity(const struct job *job, double nudge)
     return isfinite(difference) ? difference : 0;
 }
 
-/* Returns what it is of; NULL: nothing is exact, and the error is NaN. */
+/* Returns the quantity of the error; NULL: no exact solution, and the error is NaN. */
 static const char *error_of(const struct run_result *result, double *error)
 {
     *error = result->errors[FIELD_DENSITY].l1;
@@ -376,7 +374,7 @@ static void judge(struct bench_skip *skip, const struct job *job)
         skip->shares = NULL;
     }
     if (strcmp(skip->keys, "skip=none") == 0) {
-        /* and the sums of the start */
+        /* including the initial sums */
         const double sums =
             (double)a->n + a->scheme.integrator->evaluations * (double)a->cost.particle_updates;
         skip->without_viscosity = (double)a->cost.without_viscosity / sums;
@@ -395,7 +393,8 @@ static void judge(struct bench_skip *skip, const struct job *job)
                                                skip->shares ? skip->shares->tolerance : 1e-11));
     skip->enough = !skip->shares || bench_shares_enough(skip->shares);
     skip->kept = skip->difference <= skip->bound ||
-                 (skip->promise == PROMISE_ERROR && !skip->measured); /* nothing tells */
+                 (skip->promise == PROMISE_ERROR &&
+                  !skip->measured); /* without an exact solution nothing is judged */
 }
 
 static void finish(struct bench *bench, const struct bench_subject *of_job[])

@@ -37,8 +37,8 @@ void precision_plain(const struct setup *setup, struct run_outcome *outcome)
     outcome->release = release_plain;
 }
 
-/* What the seed program does, its errors corrected: on top of the user's keys, which say what is
- * computed. */
+/* The seed program's method with its errors corrected; added to the user's keys, which define the
+ * problem. */
 static const char *const seed_keys[] = {
     "kernel=cubic_spline",
     "eta=4.8",
@@ -56,7 +56,7 @@ static const char *const seed_keys[] = {
     "h_tolerance=1e-10",
     "skip=none",
 };
-/* In 2D and 3D: what textbooks have. */
+/* In 2D and 3D: the textbook scheme. */
 static const char *const textbook_keys[] = {"kernel=cubic_spline", "eta=2.4", "gradient=standard",
                                             "viscosity=constant"};
 #define LENGTH(list) (sizeof(list) / sizeof *(list))
@@ -69,7 +69,7 @@ struct job {
     struct judged judged;
 };
 
-/* What a run's document says of the error that its case is judged by. */
+/* Reads the error that judges the case from a run's document. */
 static double error_of(const json_t *document, int dim)
 {
     const char *first = json_string_value(json_array_get(json_object_get(document, "measured"), 0));
@@ -79,7 +79,7 @@ static double error_of(const json_t *document, int dim)
                   : value_inner(json_object_get(document, "errors"), name, "l1");
 }
 
-/* By another code; point and taken may be NULL. */
+/* Runs another code; point and taken may be NULL. */
 static enum status run_other(const struct run *run, double *value, struct precision_point *point,
                              struct clock_taken *taken, struct error *error)
 {
@@ -110,9 +110,9 @@ static enum status error_at(const struct run *run, double *value, struct error *
     return status;
 }
 
-/* The error over the replicates that a study of the case has, brought to the point's own n by the
- * case's order: the first is there, the others are run once, and not timed; five are enough, for
- * errors are compared over a factor of ten. Of a random start the point's own seed counts. */
+/* Averages the error over the replicates of a study of the case, scaled to the point's own n by the
+ * case's order. The first is there; the others run once, untimed. Five are enough, because errors
+ * are compared over a factor of ten. For a random start only the point's own seed counts. */
 static enum status average(struct job *job, int order, struct error *error)
 {
     const size_t n = (size_t)settings_real(&job->run.settings, SETTING_n);
@@ -172,8 +172,8 @@ static enum status execute(void *context, uint64_t times, struct clock_taken *ta
 
 /* --- all of them ------------------------------------------------------------------------------ */
 
-/* The case's order: the middle of its gate on L1(density), which for shock tubes is a little
- * below 1, or what such a gate of the error alone says. */
+/* The case's order: the middle of its gate on L1(density), a little below 1 for shock tubes, or the
+ * order implied by a gate on the error alone. */
 static int order_of(const struct run_settings *settings)
 {
     const struct case_file *file = &settings->file;
@@ -207,7 +207,7 @@ static enum status find_scale(const struct run_settings *settings, struct precis
     return STATUS_OK;
 }
 
-/* "kernel=a eta=2" -> "a eta=2": names say themselves what they are. */
+/* "kernel=a eta=2" -> "a eta=2": names identify their keys. */
 static void shorten(const char *label, char brief[SWEEP_LABEL])
 {
     size_t used = 0;
@@ -224,7 +224,8 @@ static void shorten(const char *label, char brief[SWEEP_LABEL])
 
 static const char *const graded_key = "grade=0.5";
 
-/* The curve of graded masses belongs to jumps between gases, unless grading is what varies. */
+/* True if graded masses add a curve: for jumps between gases, unless the sweep varies the
+ * grading. */
 static bool want_graded(const struct run_settings *settings, const struct sweep *sweep)
 {
     const struct settings *keys = &settings->settings;
@@ -284,7 +285,8 @@ static enum status prepare(const struct precision *precision, const struct sweep
     return STATUS_OK;
 }
 
-/* Resolves the scheme's run with n particles; why it cannot be goes into scheme->excluded. */
+/* Resolves the scheme's run with n particles; the reason of a refusal goes into
+ * scheme->excluded. */
 static enum status add_level(struct job *job, struct run_settings *settings, size_t n,
                              struct precision_scheme *scheme, struct error *error)
 {
@@ -298,7 +300,7 @@ static enum status add_level(struct job *job, struct run_settings *settings, siz
     return reason.status == STATUS_CHECK_FAILED ? reason.status : STATUS_OK;
 }
 
-/* A scheme that has failed at one n is not averaged at others. */
+/* A scheme that failed at one n is not averaged at the others. */
 static void average_all(const struct precision *precision, struct bench_subject *subjects,
                         struct job *jobs)
 {
@@ -310,7 +312,7 @@ static void average_all(const struct precision *precision, struct bench_subject 
     }
 }
 
-/* Points of schemes that broke down go away, the others close up. */
+/* Removes the points of schemes that broke down. */
 static void collect(struct precision *precision, const struct bench_subject *subjects,
                     const struct job *jobs)
 {
@@ -341,7 +343,7 @@ static void collect(struct precision *precision, const struct bench_subject *sub
     precision->point_count = kept;
 }
 
-/* What is to be measured: a job for each scheme and n, in the order of the points. */
+/* The measurements: a job for each scheme and n, in the order of the points. */
 struct precision_work {
     const struct precision *precision;
     const struct bench_rules *rules;
@@ -426,7 +428,7 @@ enum status precision_measure(const struct run_settings *settings, const struct 
 
 /* --- one n as a computation of a pool --------------------------------------------------------- */
 
-/* What was measured of a job; name "" in 1D. */
+/* The measurement of a job; name "" in 1D. */
 static json_t *measured_json(const struct bench_subject *subject, const struct job *job)
 {
     const struct precision_point *point = job->point;
@@ -453,7 +455,7 @@ static enum status measure_level(const void *context, json_t **document, struct 
         if (work->level[i] == level->number) list[n++] = work->subjects[i];
     const enum status status = bench_measure(list, n, &rules, error);
     if (!status) {
-        *document = result_new("bench"); /* says which machine this is */
+        *document = result_new("bench"); /* names this machine */
         json_t *points = json_array();
         for (size_t i = 0; i < n; i++) {
             struct job *job = list[i].context;
@@ -466,7 +468,7 @@ static enum status measure_level(const void *context, json_t **document, struct 
     return status;
 }
 
-/* All that decides what is measured at this n, as text; malloced. */
+/* Everything that decides the measurement at this n, as text; malloced. */
 static char *level_key(const struct level *level, double *weight, struct error *error)
 {
     const struct precision_work *work = level->work;

@@ -20,8 +20,8 @@ enum { PRECISION_TARGETS = 3, PRECISION_SHORT = 96 };
 extern const double precision_targets[PRECISION_TARGETS]; /* relative to the signal */
 
 struct precision_point {
-    size_t scheme, n;       /* n: as the set-up allowed */
-    double error, relative; /* geometric mean over neighbouring n where the solution jumps */
+    size_t scheme, n;       /* n: as the lattice allowed */
+    double error, relative; /* geometric mean over neighbouring n if the solution jumps */
     double error_spread;    /* standard deviation of its logarithm; 0 of a single n */
     double pairs;           /* pair interactions */
     bool on_front;
@@ -31,24 +31,24 @@ struct precision_point {
     struct error failure;
 };
 
-/* Curves beside those of the sweep: the seed program's method by the solver and as plain C, for
- * comparison, never on the front; the user's own keys with masses graded towards the jump, where
- * all else has equal masses, which compete like any other. */
+/* Additional curves: the seed program's method, by the solver and in plain C, for comparison and
+ * never on the front; and the user's own keys with masses graded towards the jump instead of equal
+ * ones, which compete like any other. */
 enum precision_reference { REFERENCE_NONE, REFERENCE_GRADED, REFERENCE_SEED, REFERENCE_SEED_PLAIN };
 
 struct precision_scheme {
     char label[SWEEP_LABEL]; /* "kernel=cubic_spline gradient=ia" */
     char brief[SWEEP_LABEL]; /* the values alone, for plots */
     enum precision_reference reference;
-    size_t first, count; /* its points, n rising; 0 where it is excluded or broke down */
+    size_t first, count; /* its points, n rising; 0 if it is excluded or broke down */
     double merit;        /* L1^(2/p) x CPU time at the finest n; NaN without points */
-    double gain;         /* the plain reference's merit over this one's, same ladder */
-    char excluded[512];  /* why there is no point */
+    double gain;         /* merit of the plain reference over this one's, same ladder */
+    char excluded[512];  /* reason if there is no point */
 };
 
 struct precision_way {
     double error; /* L1 of density */
-    double cpu_s; /* interpolated along a scheme's curve; NaN: no scheme gets there */
+    double cpu_s; /* interpolated along a scheme's curve; NaN: not reached by any scheme */
     size_t scheme;
 };
 
@@ -56,7 +56,7 @@ struct precision {
     const struct run_settings *settings;
     double mean_density, signal; /* exact, of the measure window at t_end: mean, and mean distance
                                     from it (or the mean where that is 0) */
-    const char *error_of;        /* what the error is of, static */
+    const char *error_of;        /* quantity of the error, static string */
     int dim;
     int order; /* of the case: of its gate on L1 of density; without one 1 in 1D, in 2D and 3D 2 of
                   what is smooth, else 1 */
@@ -64,57 +64,56 @@ struct precision {
     struct precision_scheme *schemes; /* references last */
     struct precision_point *points;   /* by scheme, then n */
     struct precision_way cheapest[PRECISION_TARGETS];
-    struct precision_work *work; /* what is to be measured; its own */
+    struct precision_work *work; /* the measurements; owned */
 };
 
-/* ladder: count rising numbers of particles. Where settings have an external program, it is one
- * scheme more, and the others are ours. settings must live as long as the result. Schemes that
- * keys exclude, or that break down at some n, are kept with the reason. STATUS_BAD_INPUT: nothing
- * is left. Free with precision_free, also after a failure. */
+/* ladder: count rising numbers of particles. An external program in settings is one scheme, and the
+ * others are ours. settings must outlive the result. Schemes that keys exclude, or that break down
+ * at some n, are kept with the reason. STATUS_BAD_INPUT: no scheme is left. Call precision_free
+ * even after a failure. */
 enum status precision_measure(const struct run_settings *settings, const struct sweep *sweep,
                               const size_t *ladder, size_t count, const struct bench_rules *rules,
                               struct precision *precision, struct error *error);
 void precision_free(struct precision *precision);
 
-/* The same in two parts, for many machines: each n is a computation of the pool, in which all
- * schemes are measured in turn; then, after pool_run, what came of it. Times are compared with
- * those of the same processor only. rules must live until pool_run; the pool as long as the result.
- */
+/* The same in two parts, for several machines: each n is a job of the pool that measures all
+ * schemes in turn; after pool_run, precision_conclude judges them. Compares only times of one
+ * processor. rules must outlive pool_run, the pool the result. */
 enum status precision_plan(const struct run_settings *settings, const struct sweep *sweep,
                            const size_t *ladder, size_t count, const struct bench_rules *rules,
                            struct precision *precision, struct pool *pool, struct error *error);
 enum status precision_conclude(struct precision *precision, const struct pool *pool,
                                struct error *error);
 
-/* The t-th target, in parts of the signal; ten times as much in 2D and 3D. */
+/* The t-th target, relative to the signal; ten times larger in 2D and 3D. */
 double precision_target(const struct precision *precision, size_t t);
 
-/* A run_solver: the seed program's corrected method in plain C (plain.h). STATUS_BAD_INPUT: a
- * scheme that it does not know. */
+/* A run_solver: the seed program's corrected method in plain C (plain.h). STATUS_BAD_INPUT: an
+ * unknown scheme. */
 void precision_plain(const struct setup *setup, struct run_outcome *outcome);
 
 /* --- the arithmetic, by itself ---------------------------------------------------------------- */
 
-/* Fills what is judged of points that are there: the front, gains, the cheapest ways.
- * STATUS_ENVIRONMENT: no memory. */
+/* Judges existing points: fills the front, gains and cheapest ways. STATUS_ENVIRONMENT: no
+ * memory. */
 enum status precision_judge(struct precision *precision, struct error *error);
 
-/* error^((d+1)/p) cpu_s: the same at every resolution, at the case's order p. */
+/* error^((d+1)/p) cpu_s: independent of resolution at the case's order p. */
 double precision_merit(const struct precision *precision, double error, double cpu_s);
 
-/* Does a scheme compete for the front and for the cheapest way? */
+/* True if the scheme competes for the front and for the cheapest way. */
 bool precision_competes(const struct precision_scheme *scheme);
 
-/* A point is on the front if no other is at most as dear and at most as wrong, and better in one;
- * a point that is not finite never is. */
+/* A finite point is on the front if no other point is at most as expensive, at most as inaccurate,
+ * and better in one of both. */
 void precision_front(size_t n, const double *cost, const double *error, bool *on_front);
 
-/* Least cost at which a curve (points in order of resolution) comes down to an error: log-log
- * between neighbouring points, never beyond the ends; the first point's own cost where already
- * that one is good enough. NaN: not reached. */
+/* Least cost at which a curve (points in order of resolution) reaches an error: interpolated
+ * log-log between neighbouring points, never extrapolated; the first point's cost if its error is
+ * small enough. NaN: not reached. */
 double precision_cost_of(size_t n, const double *cost, const double *error, double target);
 
-/* Schemes by figure of merit, the front, the cheapest ways. */
+/* Prints schemes by figure of merit, the front and the cheapest ways. */
 void precision_print(const struct precision *precision, const struct table_style *style);
 
 /* Error against CPU time, curves named at their ends: both references and the schemes with points

@@ -65,7 +65,7 @@ static bool of_one_processor(const struct precision *precision,
     return true;
 }
 
-/* A front for each processor: times of two say nothing about each other. front: room for n. */
+/* One front per processor, because times of two are not comparable. front: space for n. */
 static void fronts(struct precision *precision, const double *cost, double *wrong, bool *front)
 {
     const size_t n = precision->point_count;
