@@ -361,8 +361,10 @@ static void unknown(struct parser *parser, const char *section, const char *name
     for (int i = 0; i < EXTRAS; i++)
         if (strcmp(extras[i].section, section) == 0) names[n++] = extras[i].name;
     if (strcmp(section, "converge") == 0 || strcmp(section, "compared") == 0 ||
-        strcmp(section, "finer") == 0)
+        strcmp(section, "finer") == 0) {
         names[n++] = "density_l1";
+        for (int k = 0; k < TRACE_FIGURES; k++) names[n++] = trace_figures[k];
+    }
     snprintf(what, sizeof what, "key in [%.20s]", section);
     text_unknown(parser->at.error, where, what, name, names, n);
 }

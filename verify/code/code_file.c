@@ -9,6 +9,7 @@
 #include "gates.h"
 #include "list.h"
 #include "text.h"
+#include "trace.h"
 
 /* ---- reading ---- */
 
@@ -124,12 +125,13 @@ static bool take_own(struct parser *parser, const char *name, const char *value)
 
 static void unknown_key(struct parser *parser, const char *section, const char *name)
 {
-    const char *names[CODE_KEYS + 2];
+    const char *names[CODE_KEYS + 2 + TRACE_FIGURES];
     char where[CODE_PATH], what[120];
     size_t n = 0;
     for (int key = parser->way != &parser->code->way; key < CODE_KEYS; key++)
         names[n++] = code_keys[key].name;
     if (parser->of) names[n++] = "n", names[n++] = "density_l1";
+    for (int k = 0; parser->of && k < TRACE_FIGURES; k++) names[n++] = trace_figures[k];
     snprintf(where, sizeof where, "%.200s:%d", parser->at.path, parser->at.line);
     snprintf(what, sizeof what, "key in [%.60s]", section);
     parser->at.failed = true;

@@ -190,6 +190,18 @@ static char *pattern_of(const struct course *course)
     return buffer_take(&pattern);
 }
 
+/* Tells that no snapshot has the name that the code file says, with its @WORDS@ filled in. */
+static void tell_missing(struct course *course)
+{
+    char *name = code_fill(course->external->of->way.value[CODE_snapshot], course->values.of);
+    snprintf(course->message, sizeof course->message,
+             course->reason == REASON_old_snapshot
+                 ? "%.200s: all files of this name are older than the run"
+                 : "%.200s: the run has written no file of this name",
+             name ? name : "");
+    free(name);
+}
+
 static bool all_in(const struct snapshot_file *file, const double *lo, const double *hi, int dim)
 {
     for (int d = 0; d < dim; d++)
@@ -383,11 +395,7 @@ static enum status execute(struct course *course, struct error *error)
         else if (path)
             status = judge(course, course->snapshot, error);
         else
-            snprintf(course->message, sizeof course->message,
-                     course->reason == REASON_old_snapshot
-                         ? "%.200s: all that is there is older than the run"
-                         : "%.200s: there is no such file",
-                     course->external->of->way.value[CODE_snapshot]);
+            tell_missing(course);
     }
     if (!status && course->is_judged && !course->reason)
         follow(course, &now, &before, start.st_mtime);
@@ -474,7 +482,7 @@ static void describe(const struct run_external *base, json_t *document)
 static void forget(json_t *document)
 {
     static const char *const counts[] = {
-        "steps",         "particle_updates",  "pair_interactions", "skipped_particle_updates",
+        "steps",         "particle_updates",  "pair_interactions",    "skipped_particle_updates",
         "without_slope", "without_viscosity", "without_conductivity", "peak_rss_bytes"};
     json_t *cost = json_object_get(document, "cost");
     json_object_set_new(document, "plan", json_array());

@@ -141,7 +141,7 @@ n = 10^2 12^2 14^2 16^2
 velocity_l1 = 0.5 10
 """
 # mode, reason, what the message says
-FAILURES = (("exit", "exit_status", "no such table"), ("killed", "exit_status", "signal 9"), ("nothing", "no_snapshot", "@OUT@_*.csv"),
+FAILURES = (("exit", "exit_status", "no such table"), ("killed", "exit_status", "signal 9"), ("nothing", "no_snapshot", "out_*.csv: the run"),
             ("hang", "timeout", "1 s"), ("eat", "memory", "200 MB"), ("cut", "truncated", "out_1.csv"),
             ("old", "old_snapshot", "older"), ("nan", "not_a_number", "nan"), ("early", "wrong_time", "0.1996"),
             ("gas", "wrong_gamma", "1.5"), ("own", "ignored_ic", "out_0.csv: positions along x"),
