@@ -74,6 +74,14 @@ class Site:
         return {"value": "(%s)" % self.alternative, "statement": "(void)0", "jump": ";"}.get(self.how)
 
 
+WORD = re.compile(r"\b[a-zA-Z_]\w*|(?<![\w.])[0-9.]+(?:e-?[0-9]+)?")
+
+
+def is_decimal(word):
+    """A number whose binary digits do not end soon."""
+    return word[0] in ".0123456789" and word != "." and float(word) * 1024 % 1 != 0
+
+
 class Source:
     """One judged file: its text and the sites in it."""
 
@@ -85,6 +93,10 @@ class Source:
         if len(self.bytes) != len(self.text):  # offsets of clang are bytes
             self.text = self.bytes.decode("latin-1")
         self.sites, self.seen, self.macros = [], set(), []
+        constants = re.findall(r"^#define (\w+)\s[\s\\]*([0-9.]+(?:e-?[0-9]+)?)\b", self.text, flags=re.M)
+        for line in re.findall(r"^static const double ([^;{]*);", self.text, flags=re.M):
+            constants += re.findall(r"(\w+) = ([0-9.]+(?:e-?[0-9]+)?)(?:,|$)", line)
+        self.decimals = {name for name, value in constants if is_decimal(value)}
 
     def line(self, offset):
         return self.text.count("\n", 0, offset) + 1
@@ -114,6 +126,7 @@ class Walker:
         self.kind = cindex.CursorKind
         self.returns = self.spans = None
         self.either, self.in_room, self.compared = set(), False, False
+        self.decimals = set().union(*(source.decimals for name, source in sources.items() if name.endswith(".h")))
 
     def file_of(self, cursor):
         f = cursor.location.file
@@ -216,11 +229,12 @@ class Walker:
                 self.either.add(self.span(c))
 
     def boundary_shows(self, cursor, op, left, right):
-        """Would < for <=, or > for >=, make a difference? No number that was computed is exactly 0.1 or 1e-3:
-        such a limit has no binary digits that end soon."""
+        """Would < for <=, or > for >=, make a difference? No number that was computed is exactly 0.1, or 1e-3 of
+        another one: such a limit has no binary digits that end soon."""
         handle = left.type.spelling == "hid_t" and op in ("<", ">=")  # none is 0
-        decimal = any(re.match(r"^[0-9.]+(e-?[0-9]+)?$", code) and float(code) * 1024 % 1
-                      for code in (self.code(left), self.code(right)))
+        words = WORD.findall(self.code(left) + " " + self.code(right))
+        decimal = "real" in (self.scalar(left), self.scalar(right)) and any(
+            is_decimal(word) or word in self.source.decimals or word in self.decimals for word in words)
         return not (self.compares or handle or decimal or self.span(cursor) in self.either)
 
     def is_first_letter(self, cursor):

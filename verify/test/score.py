@@ -49,7 +49,7 @@ double tiny_never(double a, double b)
 }
 double tiny_close(double a)
 {
-    return a > close ? a : 0;
+    return a > 2 * close ? a : 0;
 }
 int tiny_set(int *to)
 {
@@ -138,6 +138,7 @@ def main(score, work):
            "sum > 5 -> >=" in said and "sum > 5 -> >=" not in survivors)
     for change in ("*(const int *)a < *(const int *)b -> <=", "n < m -> <="):
         expect("of two that are equal either is taken: '%s'" % change, change not in said)
+    expect("no number that was computed is a decimal limit", "a > 2 * close -> <" in said and "a > 2 * close -> >=" not in said)
     expect("what only frees is left to the sanitizers", "texts" not in said)
     expect("but not the greater of two", "n < m -> >" in survivors)
     expect("a factor of 10 the other way is noticed by nobody",
