@@ -92,13 +92,8 @@ static bool find_gases(struct start_gas *gas, double *room)
 static bool gases_fit(const struct start_gas *gas)
 {
     bool fit = true;
-    for (size_t k = 0; k < gas->gases; k++)
-        fit =
-            fit &&
-            (problem_reads(gas->problem->problem, SETTING_mass_ratio) ||
-             start_alike(gas->of[k].mass, gas->mass, 0.15) ||
-             (gas->volume > 0 && start_alike(gas->of[k].mass, gas->of[k].rho * gas->volume, 0.15)));
-    return fit;
+    for (size_t k = 0; k < gas->gases; k++) fit &= start_alike(gas->of[k].mass, gas->mass, 0.15);
+    return fit || problem_reads(gas->problem->problem, SETTING_mass_ratio);
 }
 
 /* The mass or volume that particles should have, how many have it, and whether it follows from the

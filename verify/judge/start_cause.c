@@ -42,24 +42,28 @@ static int by_number(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+/* Half way from the particle before. */
+static double edge(const struct rank *rank, size_t i)
+{
+    return 0.5 * (rank[i - 1].at + rank[i].at);
+}
+
 /* Names the range from the first to the last wrong particle, if hardly any particle in it is
  * right. */
 static bool name_range(struct rank *rank, size_t n, const char *what, char *text, size_t size)
 {
-    size_t first = 0, last = n - 1, right = 0;
+    size_t first = 0, end = n, right = 0;
     qsort(rank, n, sizeof *rank, by_number);
-    while (first < n && !rank[first].wrong) first++;
-    while (last > first && !rank[last].wrong) last--;
-    for (size_t i = first; i <= last; i++) right += !rank[i].wrong;
-    if (first == n || 50 * right > last + 1 - first || last + 1 - first == n) return false;
-    const double from = first ? 0.5 * (rank[first - 1].at + rank[first].at) : rank[0].at,
-                 to = last + 1 < n ? 0.5 * (rank[last].at + rank[last + 1].at) : rank[last].at;
+    while (!rank[first].wrong) first++;
+    while (!rank[end - 1].wrong) end--;
+    for (size_t i = first; i < end; i++) right += !rank[i].wrong;
+    if (50 * right > end - first || end - first == n) return false;
     if (first == 0)
-        snprintf(text, size, ", at %s < %.4g", what, to);
-    else if (last == n - 1)
-        snprintf(text, size, ", at %s > %.4g", what, from);
+        snprintf(text, size, ", at %s < %.4g", what, edge(rank, end));
+    else if (end == n)
+        snprintf(text, size, ", at %s > %.4g", what, edge(rank, first));
     else
-        snprintf(text, size, ", at %.4g < %s < %.4g", from, what, to);
+        snprintf(text, size, ", at %.4g < %s < %.4g", edge(rank, first), what, edge(rank, end));
     return true;
 }
 
@@ -68,7 +72,7 @@ static bool name_stride(const struct start_gas *gas, unsigned fields, char *text
 {
     const size_t n = gas->snapshot->n;
     size_t first = 0, stride = 1;
-    while (first < n && !(gas->wrong[first] & fields)) first++;
+    while (!(gas->wrong[first] & fields)) first++;
     while (first + stride < n && !(gas->wrong[first + stride] & fields)) stride++;
     if (stride < 2) return false;
     for (size_t i = 0; i < n; i++)
@@ -220,12 +224,10 @@ static bool scalar_cause(const struct start_gas *gas, enum start_field field, ch
         snprintf(text, size, "it is %.4g times %s", factor, should);
     if (!*text) { /* a constant offset, measured at the first wrong particle */
         double more = 0;
-        size_t i = 0, all = 0, near = 0;
-        while (i < s->n && !(gas->wrong[i] & 1u << field)) i++;
-        if (i < s->n) more = value[i] - exact(gas, i, 1);
-        for (; i < s->n; i++) {
+        size_t all = 0, near = 0;
+        for (size_t i = 0; i < s->n; i++) {
             if (!(gas->wrong[i] & 1u << field)) continue;
-            all++;
+            if (!all++) more = value[i] - exact(gas, i, 1);
             near += fabs(value[i] - exact(gas, i, 1) - more) <= 1e-3 * fabs(more);
         }
         if (all > 1 && PER_CENT * near >= 95 * all)
@@ -266,17 +268,16 @@ static bool velocity_cause(const struct start_gas *gas, char *text, size_t size)
     const double none[3] = {0};
     const int dim = gas->problem->domain.dim;
     double product = 0, square = 0, more[3] = {0};
-    size_t first = gas->snapshot->n;
+    size_t wrong = 0;
     for (size_t i = 0; i < gas->snapshot->n; i++) {
         if (!(gas->wrong[i] & 1u << START_VELOCITY)) continue;
-        if (first == gas->snapshot->n) first = i;
         for (int d = 0; d < dim; d++) {
             product += gas->snapshot->v[d][i] * gas->exact[i].v[d];
             square += gas->exact[i].v[d] * gas->exact[i].v[d];
+            if (!wrong) more[d] = gas->snapshot->v[d][i] - gas->exact[i].v[d];
         }
+        wrong++;
     }
-    for (int d = 0; d < dim && first < gas->snapshot->n; d++)
-        more[d] = gas->snapshot->v[d][first] - gas->exact[first].v[d];
     const double factor =
         product / square; /* NaN, which fits nothing, if the exact gas is at rest */
     if (fits_velocity(gas, same, 0, none, false)) return snprintf(text, size, "it is 0") > 0;

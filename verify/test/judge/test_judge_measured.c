@@ -290,4 +290,14 @@ TEST(widths_of_an_autopsy)
         near_relative(settings_real(&used.settings, SETTING_eta), eta, 1e-8);
         judge_free(&judged);
     }
+    const struct judge_request jumps = {.case_name = "sod", .time = {true, 0.1}, .kernel = -1};
+    struct judged judged;
+    struct autopsy_level level;
+    struct run used;
+    struct error error = {0};
+    plant(1, 0, boxes[1]);
+    judges(&jumps, &judged);
+    assert_int_equal(judge_autopsy(&judged, &level, &used, &error), STATUS_BAD_INPUT);
+    assert_true(*error.message);
+    judge_free(&judged);
 }

@@ -94,7 +94,7 @@ TEST(places)
         {0, 2, "# box = 2\n", 9, 0, 2, {0.5, 1.5}, true, "positions lie in it"},
         {0, 2, "# box = 2\n", 0.75, -0.25, 1.75, {0.25, 1.25}, true, "positions lie in it"},
         {0.1, 1.9, "# box = 2\n", 9, 0, 2, {0.5, 1.5}, true, "positions lie in it"},
-        {-1e-6, 2, "# box = 2\n", 9, 0, 2, {0.5, 1.5}, true, "positions lie in it"},
+        {-1.5e-6, 2, "# box = 2\n", 9, 0, 2, {0.5, 1.5}, true, "positions lie in it"},
         {-1, 1, "# box = 2\n", 9, -1, 1, {-0.5, 0.5}, true, "about the middle of the particles"},
         {-0.9, 1, "# box = 2\n", 9, -1, 1, {-0.5, 0.5}, true, "about the middle of the particles"},
         {-0.7,

@@ -177,6 +177,65 @@ TEST(sums)
         }
 }
 
+/* Of a liquid, whose u means nothing, the sound speed is the case's. */
+TEST(sums_of_a_liquid)
+{
+    double x[2][1] = {{0.25}, {0.375}}, v[2][1] = {{0.5}, {0}}, m[] = {3}, rho[] = {1}, P[] = {1e9};
+    const struct snapshot s = {
+        .n = 1, .x = {x[0], x[1]}, .v = {v[0], v[1]}, .m = m, .u = P, .rho = rho, .P = P};
+    const double nowhere[3] = {0};
+    struct conservation got = {0};
+    struct problem_state there;
+    struct run_settings settings;
+    struct run run;
+    struct error error = {0};
+    if (run_prepare(&settings, "taylor_green", 0, NULL, &error) ||
+        run_resolve(&run, &settings, &error))
+        fail_msg("%s", error.message);
+    const double gamma = run.problem.gamma;
+    problem_sample(&run.problem, (double[3]){0.25, 0.375}, 0, &there);
+    judge_sum(&run.problem, &s, nowhere, &got);
+    near_relative(got.sound_scale, 3 * sqrt(gamma * (gamma - 1) * there.u), 1e-13);
+}
+
+/* ---- starts ---- */
+
+/* A tenth of the particles may be wrong in a way that nothing explains. */
+TEST(few_that_are_damaged)
+{
+    for (int wrong = N / 10 - 1; wrong <= N / 10 + 1; wrong++) {
+        struct judge_request request = uniform_gas();
+        struct judged judged;
+        request.time.value = 0;
+        plant(1, 0, boxes[1]);
+        for (int i = 0; i < N; i++) {
+            gas.m[i] = 2. / N;
+            if (i < wrong) gas.u[i] *= uniform(1.2, 2);
+        }
+        judges(&request, &judged);
+        assert_int_equal(judged.of_start.wrong, wrong);
+        assert_true(!judged.of_start.explained && judged.foreign == (wrong > N / 10));
+        judge_free(&judged);
+    }
+}
+
+/* A mass that more than half of the particles have is the right one. */
+TEST(mass_of_most)
+{
+    for (int alike = N / 2 - 1; alike <= N / 2 + 1; alike++) {
+        struct judge_request request = uniform_gas();
+        struct judged judged;
+        request.time.value = 0;
+        plant(1, 0, "");
+        for (int i = 0; i < N; i++) gas.m[i] = (i % 2 ? uniform(1, 1.9) : uniform(2.1, 4)) / N;
+        for (int i = N - alike; i < N; i++) gas.m[i] = 2. / N;
+        judges(&request, &judged);
+        const double worst = judged.of_start.worst[START_MASS];
+        if (alike > N / 2 ? !(worst > 0.1) : !isnan(worst)) fail_msg("%d: %g", alike, worst);
+        judge_free(&judged);
+    }
+}
+
 /* ---- far from the solution ---- */
 
 /* Uniform gas has nothing to go by but means: of half of its value, of velocities the sound speed,

@@ -7,6 +7,7 @@
 
 #include "judge.h"
 #include "near.h"
+#include "problem_list.h"
 
 enum { MOST = 5 };
 static struct problem problem; /* of all results */
@@ -353,6 +354,12 @@ TEST(gates_of_orders)
                     json_real_value(json_object_get(first, "high")) == high);
         assert_non_null(strstr(json_string_value(json_object_get(first, "why")), "interval"));
         json_decref(found);
+        snprintf(text, sizeof text, "order.velocity%s%.17g,order.velocity%s%.17g", sign, low, sign,
+                 high);
+        found = gate(text, judged, MOST, NULL);
+        assert_string_equal(status_at(found, !least), "pass"); /* at an end */
+        assert_string_equal(status_at(found, (size_t)least), "undetermined");
+        json_decref(found);
     }
     judged[2].result.errors[0].l1 = 0;
     for (size_t n = 3; n <= 4; n++) {
@@ -364,4 +371,43 @@ TEST(gates_of_orders)
         json_decref(found);
     }
     json_decref(orders);
+}
+
+/* A case's gates hold near its time and for its own initial state; a weakness that is known without
+ * a number reaches half as far again as the bound. */
+TEST(gates_of_a_case)
+{
+    static const struct {
+        double error, late; /* over the bound; of the time */
+        bool altered, plane;
+        const char *says; /* the gate's status, or a refusal */
+    } rows[] = {{0.999, 0, false, false, "pass"},
+                {1.499, 0.0099, false, false, "known"},
+                {1.501, -0.0099, false, false, "fail"},
+                {0.5, 0.0101, false, false, "are for t = "},
+                {0.5, -0.0101, false, false, "are for t = "},
+                {0.5, 0, true, false, "another initial state"},
+                {0.5, 0, false, true, "is written in 1 dimensions and has no bounds for 2"}};
+    struct judged judged = {.path = "made"};
+    struct run_settings *asked = &judged.run.asked;
+    struct error error = {0};
+    if (run_prepare(asked, "leblanc", 0, NULL, &error)) fail_msg("%s", error.message);
+    const struct case_gate *gate = &asked->file.gates[0];
+    const double t_end = settings_real(&asked->settings, SETTING_t_end);
+    assert_true(isinf(gate->known.bound) && gate->field == FIELD_DENSITY);
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        json_t *gates;
+        judged.file = (struct snapshot_file){.layout = "made", .dim = rows[k].plane ? 2 : 1};
+        judged.case_dim = 1, judged.altered = rows[k].altered;
+        judged.case_n = (double)asked->file.ladder[asked->file.ladder_count - 1];
+        judged.result.problem.problem = problem_of(&asked->settings);
+        judged.result.n = (size_t)judged.case_n;
+        judged.result.time = t_end * (1 + rows[k].late);
+        judged.result.errors[FIELD_DENSITY].l1 = rows[k].error * gate->gate.bound;
+        const enum status status = judge_gates(NULL, true, &judged, 1, &gates, &error);
+        const char *says = status ? error.message : status_at(gates, 0);
+        if (status ? !strstr(says, rows[k].says) : strcmp(says, rows[k].says) != 0)
+            fail_msg("row %zu: %s", k, says);
+        json_decref(gates);
+    }
 }
