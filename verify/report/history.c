@@ -16,7 +16,6 @@
 
 /* Noise of figures: relative for an error, absolute for an order. */
 static const double error_noise = 0.01, order_noise = 0.03;
-static const double error_least = 1e-15; /* lower limit for logarithms */
 enum { PATH_LENGTH = 1024 };
 
 /* ---- this night's line ---- */
@@ -278,7 +277,7 @@ static void add_changes(const struct metric *metric, const json_t *nights, json_
         const json_t *figures = json_object_get(json_array_get(nights, i), "figures");
         const double now = value_member(figures, metric->path);
         if (!isfinite(now)) continue;
-        value[n] = order ? now : log(fmax(now, fmax(metric->floor, error_least)));
+        value[n] = order ? now : log(fmax(now, metric->floor));
         night[n++] = i;
     }
     const size_t count = trend_changes(

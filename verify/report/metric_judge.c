@@ -44,8 +44,7 @@ static enum metric_verdict judge_word(const struct metric *old, const struct met
     const int before = rank(old->word, suspicion), after = rank(new->word, suspicion);
     if (strcmp(old->word, new->word) == 0) return VERDICT_SAME;
     if (before < 0 || after < 0) return VERDICT_INCOMPARABLE;
-    if (before == after) return VERDICT_SAME;
-    if (after < before) return VERDICT_BETTER;
+    if (after <= before) return after < before ? VERDICT_BETTER : VERDICT_SAME;
     *amount = (double)INFINITY;
     /* a passed test that is no longer judged is lost */
     *fault =

@@ -91,6 +91,49 @@ TEST(each_kind)
     json_decref(none);
 }
 
+/* What stands exactly at a limit. */
+TEST(limits)
+{
+    static const struct {
+        enum metric_kind kind;
+        double a, b, noise, other, floor, exact;
+        enum metric_verdict verdict;
+    } rows[] = {
+        {READING_ERROR, 1, 0.5, 0, 0, 1, 0, VERDICT_SAME},
+        {READING_ERROR, 0.5, 1, 0, 0, 1, 0, VERDICT_SAME},
+        {READING_ERROR, 1, 1.5, 0.5, 0, 0, 0, VERDICT_SAME},
+        {READING_ERROR, 1, 1.75, 0.5, 0, 0, 0, VERDICT_WORSE},
+        {READING_CHECK, 1, 0.25, 0, 0, 1, 0, VERDICT_SAME},
+        {READING_CHECK, 1, 0.25, 0, 0, 0.5, 0, VERDICT_BETTER},
+        {READING_CHECK, 3, 1, 0, 0, 0, 0, VERDICT_SAME},
+        {READING_CHECK, 1, 3, 0, 0, 0, 0, VERDICT_SAME},
+        {READING_EXACT, 7, 4, 0, 0, 1, 3, VERDICT_SAME},
+        {READING_EXACT, 7.5, 4, 0, 0, 1, 3, VERDICT_BETTER},
+        {READING_TIMING, 2, 3, 1.5, 0, 0, 0, VERDICT_WORSE},
+        {READING_TIMING, 3, 2, 1.5, 0, 0, 0, VERDICT_BETTER},
+        {READING_ORDER, 2, 1.375, 0.375, 0.5, 0, 0, VERDICT_SAME},
+        {READING_ORDER, 2, 1.25, 0.375, 0.5, 0, 0, VERDICT_WORSE},
+        {READING_NEUTRAL, -2, -1, 0.5, 0, 0, 0, VERDICT_SAME},
+        {READING_NEUTRAL, -2, -1, 0, 0, 1, 0, VERDICT_SAME},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct metric old = {.kind = rows[k].kind,
+                                   .value = rows[k].a,
+                                   .noise = rows[k].noise,
+                                   .floor = rows[k].floor,
+                                   .exact = rows[k].exact};
+        struct metric new = old;
+        double amount;
+        bool fault;
+        new.value = rows[k].b, new.noise = rows[k].other;
+        if (metric_judge(&old, &new, &amount, &fault) != rows[k].verdict) fail_msg("row %zu", k);
+    }
+    /* of entries that are alike a word is worse than a number */
+    const struct metric number = {.kind = READING_PART, .value = 1},
+                        word = {.path = "status", .word = "pass"};
+    assert_true(metric_worse(&word, &number) && !metric_worse(&number, &word));
+}
+
 /* ---- names ---- */
 
 /* A document with a list `key` of one entry that is called by so many letters. */

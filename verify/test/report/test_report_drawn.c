@@ -91,6 +91,75 @@ static void compute_some(struct pool *pool)
     }
 }
 
+/* Pieces that are dear in a report, made small: what they say of themselves, and what they refuse.
+ */
+TEST(small_pieces)
+{
+    static const struct {
+        struct report_piece piece;
+        const char *key, *command, *reproduce, *members[2]; /* command NULL: is refused */
+    } rows[] = {
+        {{.kind = REPORT_AUTOPSY, .where = "yee", .keys = "eta=2.5", .sizes = "8^2,9^2,10^2,11^2"},
+         "eta=2.5",
+         "autopsy",
+         "sphproof autopsy yee eta=2.5 --n 8^2,9^2,10^2,11^2",
+         {"levels", "shares"}},
+        {{.kind = REPORT_AUTOPSY, .where = "yee", .sizes = "8^2"}, "n=8^2", NULL, NULL, {NULL}},
+        {{.kind = REPORT_AUTOPSY, .where = "sod", .sizes = "20,30,40,50"},
+         "n=20",
+         NULL,
+         NULL,
+         {NULL}},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct report_piece piece = rows[k].piece;
+        struct pool pool = {0};
+        struct error error = {0};
+        char key[40], end[] = "t_end=0.01", *keys[] = {key, end};
+        json_t *document;
+        snprintf(key, sizeof key, "%s", rows[k].key);
+        if (run_prepare(&piece.settings, piece.where, 2, keys, &error) ||
+            report_piece_add(&pool, &piece, &error))
+            fail_msg("%s", error.message);
+        const enum status status = pool.jobs[0].compute(&piece, &document, &error);
+        if (rows[k].command) {
+            if (status) fail_msg("row %zu: %s", k, error.message);
+            assert_string_equal(value_text(document, "command"), rows[k].command);
+            assert_string_equal(value_text(document, "reproduce"), rows[k].reproduce);
+            for (int i = 0; i < 2; i++)
+                assert_non_null(json_object_get(document, rows[k].members[i]));
+            json_decref(document);
+        } else {
+            assert_int_equal(status, STATUS_BAD_INPUT);
+        }
+        pool_free(&pool);
+    }
+}
+
+/* What errors cost, of studies of one case that are of a field or of a value. */
+TEST(cost_of_codes)
+{
+    json_t *results = json_pack(
+        "{s:[{s:s, s:s, s:s, s:s, s:[s], s:[{s:i, s:f, s:{s:{s:f}}}]},"
+        "    {s:s, s:s, s:s, s:s, s:[s], s:[{s:i, s:f}], s:[{s:s, s:f, s:[f]}]}]}",
+        "studies", "case", "a", "title", "A", "label", "one", "reproduce", "r", "measured",
+        "velocity", "levels", "n", 20, "cpu_s", 2., "errors", "velocity", "l1", 0.25, "case", "a",
+        "title", "A", "label", "other", "reproduce", "r", "measured", "peak", "levels", "n", 30,
+        "cpu_s", 3., "functionals", "name", "peak", "exact", 2., "values", 1.5);
+    const double errors[] = {0.25, 0.5};
+    code_cost_add(results);
+    const json_t *bench = json_object_get(results, "bench"), *of = json_array_get(bench, 0);
+    assert_int_equal(json_array_size(bench), 1);
+    assert_int_equal(json_array_size(json_object_get(of, "schemes")), 2);
+    for (size_t k = 0; k < 2; k++) {
+        const json_t *point = json_array_get(json_object_get(of, "points"), k);
+        assert_true(value_member(point, "error") == errors[k] &&
+                    value_member(point, "cpu_s") == 2 + (double)k &&
+                    value_member(point, "n") == 20 + 10 * (double)k);
+    }
+    json_decref(results);
+}
+
 /* Runs of cases, claims and kernels that pair have their settings, to six digits; of studies, which
  * have very many, there are tests of their own. */
 static void add_settings(struct buffer *to, const struct pool_job *job)
