@@ -382,8 +382,8 @@ TEST(gates_of_a_case)
         bool altered, plane;
         const char *says; /* the gate's status, or a refusal */
     } rows[] = {{0.999, 0, false, false, "pass"},
-                {1.499, 0.0099, false, false, "known"},
-                {1.501, -0.0099, false, false, "fail"},
+                {1.4999999, 0.0099, false, false, "known"},
+                {1.5000001, -0.0099, false, false, "fail"},
                 {0.5, 0.0101, false, false, "are for t = "},
                 {0.5, -0.0101, false, false, "are for t = "},
                 {0.5, 0, true, false, "another initial state"},
