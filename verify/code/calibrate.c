@@ -11,22 +11,22 @@
 
 const char *const calibrate_sights[] = {"sees", "blind", "free"};
 
-/* Another compiler or processor may change an error by this part. */
+/* Another compiler or processor may change an error by this fraction. */
 static const double least_floor = 1e-4;
 /* Round-off of sums over particles and steps. */
 static const double round_off = 1e-14;
-/* A fault stands out from the floor by this factor; a bound is its root away from both. */
+/* A fault is seen if it exceeds the floor by this factor; the bound lies at the geometric mean. */
 static const double apart = 9;
-/* Without faults: the width of a gate over its floor. */
+/* Width of a gate over its floor if the file has no faults. */
 static const double free_width = 10;
 
 /* ---- runs ---- */
 
-/* Run v: v = 0 is the one that a report makes. */
+/* Settings of run v; v = 0 is the run of a report. */
 static enum status vary(struct run_settings *settings, struct code_external *external, size_t v,
                         struct error *error)
 {
-    enum { SEEDS_APART = 1000 }; /* replicates take those between */
+    enum { SEEDS_APART = 1000 }; /* replicates use the seeds in between */
     char seed[32];
     if (v == 0) return STATUS_OK;
     external->variation = v;
@@ -115,7 +115,7 @@ void calibrate_free(struct calibrate *calibrate)
 
 /* ---- gates ---- */
 
-/* What a gate is of. */
+/* The kind of quantity that a gate bounds. */
 enum kind { OF_FIELD, OF_FUNCTIONAL, OF_KEPT };
 
 static const struct study_order *order_of(const struct study_result *result, enum kind kind,
@@ -131,7 +131,7 @@ static bool broke(const struct study *study)
     return study->results[0].status == STATUS_BROKE_DOWN;
 }
 
-/* The floor from the runs, and what each fault changes. */
+/* Measures the floor from the runs, and the change by each fault. */
 static void measure(const struct calibrate *calibrate, const struct calibrate_case *one,
                     enum kind kind, size_t i, struct calibrate_gate *gate)
 {
@@ -151,7 +151,7 @@ static void measure(const struct calibrate *calibrate, const struct calibrate_ca
     }
 }
 
-/* Between the floor and the smallest fault that stands out from it. */
+/* Sets the bounds between the floor and the smallest fault that is seen. */
 static void find_bounds(const struct calibrate *calibrate, const struct calibrate_case *one,
                         enum kind kind, struct calibrate_gate *gate)
 {
@@ -176,7 +176,7 @@ static void find_bounds(const struct calibrate *calibrate, const struct calibrat
                       : gate->value - fmin(width, gate->value / 2);
 }
 
-/* The order that the code file asks for, if all runs have it. */
+/* Keeps the order of the code file if all runs reach it. */
 static void keep_order(const struct calibrate *calibrate, const struct calibrate_case *one,
                        enum kind kind, size_t i, struct calibrate_gate *gate)
 {
@@ -221,7 +221,7 @@ static void add_gate(const struct calibrate *calibrate, struct calibrate_case *o
     snprintf(gate->name, sizeof gate->name, "%s%s", name, norm);
     measure(calibrate, one, kind, i, gate);
     if (!isfinite(gate->value) || !isfinite(gate->floor)) return;
-    if (kind != OF_KEPT && !(gate->value > 0)) return; /* nothing can be told from an exact one */
+    if (kind != OF_KEPT && !(gate->value > 0)) return; /* an exact value has no scale */
     find_bounds(calibrate, one, kind, gate);
     keep_order(calibrate, one, kind, i, gate);
     look(calibrate, one, kind, i, gate);
@@ -243,7 +243,7 @@ static void find_gates(const struct calibrate *calibrate, struct calibrate_case 
         add_gate(calibrate, one, OF_KEPT, k, trace_figures[k], "");
 }
 
-/* What fails a report without any gate. */
+/* Finds what fails a report regardless of gates. */
 static void find_trouble(struct calibrate_case *one)
 {
     const struct study_result *first = &one->studies[0].results[0];

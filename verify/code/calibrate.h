@@ -18,34 +18,34 @@ enum {
     CALIBRATE_GATES_MAX = FIELDS + PROBLEM_FUNCTIONALS_MAX + TRACE_FIGURES
 };
 
-/* BLIND: no fault stands out from the floor; FREE: the file has no faults. */
+/* BLIND: no fault exceeds the floor enough; FREE: the file has no faults. */
 enum calibrate_sight { CALIBRATE_SEES, CALIBRATE_BLIND, CALIBRATE_FREE };
 extern const char *const calibrate_sights[]; /* as results write them */
 
 struct calibrate_gate {
     char name[64];       /* the key in the code file */
     double value;        /* of the first run */
-    double spread;       /* the largest change by the other runs; of what is conserved its size */
-    double floor;        /* the same, and not less than what is always allowed for */
-    double least, bound; /* NaN: it is blind; least 0: there is none */
-    double low, high;    /* of the order, as the code file has it; NaN: none is asked for */
-    bool order_lost;     /* it asks for one, which not all runs have: left out */
-    double change[CODE_FAULTS_MAX]; /* from the value; INFINITY: no number */
+    double spread;       /* largest change by the other runs; of a conserved quantity its size */
+    double floor;        /* the same, but at least the allowance */
+    double least, bound; /* NaN: blind; least 0: none */
+    double low, high;    /* of the order, from the code file; NaN: none */
+    bool order_lost;     /* the order of the code file is left out because some runs miss it */
+    double change[CODE_FAULTS_MAX]; /* change of the value; INFINITY: not finite */
     bool sees[CODE_FAULTS_MAX];
-    int smallest; /* the fault that changes it least and is seen; -1: none */
+    int smallest; /* the seen fault with the smallest change; -1: none */
     enum calibrate_sight sight;
 };
 
 struct calibrate_case {
     const struct code_case *of;
     struct code_case *faulty;        /* code->fault_count */
-    struct code_external *externals; /* runs, then faults; so are the studies */
+    struct code_external *externals; /* runs, then faults, like the studies */
     struct study *studies;
     size_t gate_count;
     struct calibrate_gate gates[CALIBRATE_GATES_MAX];
-    bool breaks[CODE_FAULTS_MAX]; /* no result: seen without a gate */
+    bool breaks[CODE_FAULTS_MAX]; /* the fault leaves no result: seen without a gate */
     bool seen[CODE_FAULTS_MAX];
-    char trouble[SUSPICION_TEXT]; /* why a report fails whatever gates say; "" */
+    char trouble[SUSPICION_TEXT]; /* why a report fails regardless of gates, or "" */
 };
 
 struct calibrate {
@@ -55,8 +55,8 @@ struct calibrate {
 };
 
 /* Adds all runs to a pool. names: of cases of the code; count 0: all of them. STATUS_BAD_INPUT: no
- * such case, or one without a ladder. Free it in any case; it and the code must stay where they are
- * until then. */
+ * such case, or one without a ladder. Call calibrate_free in any case; calibrate and code must not
+ * move in memory before. */
 enum status calibrate_plan(struct calibrate *calibrate, const struct code *code, size_t runs,
                            size_t count, char *const *names, struct pool *pool,
                            struct error *error);
@@ -66,8 +66,8 @@ enum status calibrate_plan(struct calibrate *calibrate, const struct code *code,
 enum status calibrate_judge(struct calibrate *calibrate, const struct pool *pool,
                             struct error *error);
 
-/* The code file with these gates in place of those of the same cases; malloced. STATUS_BAD_INPUT:
- * it has changed. */
+/* The code file with these gates instead of those of the same cases; malloced. STATUS_BAD_INPUT:
+ * the file has changed. */
 enum status calibrate_text(const struct calibrate *calibrate, char **text, struct error *error);
 
 /* Adds "code", "runs" and "cases". */

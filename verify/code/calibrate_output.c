@@ -12,7 +12,8 @@ static const char head[] = "; Bounds of the gates: `sphproof calibrate`";
 
 /* ---- the code file ---- */
 
-/* [case NAME] of a line, in INI_TEXT_LINE bytes; false: no section begins. "" of another one. */
+/* Reads NAME from a line [case NAME], in INI_TEXT_LINE bytes; "" for another section; false: the
+ * line begins no section. */
 static bool begins_section(const char *line, char name[INI_TEXT_LINE])
 {
     line += strspn(line, " \t");
@@ -37,7 +38,7 @@ static bool is_gate(const char *line)
     return true;
 }
 
-/* The smallest change that is seen, by the order where the error does not say it. */
+/* Notes the smallest change that is seen, by the order if the error does not show it. */
 static void add_note(const struct calibrate *calibrate, const struct calibrate_gate *gate,
                      struct buffer *to)
 {
@@ -76,7 +77,7 @@ static const struct calibrate_case *calibrated(const struct calibrate *calibrate
 enum status calibrate_text(const struct calibrate *calibrate, char **text, struct error *error)
 {
     const struct calibrate_case *one = NULL;
-    struct buffer to = {0}, blank = {0}; /* lines at the end of a section wait for its gates */
+    struct buffer to = {0}, blank = {0}; /* blank lines at the end of a section follow its gates */
     char *bytes, name[INI_TEXT_LINE];
     size_t length;
     if (ini_text_load(calibrate->code->path, "code file", &bytes, &length, error))

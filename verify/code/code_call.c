@@ -12,7 +12,7 @@
 
 /* ---- values ---- */
 
-/* The name that a template has when it is filled in. */
+/* The name of a filled-in template. */
 static void template_name(const char *word, size_t length, char name[CODE_PATH])
 {
     const char *base = word;
@@ -23,7 +23,7 @@ static void template_name(const char *word, size_t length, char name[CODE_PATH])
     snprintf(name, CODE_PATH, "%.*s", (int)length, base);
 }
 
-/* In as few digits as say it. */
+/* Writes a number with the fewest digits that read back equal. */
 static size_t write_real(char *text, size_t size, double value)
 {
     double read;
@@ -32,7 +32,7 @@ static size_t write_real(char *text, size_t size, double value)
                                                    : (size_t)snprintf(text, size, "%.17g", value);
 }
 
-/* Ends of the box as the format of the initial state counts positions. */
+/* Ends of the box in the coordinates of the initial state's format. */
 static void ends_text(const struct code_external *external, const struct run_result *start,
                       bool upper, char text[CODE_TEXT])
 {
@@ -91,7 +91,7 @@ void code_words_free(char **words)
     free(words);
 }
 
-/* The file that a word means, or the word. */
+/* The path of the file that a word names, or the word itself. */
 static void word_file(const struct code *code, const char *word, size_t length, bool program,
                       char path[CODE_PATH])
 {
@@ -173,9 +173,9 @@ enum status code_write_templates(const struct code_external *external,
     return status;
 }
 
-/* ---- what decides a result ---- */
+/* ---- cache key ---- */
 
-/* Sums of files, each read once. */
+/* Checksum of a file; keeps sums so that each file is read once. */
 static const char *sum_of(const char *path)
 {
     enum { KEPT = 64 };
@@ -187,7 +187,7 @@ static const char *sum_of(const char *path)
     while (i < count && strcmp(kept[i].path, path) != 0) i++;
     if (i < count) return kept[i].sum;
     if (count < KEPT) count++;
-    i = count - 1; /* the last place serves for all that do not fit */
+    i = count - 1; /* the last entry is reused for files beyond the limit */
     snprintf(kept[i].path, sizeof kept[i].path, "%s", path);
     if (!sha256_file(path, kept[i].sum)) kept[i].sum[0] = '\0';
     return kept[i].sum;
@@ -233,7 +233,7 @@ static json_t *template_sums(const struct code_external *external, const struct 
     return list;
 }
 
-/* What is the scheme's belongs to our solver. */
+/* Refuses keys of the scheme, which apply to our solver only. */
 static enum status check_keys(const struct code_external *external, const struct run *run,
                               struct error *error)
 {

@@ -14,7 +14,7 @@ struct code_values {
     char parameters[CODE_PATH];
 };
 
-/* start: of run_start; NULL: what depends on the particles is not known. */
+/* start: of run_start; NULL: values that depend on the particles stay unknown. */
 void code_values(struct code_values *values, const struct code_external *external,
                  const struct run *run, const struct run_result *start);
 

@@ -37,7 +37,7 @@ bool code_find_program(const struct code *code, const char *word, size_t length,
     return false;
 }
 
-/* Fails where a word between @ is none of ours; file and line: of a template, else NULL. */
+/* Fails if @WORD@ is unknown; file and line: of a template, else NULL. */
 static bool words_known(struct ini_text *at, const char *text, const char *file, int line)
 {
     const char *names[CODE_WORDS];
@@ -152,8 +152,8 @@ void code_check_value(const struct code *code, struct ini_text *at, enum code_ke
     }
 }
 
-/* The first word of a command if it is no program that is there; NULL: it is one, or the shell's.
- */
+/* The first word of a command if there is no such program; NULL: it exists, or the shell finds
+ * it. */
 static const char *missing(const struct code *code, const struct code_way *way, enum code_key key,
                            size_t *length)
 {

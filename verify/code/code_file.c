@@ -17,10 +17,10 @@ struct parser {
     struct code *code;
     struct ini_text at;
     json_t *seen;           /* "SECTION/KEY": line */
-    struct code_way *way;   /* of the section; NULL: none has begun */
+    struct code_way *way;   /* of the current section; NULL: before the first */
     struct code_case *of;   /* of [case NAME]; NULL: another section */
-    struct case_file given; /* that case without the code's own keys */
-    bool gates, ladder;     /* [case NAME] has its own */
+    struct case_file given; /* the case without the code's own keys */
+    bool gates, ladder;     /* [case NAME] sets its own */
 };
 
 static enum status unknown_section(struct parser *parser, const char *section)
@@ -32,14 +32,14 @@ static enum status unknown_section(struct parser *parser, const char *section)
     return text_unknown(parser->at.error, where, "section", section, names, 3);
 }
 
-/* Of a ladder of the code's own the case's gates are judged at its end. */
+/* Adjusts the case's gates to the end of the code's own ladder. */
 static void end_case(struct parser *parser)
 {
     struct code_case *of = parser->of;
     parser->of = NULL;
     if (!of || parser->gates) return;
     for (size_t g = 0; g < of->file.gate_count; g++) {
-        of->file.gates[g].least = 0; /* it is of our scheme */
+        of->file.gates[g].least = 0; /* the least error is that of our scheme */
         if (parser->ladder)
             of->file.gates[g].gate = gates_at(&parser->given, &parser->given.gates[g],
                                               of->file.ladder[of->file.ladder_count - 1]);
@@ -107,7 +107,7 @@ static void begin_section(struct parser *parser, const char *section)
         unknown_section(parser, section);
 }
 
-/* A gate of the code's own puts those of the case aside. */
+/* The first gate of the code's own replaces those of the case. */
 static bool take_own(struct parser *parser, const char *name, const char *value)
 {
     struct case_file *file = &parser->of->file;
@@ -138,7 +138,7 @@ static void unknown_key(struct parser *parser, const char *section, const char *
     text_unknown(parser->at.error, where, what, name, names, n);
 }
 
-/* True the first time. */
+/* True if the section has not set this key before; else fails. */
 static bool first(struct parser *parser, const char *section, const char *name)
 {
     char path[2 * INI_TEXT_LINE];
@@ -173,7 +173,7 @@ static int take_pair(void *context, const char *section, const char *name, const
     return 1;
 }
 
-/* What a section says itself, and else what [code] says. */
+/* Fills unset keys of a section from [code]. */
 static void complete(struct code_way *way, const struct code_way *from)
 {
     for (int key = 0; key < CODE_KEYS; key++)
@@ -183,7 +183,7 @@ static void complete(struct code_way *way, const struct code_way *from)
         }
 }
 
-/* A fault says what differs. */
+/* Refuses a fault that changes nothing. */
 static enum status check_fault(struct parser *parser, const struct code_fault *fault)
 {
     bool says = false;
@@ -221,7 +221,7 @@ static enum status finish(struct parser *parser)
     return STATUS_OK;
 }
 
-/* The title is the file's name where nothing is said. */
+/* Without a title, takes the file's name. */
 static void take_title(struct code *code)
 {
     const char *slash = strrchr(code->path, '/'), *base = slash ? slash + 1 : code->path;

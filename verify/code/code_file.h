@@ -88,12 +88,10 @@ extern const struct member *const code_words[CODE_WORDS]; /* name, meaning */
 
 enum { CODE_NAME = 64, CODE_FAULTS_MAX = 16, CODE_PATH = 1024 };
 
-/* How a case, or a fault, is run: the values as the file has them, "" for keys that it does not
- * set.
- */
+/* How a case or a fault is run: the values of the file, "" for unset keys. */
 struct code_way {
     char value[CODE_KEYS][INI_TEXT_LINE + 1];
-    int line[CODE_KEYS]; /* where it stands */
+    int line[CODE_KEYS]; /* line in the file */
 };
 
 struct code_case {
@@ -103,11 +101,11 @@ struct code_case {
 
 struct code_fault {
     char name[CODE_NAME];
-    struct code_way way; /* what it says itself */
+    struct code_way way; /* only the keys that it sets */
 };
 
 struct code {
-    char path[CODE_PATH], folder[CODE_PATH]; /* the file; where it stands, absolute */
+    char path[CODE_PATH], folder[CODE_PATH]; /* the file; its folder, absolute */
     struct code_way way;                     /* of [code] */
     size_t case_count, fault_count;
     struct code_case *cases;
@@ -118,7 +116,7 @@ struct code {
 enum status code_load(struct code *code, const char *path, struct error *error);
 void code_free(struct code *code);
 
-/* A case as a fault runs it: keys that the fault does not set are those of the case. */
+/* A case with a fault: keys that the fault does not set are the case's. */
 void code_with_fault(const struct code_case *of, const struct code_fault *fault,
                      struct code_case *faulty);
 
@@ -126,7 +124,7 @@ void code_with_fault(const struct code_case *of, const struct code_fault *fault,
 const struct code_case *code_case_of(const struct code *code, const char *name,
                                      struct error *error);
 
-/* The value of a key, or its fallback where the file does not set it. */
+/* The value of a key, or its fallback if unset. */
 const char *code_value(const struct code_way *way, enum code_key key);
 double code_timeout(const struct code_way *way);
 double code_memory(const struct code_way *way); /* bytes; INFINITY: no limit */
@@ -139,12 +137,12 @@ const struct start_format *code_format(const struct code_way *way);
 /* The path of a file that the code file names, in CODE_PATH bytes; false: too long. */
 bool code_beside(const struct code *code, const char *name, size_t length, char path[CODE_PATH]);
 
-/* Takes the next word of a list that blanks separate, in which "..." is one word; NULL at the end.
+/* Takes the next word of a blank-separated list, in which "..." is one word; NULL at the end.
  * *length: of the word. */
 const char *code_next_word(const char **rest, size_t *length);
 
 /* The text with every @WORD@ replaced; malloced. values: of CODE_WORDS. NULL: no memory. */
 char *code_fill(const char *text, const char *const *values);
 
-/* The first @WORD@ that there is not, in CODE_NAME bytes; false: all are known. */
+/* The first unknown @WORD@, in CODE_NAME bytes; false: all are known. */
 bool code_unknown_word(const char *text, char word[CODE_NAME]);

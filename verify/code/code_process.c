@@ -67,9 +67,9 @@ static _Noreturn void become(const struct code_order *order)
     _exit(127);
 }
 
-/* ---- the process that watches over it ---- */
+/* ---- the supervising process ---- */
 
-/* Bytes of memory that a group of processes has; 0 where the system does not say. */
+/* Bytes of memory of a process group; 0 if the system does not tell. */
 static double memory_of(pid_t group)
 {
     double pages = 0;
@@ -94,7 +94,7 @@ static double memory_of(pid_t group)
     return pages * (double)sysconf(_SC_PAGESIZE);
 }
 
-/* Those whose parent has gone are children of this process. */
+/* Ends orphaned processes, which are children of this process. */
 static void end_children(void)
 {
 #ifdef __linux__
@@ -124,8 +124,8 @@ static double seconds(struct timeval time)
     return (double)time.tv_sec + 1e-6 * (double)time.tv_usec;
 }
 
-/* Until the program has ended or may go on no longer; life: its other end closes when the process
- * ends that waits for it. */
+/* Waits until the program has ended or exceeds a limit; life: a pipe whose other end closes when
+ * the waiting process ends. */
 static bool wait_for(const struct code_order *order, pid_t program, int life,
                      struct code_outcome *outcome)
 {

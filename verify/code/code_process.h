@@ -11,9 +11,9 @@
 struct code_order {
     const char *const *words; /* the program, a path or found by PATH, and its arguments; ends with
                                * NULL */
-    const char *folder;       /* it starts there; files stdout and stderr get what it says */
-    double seconds, bytes;    /* limits: of wall time; of the memory of all processes together */
-    bool remove;              /* the folder goes away if this process ends first */
+    const char *folder; /* the program starts there; its output goes to files stdout and stderr */
+    double seconds, bytes; /* limits: of wall time; of the memory of all processes together */
+    bool remove;           /* remove the folder if this process ends first */
 };
 
 enum code_ending { CODE_ENDED, CODE_LATE, CODE_LARGE };

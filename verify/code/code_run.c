@@ -20,7 +20,7 @@
 #include "slab.h"
 #include "value.h"
 
-/* A run on its way. */
+/* State of a run. */
 struct course {
     const struct run *run;
     const struct code_external *external;
@@ -28,14 +28,14 @@ struct course {
     struct code_values values;
     char **words;
     char folder[CODE_PATH], ic[2 * CODE_PATH];
-    char *snapshot;            /* the file that is judged */
-    char *first;               /* one that may be of the start; NULL: there is no other */
-    struct snapshot_file read; /* the initial state as the code's reader may find it */
-    bool readable;             /* and it can be read */
+    char *snapshot;            /* the judged file */
+    char *first;               /* first snapshot, possibly of the start; NULL: no other */
+    struct snapshot_file read; /* the initial state as a reader of its file finds it */
+    bool readable;             /* the initial state can be read */
     struct code_outcome outcome;
     struct judged judged;
     bool is_judged;
-    struct trace trace;      /* from the initial state on, through all snapshots */
+    struct trace trace;      /* from the initial state through all snapshots */
     enum code_reason reason; /* why there is no result */
     char message[400];
 };
@@ -60,7 +60,7 @@ static enum status make_folder(struct course *course, struct error *error)
                      work ? work : "the folder of temporary files", strerror(errno));
 }
 
-/* Runs a command; time and memory are what the code file allows. */
+/* Runs a command within the code file's limits of time and memory. */
 static enum status call(struct course *course, char **words, struct error *error)
 {
     const struct code_way *way = &course->external->of->way;
@@ -88,7 +88,7 @@ static enum status call(struct course *course, char **words, struct error *error
     return STATUS_OK;
 }
 
-/* By a command of the user's. */
+/* Makes the initial state with the user's command. */
 static enum status call_for_start(struct course *course, struct error *error)
 {
     const char *command = course->external->of->way.value[CODE_ic];
@@ -116,7 +116,7 @@ static enum status write_start(struct course *course, struct error *error)
     return status;
 }
 
-/* Two units in the last place up or down, as the format keeps it; what is 0 stays. */
+/* Changes a value by two units in the last place of the format's precision; 0 stays. */
 static double vary(double value, bool up, bool single)
 {
     const double to = up ? INFINITY : -INFINITY;
@@ -125,7 +125,7 @@ static double vary(double value, bool up, bool single)
     return nextafter(nextafter(value, to), to);
 }
 
-/* Positions, which stay in the box, velocities and energies. */
+/* Varies positions, within the box, velocities and energies. */
 static void vary_start(struct run_result *start, const struct start_format *format, uint64_t seed)
 {
     const bool single = format && format->precision;
@@ -143,7 +143,7 @@ static void vary_start(struct run_result *start, const struct start_format *form
     }
 }
 
-/* Nothing is then written. */
+/* Checks that the program exists before anything is written. */
 static void check_program(struct course *course)
 {
     const struct code_external *external = course->external;
@@ -175,7 +175,7 @@ static enum status prepare(struct course *course, struct error *error)
 
 /* ---- the snapshot ---- */
 
-/* The pattern of its name, in the run's folder unless it is absolute; malloced. */
+/* The pattern of the snapshot's name, in the run's folder unless it is absolute; malloced. */
 static char *pattern_of(const struct course *course)
 {
     struct buffer pattern = {0};
@@ -210,7 +210,7 @@ static bool all_in(const struct snapshot_file *file, const double *lo, const dou
     return true;
 }
 
-/* The box where the file does not say it: the case's, or as long from 0 on. */
+/* The box, if the file has none: the case's, or one as long that begins at 0. */
 static bool box_of(const struct course *course, const struct snapshot_file *file, char *text,
                    size_t size)
 {
@@ -224,8 +224,8 @@ static bool box_of(const struct course *course, const struct snapshot_file *file
     return true;
 }
 
-/* What the initial state conserves, where the snapshot has its particles; of a slab as of the plane
- * that it is judged as. */
+/* Conserved sums of the initial state, if the snapshot has its particles; of a slab those of the
+ * planar flow. */
 static enum status sum_start(const struct course *course, struct conservation *sums,
                              struct error *error)
 {
@@ -243,7 +243,7 @@ static enum status sum_start(const struct course *course, struct conservation *s
     return STATUS_OK;
 }
 
-/* Of the kernel that was found, else of the case's. */
+/* Adds what depends on the kernel: the one found, else the case's. */
 static enum status complete(struct course *course, struct error *error)
 {
     const struct run *run = course->run;
@@ -270,7 +270,7 @@ static enum status complete(struct course *course, struct error *error)
     return STATUS_OK;
 }
 
-/* A snapshot of the start, where the code writes one, is the initial state, or course->reason. */
+/* Checks that a snapshot of the start equals the initial state; else sets course->reason. */
 static void check_start(struct course *course, const struct code_origin *origin)
 {
     const struct snapshot_options options = {.here = false};
@@ -287,7 +287,7 @@ static void check_start(struct course *course, const struct code_origin *origin)
     snapshot_file_free(&file);
 }
 
-/* What the file holds is a result, or course->reason says why it is none. */
+/* Judges the file, or sets course->reason if it contains no result. */
 static enum status judge(struct course *course, const char *path, struct error *error)
 {
     const struct code_origin origin = {.ic = course->readable ? &course->read : NULL,
@@ -329,7 +329,7 @@ static enum status judge(struct course *course, const char *path, struct error *
     return status == STATUS_BAD_INPUT ? STATUS_OK : status;
 }
 
-/* Sums of a snapshot on the way, if it can be read; they come in the order of their names. */
+/* Adds the sums of an intermediate snapshot, if it can be read; called in order of the names. */
 static void add_moment(struct course *course, const char *path)
 {
     const double last = course->trace.time[course->trace.count - 1];
@@ -355,7 +355,7 @@ static void add_moment(struct course *course, const char *path)
     judge_free(&judged);
 }
 
-/* What is conserved, and how the gas moves, through all that the run has left. */
+/* Traces conservation and motion through all snapshots of the run. */
 static void follow(struct course *course, const struct code_matches *now,
                    const struct code_matches *before, time_t began)
 {
@@ -376,7 +376,7 @@ static void follow(struct course *course, const struct code_matches *now,
 static enum status execute(struct course *course, struct error *error)
 {
     struct code_matches before = {0}, now = {0};
-    struct stat start = {0}; /* by the clock of the file system */
+    struct stat start = {0}; /* time of the start by the file system's clock */
     char *pattern = pattern_of(course);
     enum status status = STATUS_OK;
     if (stat(course->ic, &start))
@@ -405,9 +405,9 @@ static enum status execute(struct course *course, struct error *error)
     return status;
 }
 
-/* ---- what is told ---- */
+/* ---- document ---- */
 
-/* The last lines of what a stream got. */
+/* Adds the last lines of an output stream. */
 static void add_lines(const char *folder, const char *stream, struct buffer *log)
 {
     enum { LAST = 1500, LINES = 8 };
@@ -431,7 +431,7 @@ static void add_lines(const char *folder, const char *stream, struct buffer *log
     }
 }
 
-/* Of standard error, and of the output where that has none; malloced. */
+/* The last lines of standard error, or of the output if that is empty; malloced. */
 static char *log_of(const struct course *course)
 {
     struct buffer log = {0};
@@ -469,7 +469,7 @@ static void forget_scheme(json_t *document)
             json_object_del(settings, setting_keys[key].name);
 }
 
-/* Keys of our solver's scheme go out of "settings". */
+/* Removes the keys of our solver's scheme from "settings". */
 static void describe(const struct run_external *base, json_t *document)
 {
     const struct code_external *external = (const struct code_external *)base;
@@ -478,7 +478,7 @@ static void describe(const struct run_external *base, json_t *document)
                         code_json(external, external->of->way.value[CODE_command]));
 }
 
-/* What a run of ours has and another program does not tell. */
+/* Removes what another program's run does not have. */
 static void forget(json_t *document)
 {
     static const char *const counts[] = {
@@ -568,7 +568,7 @@ enum status code_run(const struct run *run, struct judged *judged, json_t **docu
     }
     if (!status && judged) {
         *judged = course->judged;
-        judged->path = run->asked.external->title; /* the file goes away */
+        judged->path = run->asked.external->title; /* the file will be removed */
         course->is_judged = false;
     }
     course_free(course);
@@ -577,16 +577,16 @@ enum status code_run(const struct run *run, struct judged *judged, json_t **docu
     return status;
 }
 
-/* ---- as a pool and a study see it ---- */
+/* ---- interface for pool and study ---- */
 
-/* Moves every number of a list. */
+/* Adds `by` to every number of a list. */
 static void move(json_t *list, double by)
 {
     for (size_t i = 0; i < json_array_size(list); i++)
         json_array_set_new(list, i, result_number(value_real(json_array_get(list, i)) + by));
 }
 
-/* A profile in the coordinates of the case, from whatever corner the code counts. */
+/* Moves a profile into the coordinates of the case. */
 static json_t *placed(json_t *profile, const struct domain *ours, const struct domain *theirs)
 {
     json_t *map = json_object_get(profile, "map"), *over = json_object_get(profile, "over");

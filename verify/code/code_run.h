@@ -17,13 +17,13 @@
 #define CODE_WORK_HELP                                                                             \
     "with --code: keep the folder of each run there (initial state, templates, logs, snapshots)"
 
-/* What run_settings.external points to. It may not move while runs use it. */
+/* The object of run_settings.external; must not move while runs use it. */
 struct code_external {
     struct run_external base;
     const struct code *code;
     const struct code_case *of;
-    const char *work;   /* folder in which those of the runs stay; NULL: they go away */
-    uint64_t variation; /* the start differs by 2 units in the last place, by this seed; 0: not */
+    const char *work;   /* folder that keeps the runs' folders; NULL: they are removed */
+    uint64_t variation; /* seed of a variation of the start by 2 units in the last place; 0: none */
 };
 
 /* The settings of a case of the code with KEY=VALUE arguments; settings->external becomes external.
@@ -31,13 +31,13 @@ struct code_external {
 enum status code_plan(const struct code *code, const char *case_name, const char *work, int n,
                       char *const *arguments, struct code_external *external,
                       struct run_settings *settings, struct error *error);
-/* The same for a command that is of no use without this case: its program has to be there, too. */
+/* Like code_plan, but also fails if the program is missing. */
 enum status code_prepare(const struct code *code, const char *case_name, const char *work, int n,
                          char *const *arguments, struct code_external *external,
                          struct run_settings *settings, struct error *error);
 
-/* Runs. Of STATUS_OK the snapshot as judged (judge_free it) is there as well; STATUS_BROKE_DOWN:
- * the document says "failed" and for what "reason", and error has the last lines of the log.
- * Anything else leaves nothing. */
+/* Runs the code. STATUS_OK: *judged is filled (call judge_free); STATUS_BROKE_DOWN: the document
+ * has "failed" and "reason", and error the last lines of the log. Any other status leaves nothing
+ * to free. */
 enum status code_run(const struct run *run, struct judged *judged, json_t **document,
                      struct error *error);

@@ -54,8 +54,8 @@ void code_matches_free(struct code_matches *matches)
     *matches = (struct code_matches){0};
 }
 
-/* A file is old if it is as it was before, or from well before the run: clocks of file systems
- * differ by little. */
+/* A file is old if it is unchanged since before the run, or clearly older than the run: clocks of
+ * file systems differ slightly. */
 static bool is_old(const struct code_matches *now, size_t i, const struct code_matches *before,
                    time_t began)
 {
@@ -98,10 +98,10 @@ bool code_is_new(const struct code_matches *now, size_t i, const struct code_mat
     return !is_old(now, i, before, began);
 }
 
-/* ---- what it holds ---- */
+/* ---- contents ---- */
 
-/* The difference of two columns, each in its own order, over `scale` or, where that is 0, over the
- * values: of the share of the rows that is given, the greatest. NaN: no memory. */
+/* Difference of two columns, each sorted, relative to `scale` or, if that is 0, to the values; the
+ * greatest in the given share of the rows. NaN: no memory. */
 static double differ(const double *a, const double *b, size_t n, double scale, double share)
 {
     double *sorted = malloc(2 * n * sizeof *sorted), found = (double)NAN;
@@ -117,7 +117,8 @@ static double differ(const double *a, const double *b, size_t n, double scale, d
     return found;
 }
 
-/* Particles may exchange mass, but not lose it, and most keep about theirs. */
+/* True if the masses differ: particles may exchange mass but not lose it, and most keep about
+ * theirs. */
 static bool masses_differ(const double *theirs, const double *ours, size_t n)
 {
     long double sum = 0, difference = 0;
@@ -125,8 +126,8 @@ static bool masses_differ(const double *theirs, const double *ours, size_t n)
     return fabsl(difference) > 1e-5L * sum || differ(theirs, ours, n, 0, 0.5) > 0.1;
 }
 
-/* How far particles get by t_end with the exact velocity that they then have, in box lengths; what
- * leads round a box leads nowhere. The mean along x. */
+/* Mean displacement along x by t_end, in box lengths, with the exact velocity at that time, modulo
+ * whole rounds of the box. */
 static double way_along_x(const struct snapshot_file *ic, const struct prepared *p, double t_end)
 {
     const double length = p->domain.hi[0] - p->domain.lo[0];
@@ -136,7 +137,7 @@ static double way_along_x(const struct snapshot_file *ic, const struct prepared 
         struct problem_state state;
         double x[3] = {0};
         for (int d = 0; d < p->domain.dim; d++) x[d] = ic->column[SNAPSHOT_X + d][i];
-        x[0] += p->domain.lo[0] - least; /* as the case counts it, to a spacing */
+        x[0] += p->domain.lo[0] - least; /* in the case's coordinates, to a spacing */
         problem_sample(p, x, t_end, &state);
         const double way = state.v[0] * t_end / length;
         sum += fabs(way - round(way));
@@ -190,7 +191,7 @@ enum code_reason code_compare(const struct snapshot_file *file, const struct cod
 
 /* Medians: velocities of some codes are half a step ahead, which at a jump is much. */
 
-/* Positions from a corner of the box on, into [0, length) but for round-off below its ends. */
+/* Positions relative to a corner of the box, in [0, length) apart from round-off below its ends. */
 static double *wrapped(const double *x, size_t n, double corner, double length)
 {
     double *moved = malloc(n * sizeof *moved);
@@ -218,7 +219,7 @@ static double apart(const struct snapshot_file *a, const struct snapshot_file *b
     return least;
 }
 
-/* Of values that the particles have, over the greatest of those of the start. */
+/* Difference of a column, relative to the greatest initial value. */
 static double unlike(const struct snapshot_file *ic, const struct snapshot_file *file, int column,
                      double scale)
 {

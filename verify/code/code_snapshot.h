@@ -33,7 +33,7 @@ enum code_reason {
 };
 extern const char *const code_reason_names[REASONS]; /* as results write them; "" of none */
 
-/* Files whose names fit a pattern; of those that are there before a run, how they were. */
+/* Files whose names match a pattern, with their state before the run. */
 struct code_matches {
     size_t n;
     char **path; /* short names first, else in the order of their bytes */
@@ -44,17 +44,16 @@ struct code_matches {
 bool code_match(const char *pattern, struct code_matches *matches);
 void code_matches_free(struct code_matches *matches);
 
-/* The last of those that a run has written which began at that time; NULL and a reason:
- * there are none, or old ones. */
+/* The last file written by a run that began at that time; NULL and a reason if there is none, or
+ * only old ones. */
 const char *code_last(const struct code_matches *now, const struct code_matches *before,
                       time_t began, enum code_reason *reason);
 
-/* Has the run written the i-th of them? */
+/* True if the run has written the i-th file. */
 bool code_is_new(const struct code_matches *now, size_t i, const struct code_matches *before,
                  time_t began);
 
-/* The first of those that a run has written, which may be of its start; NULL: there is none but
- * `last`. */
+/* The first file written by the run, possibly of its start; NULL: none but `last`. */
 const char *code_first(const struct code_matches *now, const struct code_matches *before,
                        time_t began, const char *last);
 
@@ -63,14 +62,14 @@ struct code_origin {
     const struct snapshot_file *ic; /* the initial state; NULL: it cannot be read */
     const struct prepared *problem;
     double t_end;
-    bool cells; /* the code has cells, not particles of the initial state */
+    bool cells; /* the code has cells instead of the initial particles */
 };
 
-/* Is it a result at t_end? The message says what is wrong. t_end is met to a thousandth. */
+/* REASON_NONE if the file is a result at t_end, to a thousandth; else the reason, and a message. */
 enum code_reason code_compare(const struct snapshot_file *file, const struct code_origin *origin,
                               char *message, size_t size);
 
-/* Is a snapshot of the time 0 that initial state? True also of another time, and where one of the
- * two does not have what could be compared. */
+/* False if a snapshot of the time 0 differs from the initial state. True for another time, or if
+ * one of the two lacks comparable fields. */
 bool code_is_start(const struct snapshot_file *file, const struct code_origin *origin,
                    char *message, size_t size);

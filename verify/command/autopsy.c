@@ -18,7 +18,7 @@
 
 enum { BAR = 40 };
 
-/* One letter for each part. */
+/* Letter of each part. */
 static const char letters[AUTOPSY_PARTS + 1] = "tmegrdvnc";
 
 static void print_bar(const struct autopsy_level *level)
@@ -53,7 +53,7 @@ static void print_order(const struct order_fit *order)
         printf(" %7s %14s", "-", "");
 }
 
-/* Parts that a snapshot does not show. */
+/* True for parts that a snapshot does not show. */
 static bool unseen(size_t part)
 {
     return part == AUTOPSY_TIME_STEP || part >= AUTOPSY_VISCOSITY;
@@ -198,7 +198,7 @@ static enum status examine(const struct options *options, int n, char **argument
 
 /* ---- snapshots of another code ---- */
 
-/* Says whose particles they are, and by which kernel exact fields are evaluated there. */
+/* Prints whose particles they are, and with which kernel exact fields are evaluated. */
 static void print_files(const struct options *options, const json_t *files, const struct run *used)
 {
     char gradient[SETTING_TEXT_MAX];

@@ -35,7 +35,7 @@ static enum status check_options(const struct options *options, int n, struct er
     return STATUS_OK;
 }
 
-/* The baseline, or NULL where there is none yet. */
+/* Loads the baseline, or NULL if there is none yet. */
 static enum status load_baseline(const char *path, json_t **baseline, struct error *error)
 {
     *baseline = NULL;
@@ -52,7 +52,7 @@ static enum status load_baseline(const char *path, json_t **baseline, struct err
     return error->status;
 }
 
-/* A copy without what holds no figures and takes room. */
+/* A copy without large members that hold no figures. */
 static json_t *figures_of(const json_t *results)
 {
     json_t *copy = json_deep_copy(results), *run;
@@ -95,7 +95,7 @@ static enum status accept(const struct options *options, const char *file, const
     json_t *made = new_baseline(baseline, results, reason, changed);
     const enum status status = result_write(made, file, error);
     json_decref(made);
-    if (!status) /* also where --quiet: a baseline never changes silently */
+    if (!status) /* printed despite --quiet: a baseline never changes silently */
         fprintf(stderr, "sphproof: baseline %s accepted: %zu of %zu figures differ; reason: %s\n",
                 file, changed, diff->count, reason);
     return status;
@@ -119,7 +119,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
         json_t *old =
             baseline ? json_incref(json_object_get(baseline, "document")) : nothing_like(results);
         status = diff_documents(old, results, DIFF_THRESHOLD, &diff, error);
-        if (!baseline && status == STATUS_CHECK_FAILED) status = STATUS_OK; /* all is new */
+        if (!baseline && status == STATUS_CHECK_FAILED)
+            status = STATUS_OK; /* every figure is new */
         json_decref(old);
     }
     if (status == STATUS_OK || status == STATUS_CHECK_FAILED) {

@@ -37,14 +37,14 @@ const struct command_option command_common[] = {
     {NULL, NULL, NULL},
 };
 
-/* What the command line said. */
+/* The parsed command line. */
 struct line {
     struct options options;
     const char *color;
     int help, version, uncertified;
     int n; /* arguments, command's name not counted */
     char **arguments;
-    char **owned; /* texts of options that are given more than once */
+    char **owned; /* texts of repeated options */
     int owned_count;
 };
 
@@ -63,7 +63,7 @@ static const struct command_option *find(const struct command_option *list, cons
     return NULL;
 }
 
-/* next: the word behind it, or NULL. */
+/* next: the following word, or NULL. */
 static enum status unknown_option(const struct options *options, const char *word, const char *next,
                                   struct error *error)
 {
@@ -137,7 +137,7 @@ static enum status apply_common(struct line *line, const char *name, const char 
     return STATUS_OK;
 }
 
-/* An option that is given again: its values are lines of one text. */
+/* Appends the value of a repeated option as a line. */
 static enum status join(struct line *line, const char **slot, const char *value,
                         struct error *error)
 {
@@ -150,7 +150,7 @@ static enum status join(struct line *line, const char **slot, const char *value,
     return STATUS_OK;
 }
 
-/* One option at argv[*i]; moves *i to its last word. */
+/* Takes the option at argv[*i]; moves *i to its last word. */
 static enum status take_option(struct line *line, int argc, char **argv, int *i,
                                struct error *error)
 {

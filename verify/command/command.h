@@ -8,73 +8,73 @@
 
 #include "run.h"
 
-/* What stands for an argument that consists of options itself. */
+/* The word for an argument that consists of options itself. */
 #define COMMAND_OPTIONS "OPTIONS"
 
-/* An option of one command; a list of them ends with a NULL name. */
+/* An option of one command; a list ends with a NULL name. */
 struct command_option {
     const char *name;     /* without the dashes */
-    const char *argument; /* what stands for its argument in the help; NULL: a flag; one that ends
-                           * with " ..." may be given again: its value has a line for each */
+    const char *argument; /* name of its argument in the help; NULL: a flag; if it ends with " ..."
+                             the option may be repeated, and its value has a line for each */
     const char *help;     /* one line */
 };
 
-/* Options, taken out of the arguments before a command sees them. */
+/* Options, removed from the arguments before a command gets them. */
 struct options {
     const char *json; /* file (known to be writable), "-" for standard output, NULL for none */
     int threads;      /* >= 1 */
     int quiet;        /* no progress, no remarks */
-    int speak;        /* 1 where tables for a person go to standard output */
-    int color;        /* resolved: 1 where stdout may be coloured */
+    int speak;        /* 1 if tables go to standard output */
+    int color;        /* resolved: 1 if standard output may be coloured */
     const struct command *command;
     const char **values; /* of the command's own options, see options_value */
-    int count;           /* of arguments: those that a command is given, too */
+    int count;           /* number of arguments, as passed to the command */
     char **arguments;
 };
 
 struct command {
     const char *name;
     const char *synopsis; /* the arguments, one line */
-    const char *help;     /* first line: what it does; then, where needed, more */
-    /* arguments[0..n-1]: those after the command's name, without any option ("-1" and "-" are
-     * arguments, all after "--" too). Returns the exit status; on anything but STATUS_OK and
-     * STATUS_CHECK_FAILED error is set. Where it is STATUS_BAD_INPUT nothing has been written. */
+    const char *help;     /* first line: what it does; further lines if needed */
+    /* arguments[0..n-1]: the arguments after the command's name, without options ("-1", "-" and
+     * everything after "--" are arguments). Returns the exit status; sets error unless that is
+     * STATUS_OK or STATUS_CHECK_FAILED. With STATUS_BAD_INPUT nothing has been written. */
     enum status (*run)(const struct options *options, int n, char **arguments, struct error *error);
-    const struct command_option *options; /* NULL: none but the common ones */
-    const char *examples;                 /* complete command lines, one a line */
+    const struct command_option *options; /* NULL: only the common ones */
+    const char *examples;                 /* complete command lines, one per line */
 };
 
 /* The argument of the command's option called name ("" for a flag), NULL where it was not given. */
 const char *options_value(const struct options *options, const char *name);
 
-/* The number that an option gives, between low and high; *value stays where it was not given. */
+/* The number that an option gives, between low and high; *value is unchanged without the option. */
 enum status options_number(const struct options *options, const char *name, bool whole, double low,
                            double high, double *value, struct error *error);
 
-/* The same of an option that only has to be above 0. */
+/* Like options_number for a value that must be above 0. */
 enum status options_positive(const struct options *options, const char *name, double *value,
                              struct error *error);
 
-/* The numbers of particles that --n gives, at least `least` distinct ones, else the case's own. */
+/* The numbers of particles of --n, at least `least` distinct ones, else the case's own. */
 enum status options_ladder(const struct options *options, const struct run_settings *settings,
                            size_t least, size_t ladder[CASE_LADDER_MAX], size_t *count,
                            struct error *error);
 
-/* Writes the document where --json asks for one, and gives it back. NULL: no memory for it. */
+/* Writes the document to the file of --json, if given, and releases it. NULL: no memory for it. */
 enum status options_write(const struct options *options, json_t *document, struct error *error);
 
 /* Bad usage of this command: STATUS_BAD_INPUT with the message and the synopsis. */
 enum status command_usage(const struct options *options, struct error *error, const char *format,
                           ...) __attribute__((format(printf, 3, 4)));
 
-/* All commands, and the options that each of them takes: what --help, the manual and the completion
- * of shells are made of. */
+/* All commands and their common options, from which --help, the manual and shell completion are
+ * made. */
 extern const struct command *const command_table[];
 extern const size_t command_count;
 extern const struct command_option command_common[];
 
-/* The place in kernel_family.members of the kernel that --kernel names: built-in, or the path of a
- * plug-in; -1 where the option was not given. */
+/* The index in kernel_family.members of the kernel of --kernel: built-in, or the path of a plug-in;
+ * -1 without the option. */
 enum status options_kernel(const struct options *options, int *index, struct error *error);
 
 /* The whole program: finds the command, runs it, prints the error, returns the exit status. */

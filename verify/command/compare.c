@@ -25,7 +25,7 @@
 enum { WORDS_MAX = 64, FIGURES_MAX = FIELDS + PROBLEM_FUNCTIONALS_MAX, DRAWS = 5, TIMED_DRAWS = 4 };
 #define LEVEL 0.05 /* of all figures together */
 
-/* One of the two. */
+/* One side of the comparison. */
 struct side {
     const char *name; /* "a", "b" */
     const char *text; /* as asked for */
@@ -46,10 +46,10 @@ struct comparison {
     char verdict[1024];
 };
 
-/* ---- what is asked ---- */
+/* ---- arguments ---- */
 
-/* Splits at blanks, but for those between quotes; the words lie in text. False: a quote is open, or
- * there are more than WORDS_MAX words. */
+/* Splits at blanks outside quotes; the words lie in text. False: an open quote, or more than
+ * WORDS_MAX words. */
 static bool split(char *text, char *words[WORDS_MAX], int *count)
 {
     char *to = text, quote = 0;
@@ -104,7 +104,7 @@ static enum status take_side(struct side *side, int threads, struct error *error
     return status;
 }
 
-/* Keys that say what is computed, beside a problem's own; the others are what is compared. */
+/* Keys that define the problem, besides a problem's own; the others are compared. */
 static const enum setting problem_keys[] = {
     SETTING_kind,   SETTING_gamma,         SETTING_t_end, SETTING_lo,      SETTING_hi,
     SETTING_window, SETTING_window_radius, SETTING_boost, SETTING_gravity, SETTING_boundary};
@@ -146,8 +146,8 @@ static enum status check_problem(const struct comparison *c, struct error *error
 
 /* ---- draws ---- */
 
-/* Another seed where the start is random. Else another number of particles: on a line within 2.5 %;
- * in 2D and 3D of a lattice of one more, one less, two more ... along each side. */
+/* Resolves draw r: another seed for a random start, else another number of particles: in 1D within
+ * 2.5 %, in 2D and 3D of a lattice with one more, one less, two more ... along each side. */
 static enum status draw(const struct side *side, size_t r, size_t draws, struct run *run,
                         struct error *error)
 {
@@ -180,7 +180,7 @@ static json_t *result_json(const struct side *side, const struct run_result *r)
                          (void *)(line ? profile_json(r) : cloud_profile_json(r)));
 }
 
-/* Errors of fields; where none is exact, of what is. */
+/* Errors of the fields, or of functionals if no field has an exact solution. */
 static enum status read_figures(struct side *side, const struct run_result *r, size_t draw,
                                 struct error *error)
 {
@@ -204,7 +204,7 @@ static enum status read_figures(struct side *side, const struct run_result *r, s
     return STATUS_OK;
 }
 
-/* The draw r of so many becomes the side's draw `to`. */
+/* Runs draw r of `draws` and stores it as the side's draw `to`. */
 static enum status one_run(struct side *side, size_t r, size_t draws, size_t to,
                            struct error *error)
 {
@@ -224,7 +224,7 @@ static enum status one_run(struct side *side, size_t r, size_t draws, size_t to,
     return status;
 }
 
-/* of: the case of the other side, where that is a run. */
+/* other: names the case, if it is a run. */
 static enum status one_snapshot(struct side *side, const struct side *other, bool allow_far,
                                 struct error *error)
 {

@@ -15,7 +15,7 @@
 #include "table.h"
 #include "text.h"
 
-/* Is there an exact solution to compare this field of the case with? */
+/* True if this field of the case has an exact solution. */
 static bool measured(const struct case_file *file, const struct study_result *result, int field)
 {
     bool found = false;
@@ -47,7 +47,7 @@ static void print_ladder(const struct study *study, const struct study_result *r
     }
 }
 
-/* Where the error alone is gated any order will do. */
+/* A gate on the error alone accepts any order. */
 static void print_gate(const struct study_result *result, const struct study_order *order,
                        const struct table_style *style)
 {
@@ -123,7 +123,7 @@ static void print_functionals(const struct study_result *result, const struct ta
     }
 }
 
-/* What is conserved, where it has a gate. */
+/* Prints conserved quantities that have a gate. */
 static void print_kept(const struct study_result *result, const struct table_style *style)
 {
     for (size_t k = 0; k < TRACE_FIGURES; k++) {
@@ -242,7 +242,7 @@ static enum status take_replicates(struct study *study, const struct options *op
     return STATUS_OK;
 }
 
-/* Runs everything and judges it; the document gets what came out. *whole: see sharing_run. */
+/* Runs and judges the study and fills the document. *whole: see sharing_run. */
 static enum status serialise_out(struct study *study, const struct options *options,
                                  struct sharing *sharing, json_t *document, bool *whole,
                                  struct error *error)

@@ -41,9 +41,9 @@ static void note_interrupt(int number)
 
 struct share {
     size_t lacking; /* computations that the cache does not have */
-    int tries;      /* how often it was submitted */
+    int tries;      /* number of submissions */
     bool live, failed;
-    double ended;   /* when its end was first seen; 0: not yet */
+    double ended;   /* time at which its end was first seen; 0: not yet */
     long job;       /* its last array */
     char state[24]; /* of its last task; "" before */
 };
@@ -53,16 +53,16 @@ struct array {
     char name[32], folder[CACHE_PATH_MAX], state[CACHE_PATH_MAX + 64];
     int count;            /* of shares */
     struct share *shares; /* [1..count] */
-    int *of;              /* the share of each job of the pool; 0: it is there, or of none */
+    int *of;              /* share of each job of the pool; 0: computed, or in none */
     size_t lacking, wanted;
     double left, whole; /* estimated seconds: of what is lacking; of what lacked at the start */
-    double looked;      /* how long the last look into the cache took */
+    double looked;      /* duration of the last search of the cache */
     size_t waiting, running;
     bool heard;  /* the controller has answered before */
-    double away; /* since when it has not answered; 0: it does */
+    double away; /* time since which it has not answered; 0: it answers */
 };
 
-/* ---- what is known of the study ---- */
+/* ---- state of the study ---- */
 
 static enum status name_array(struct array *array, struct error *error)
 {
@@ -107,7 +107,7 @@ static void remember(struct array *array, const json_t *state)
     }
 }
 
-/* What another call may have submitted since. */
+/* Reads what another call may have submitted since. */
 static enum status refresh(struct array *array, struct error *error)
 {
     json_t *state = load(array);
@@ -134,7 +134,7 @@ static enum status save(const struct array *array, struct error *error)
     return status;
 }
 
-/* What the cache lacks, of what it lacked before. */
+/* Updates which of the lacking results are still missing. */
 static void look(struct array *array)
 {
     const struct pool *pool = array->work->pool;
@@ -155,8 +155,8 @@ static void look(struct array *array)
     array->looked = clock_wall() - began;
 }
 
-/* How many shares a study is divided into: of ten minutes and more each, where jobs processes work
- * on `seconds` of computations, `count` of them; at least 1. */
+/* Number of shares of a study: at least ten minutes each, if jobs processes work on `seconds` of
+ * `count` computations; at least 1. */
 static int tasks_for(double seconds, size_t count, int jobs)
 {
     double tasks = seconds / (least_s * jobs);
@@ -178,7 +178,7 @@ static enum status divide(struct array *array, struct error *error)
     }
     array->wanted = lacking;
     if (!lacking) return STATUS_OK;
-    json_t *state = load(array); /* shares stay what they were */
+    json_t *state = load(array); /* a resumed study keeps its shares */
     array->count = state         ? (int)json_integer_value(json_object_get(state, "tasks"))
                    : work->tasks ? work->tasks
                                  : tasks_for(array->whole, lacking, work->jobs);
@@ -192,7 +192,7 @@ static enum status divide(struct array *array, struct error *error)
 
 /* ---- submitting ---- */
 
-/* Numbers of the shares that `chosen` says, as sbatch takes them: 1,3-5; malloced. */
+/* Numbers of the chosen shares, as sbatch takes them: 1,3-5; malloced. */
 static char *ranges(const struct array *array, const bool *chosen)
 {
     char *text = NULL;
@@ -219,7 +219,8 @@ static enum status submit(struct array *array, const bool *chosen, struct error 
     long job = 0;
     if (probe(array, error)) return error->status;
     for (int s = 1; s <= array->count; s++) array->shares[s].tries += chosen[s];
-    if (save(array, error)) return error->status; /* before: nothing is submitted uncounted */
+    if (save(array, error))
+        return error->status; /* saved first, so that every submission is counted */
     char *which = ranges(array, chosen);
     const struct slurm_share share = {
         .options = array->work->options,
@@ -252,7 +253,7 @@ static enum status submit(struct array *array, const bool *chosen, struct error 
 
 /* ---- watching ---- */
 
-/* Slurm holds a task that it could not start; it would wait for ever. */
+/* True for a task that Slurm holds because it could not start it; it would wait for ever. */
 static bool held(const struct slurm_task *task)
 {
     return task->live && strstr(task->reason, "launch failed");
@@ -291,12 +292,12 @@ static void hear(struct array *array, struct slurm_task *tasks, size_t count)
         if (tasks[i].index == 0 && !tasks[i].live) hear_cancelled(array, &tasks[i]);
 }
 
-/* Is it time to submit what is left of this share, or to give it up? */
+/* True if the rest of this share must be submitted now; marks a share that is given up. */
 static bool due(struct array *array, struct share *share, int number)
 {
     const double now = clock_wall();
     if (!share->lacking || share->live || share->failed) return false;
-    if (!share->tries) return true; /* whatever became of an earlier call's */
+    if (!share->tries) return true; /* regardless of an earlier call's tasks */
     if (share->ended <= 0) share->ended = now;
     /* one that ended well has written everything, which other machines may see a little later */
     if (strcmp(share->state, "COMPLETED") == 0 && now < share->ended + visible) return false;
@@ -324,7 +325,7 @@ static enum status act(struct array *array, struct error *error)
     return status;
 }
 
-/* A controller that is being started again is waited for, unless it was never there. */
+/* Waits for a controller that restarts, unless it has never answered. */
 static enum status be_patient(struct array *array, const struct error *trouble, struct error *error)
 {
     const double now = clock_wall();
@@ -338,8 +339,8 @@ static enum status be_patient(struct array *array, const struct error *trouble, 
     return error->status;
 }
 
-/* One look at the cache and the queue, and what follows from it. Of several processes that watch
- * the same study, one takes its step at a time. */
+/* Polls the cache and the queue and acts on the result. Of several processes that watch one study,
+ * one acts at a time. */
 static enum status step(struct array *array, struct error *error)
 {
     struct slurm_task *tasks = NULL;
@@ -349,7 +350,7 @@ static enum status step(struct array *array, struct error *error)
     struct error trouble = {0};
     enum status status = refresh(array, error);
     const bool answers = !status && !slurm_queue(array->name, &tasks, &count, &trouble);
-    look(array); /* after the queue: what ended before has written its entries */
+    look(array); /* after the queue: tasks that ended before have written their entries */
     if (answers) {
         array->heard = true;
         array->away = 0;
@@ -393,7 +394,7 @@ static enum status watch(struct array *array, struct error *error)
         if (step(array, error)) return error->status;
         if (over(array)) return STATUS_OK;
         show(array);
-        /* a twentieth of what has passed; and at most a hundredth of the time spent on looking */
+        /* waits a twentieth of the elapsed time; at most 1 % of the time goes into polling */
         const double wait = fmin(fmax((clock_wall() - began) / 20, 1.01 * first_look), last_look);
         wait_for(fmax(wait, 100 * array->looked));
     }
@@ -414,7 +415,7 @@ static void last_line(const char *path, char line[LINE])
     status_clean(line);
 }
 
-/* Which computations are missing, and where to look; what they wrote stays. */
+/* Reports the missing computations and the log files, which are kept. */
 static enum status give_up(const struct array *array, struct error *error)
 {
     const struct pool *pool = array->work->pool;
@@ -441,7 +442,7 @@ static enum status give_up(const struct array *array, struct error *error)
                      array->lacking, array->work->cache->folder);
 }
 
-/* After an interrupt: are the tasks to go on? */
+/* After an interrupt: asks whether the tasks shall continue. */
 static enum status leave(struct array *array, struct error *error)
 {
     char answer[8] = "";

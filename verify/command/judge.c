@@ -30,8 +30,8 @@ static enum status take_number(const struct options *options, const char *name,
     return error_set(error, STATUS_BAD_INPUT, "judge: --%s '%.40s': allowed: a number", name, text);
 }
 
-/* What h is: the support radius, a multiple of the kernel's standard deviation, a part of the
- * support. */
+/* Reads the meaning of h: support radius, multiple of the kernel's standard deviation, or fraction
+ * of the support. */
 static enum status take_width(const char *text, struct width_meaning *width, struct error *error)
 {
     double number;
@@ -118,7 +118,7 @@ static void print_kernels(const struct conventions *c)
 
 enum { CELL = 24 };
 
-/* What is no number is a dash. */
+/* Writes a number, or a dash for NaN. */
 static const char *cell(char text[CELL], double value)
 {
     snprintf(text, CELL, isnan(value) ? "-" : "%.6g", value);
@@ -168,7 +168,7 @@ static void print_one(const struct judged *judged, const struct table_style *sty
     printf("\n%s%s%s\n\n", judged->foreign ? style->bad : style->bold, judged->verdict, style->end);
 }
 
-/* What the document says of several snapshots, of gates, and in one line. */
+/* Prints the results for several snapshots, the gates and the headline. */
 static void print_together(const json_t *document, const struct table_style *style)
 {
     const json_t *order, *gate, *one, *drift = json_object_get(document, "conservation");
@@ -239,8 +239,8 @@ static enum status write_junit(const char *path, const json_t *document, struct 
     return status;
 }
 
-/* The same document in the terminal, as JSON, as JUnit and as a page; the picture is that of the
- * main snapshot. What it says is the status. */
+/* Writes the document to the terminal, as JSON, as JUnit and as a page; the picture shows the main
+ * snapshot. Returns the document's status. */
 static enum status tell(const struct options *options, const struct judged *judged, size_t count,
                         json_t *gates, struct error *error)
 {

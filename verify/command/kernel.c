@@ -15,7 +15,7 @@
 
 enum { POINTS_MAX = 10000 };
 
-/* What the command line asks for. */
+/* The request of the command line. */
 struct request {
     int dim, sinc_order, n;
     double h, limit; /* limit: seconds */
@@ -206,7 +206,7 @@ static enum status certify(const void *context, json_t **reply, struct error *er
     return status;
 }
 
-/* The certificate of a plug-in that did not come to its end. */
+/* The certificate of a plug-in that crashed or did not finish. */
 static enum status certify_none(const struct request *request, const struct guard_verdict *verdict,
                                 json_t **reply, struct error *error)
 {

@@ -37,7 +37,7 @@ static const struct command_option report_options[] = {
     {NULL, NULL, NULL},
 };
 
-/* folder/name gets text. */
+/* Writes text to folder/name. */
 static enum status write_text(const char *folder, const char *name, const char *text,
                               struct error *error)
 {
@@ -58,7 +58,7 @@ static enum status write_page(const char *folder, const struct page *page, struc
     return status;
 }
 
-/* All files of the report. The page comes last: what it links to is then there. */
+/* Writes all files of the report. The page comes last, so that its links exist. */
 static enum status write_report(const char *folder, const json_t *results, struct page *page,
                                 char *summary, struct error *error)
 {
@@ -90,13 +90,13 @@ static enum status check_options(const struct options *options, struct error *er
     return STATUS_OK;
 }
 
-/* Where everything lies: in one folder, but for the history where the user says so. */
+/* Paths of the report: in one folder, except a history that the user places elsewhere. */
 struct paths {
     const char *folder, *history;
     char plots[PATH_LENGTH], cache[PATH_LENGTH], nights[PATH_LENGTH];
 };
 
-/* Where they are; nothing is made. */
+/* Fills the paths; creates nothing. */
 static enum status take_paths(const struct options *options, struct paths *paths,
                               struct error *error)
 {
@@ -112,8 +112,8 @@ static enum status take_paths(const struct options *options, struct paths *paths
     return STATUS_OK;
 }
 
-/* All results, with what the nights before tell and the verdict, which depends on it; the caller
- * owns them. */
+/* Judges all results, with the history and the verdict, which depends on it; the caller owns
+ * them. */
 static enum status judge(struct report *report, const struct paths *paths, json_t **results,
                          struct error *error)
 {
@@ -129,7 +129,7 @@ static enum status judge(struct report *report, const struct paths *paths, json_
     return status;
 }
 
-/* What was not used for a month makes room, once a night. */
+/* Removes cache entries that were not used for a month, once a night. */
 static enum status prune(const struct paths *paths, const struct options *options,
                          struct error *error)
 {
@@ -150,7 +150,7 @@ static void speak(const json_t *results, const char *summary, const char *folder
            value_member(results, "seconds"), realpath(folder, absolute) ? absolute : folder);
 }
 
-/* The verdict as an exit status, after all that can go wrong on the way to it. */
+/* Prints the verdict and returns it as a status, after everything that can fail. */
 static enum status tell(const struct options *options, const json_t *results,
                         const struct paths *paths, struct error *error)
 {
@@ -200,7 +200,7 @@ static enum status serialise_out(const struct options *options, struct report *r
 
 /* ---- other codes ---- */
 
-/* What a report of codes is made of. */
+/* The codes of a report. */
 struct codes {
     size_t count;
     struct code code[REPORT_CODES_MAX];

@@ -8,7 +8,7 @@
 #include "movie.h"
 #include "run.h"
 
-/* movie: of which this is one more picture; NULL: it goes to path. STATUS_ENVIRONMENT: no gnuplot,
- * no memory, or path cannot be written. */
+/* movie: gets the picture as its next frame; NULL: the picture goes to path. STATUS_ENVIRONMENT: no
+ * gnuplot, no memory, or path cannot be written. */
 enum status run_plot(const struct run_settings *settings, const struct run_result *result,
                      const char *path, struct movie *movie, struct error *error);

@@ -23,7 +23,7 @@ static enum status take_share(struct pool_share *share, const struct options *op
     return STATUS_OK;
 }
 
-/* An engine that computes elsewhere meets this process in the cache. */
+/* Chooses the engine; one that computes elsewhere needs the cache to exchange results. */
 static enum status take_engine(struct sharing *sharing, const struct options *options,
                                const char *folder, bool force, struct error *error)
 {
@@ -49,8 +49,7 @@ static enum status take_engine(struct sharing *sharing, const struct options *op
                               options->command->name, sharing->engine->name);
 }
 
-/* Refuses --only-build with another build: its results would stand in the cache under another key.
- */
+/* Refuses --only-build with another build, whose results would have other cache keys. */
 static enum status check_build(const struct sharing *sharing, const struct options *options,
                                struct error *error)
 {
@@ -117,7 +116,7 @@ static void show_progress(void *context, const char *what, size_t done, size_t t
     progress_share(progress, done, total, share);
 }
 
-/* What came of a share; a computation that gave no result at all ends it. */
+/* Reports the result of a share; a computation without any result is a failure. */
 static enum status say_share(const struct sharing *sharing, const struct pool *pool,
                              const struct options *options, struct error *error)
 {

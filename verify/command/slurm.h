@@ -12,11 +12,11 @@
 
 enum { SLURM_WORDS_MAX = 64 };
 
-/* A task of an array, as the controller knows it: for some minutes also after its end. */
+/* A task of an array, as the controller reports it, until some minutes after its end. */
 struct slurm_task {
     long job;        /* of the array */
-    int index;       /* in the array; 0: of all that waited when the array was cancelled */
-    bool live;       /* it waits, runs or will run again */
+    int index;       /* in the array; 0: all tasks that waited when the array was cancelled */
+    bool live;       /* waiting, running or to be requeued */
     char state[24];  /* RUNNING, TIMEOUT ... */
     char reason[64]; /* why it waits */
 };
@@ -45,6 +45,6 @@ struct slurm_share {
 /* Submits; *job: the number of the array. */
 enum status slurm_share_submit(const struct slurm_share *share, long *job, struct error *error);
 
-/* Where the task of a share writes what it says. */
+/* The file to which the task of a share writes its output. */
 void slurm_share_log(const char *folder, const char *name, long job, int share, char *path,
                      size_t size);

@@ -65,7 +65,8 @@ enum status clouds_make(const struct clouds_settings *settings, struct clouds_cl
     ok = (out->volume = malloc(n * sizeof(double))) && ok;
     ok = (out->h = malloc(n * sizeof(double))) && ok;
     if (ok) gsl_rng_set(rng, settings->seed);
-    for (unsigned long k = 0; ok && k < 64 + settings->seed; k++) { /* the first are too regular */
+    for (unsigned long k = 0; ok && k < 64 + settings->seed;
+         k++) { /* the first points are too regular */
         double skipped[3];
         gsl_qrng_get(qrng, skipped);
     }

@@ -41,14 +41,13 @@ enum status clouds_make(const struct clouds_settings *settings, struct clouds_cl
                         struct error *error);
 void clouds_free(struct clouds_cloud *cloud);
 
-/* Replaces volumes and h by those of the kernel sum, with the exact volume as the mass of each
- * point. */
+/* Replaces volumes and h by those of the kernel sum, with the exact volumes as masses. */
 enum status clouds_sum_volumes(const struct clouds_settings *settings, const struct kernel *kernel,
                                struct clouds_cloud *cloud, struct error *error);
 
 /* Turns the cloud by the rotation matrix (row-major, dim x dim) and moves it by shift. */
 void clouds_transform(struct clouds_cloud *cloud, const double *rotation, const double *shift);
 
-/* Is point i in the interior: its support inside the region that the points fill? */
+/* True if the support of point i is inside the region that the points fill. */
 bool clouds_interior(const struct clouds_settings *settings, const struct clouds_cloud *cloud,
                      size_t i);

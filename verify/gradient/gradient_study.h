@@ -30,8 +30,8 @@ struct gradient_errors {
     size_t inside, outside;
 };
 
-/* Gradient of f (n) into gradient[0..dim-1] (n each); point as in operator_apply or NULL (a wrong
- * subject leaves it as the right operator would). */
+/* Writes the gradient of f (n) to gradient[0..dim-1] (n each); point as in operator_apply or NULL
+ * (a wrong subject fills it like the right operator). */
 enum status gradient_study_apply(const struct gradient_subject *subject,
                                  const struct kernel *kernel, const struct cloud *cloud,
                                  const double *f, double *const *gradient,

@@ -14,7 +14,7 @@ enum { LEVELS = 4, REPEATS = 3 };
 
 static const struct {
     double eta;
-    size_t side[LEVELS]; /* of the order; the second one for exactness */
+    size_t side[LEVELS]; /* for the order; the second one also for exactness */
     size_t timed;
 } plan[] = {{0, {0}, 0},
             {2, {40, 60, 90, 135}, 20000},
@@ -33,7 +33,7 @@ static enum status errors_on(const struct gradient_subject *subject, const struc
     return status;
 }
 
-/* The highest degree of which all polynomials up to it are exact; -1: not even constants. */
+/* The highest degree up to which all polynomials are exact; -1: not even constants. */
 static enum status degree_of(const struct gradient_subject *subject, const struct kernel *kernel,
                              const struct clouds_settings *settings, int *degree,
                              struct error *error)

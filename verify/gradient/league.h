@@ -12,12 +12,12 @@ struct league_row {
     int dim;
     int degree_lattice, degree_disordered;  /* polynomials exact in the interior; -1: none */
     double order_lattice, order_disordered; /* of a smooth field's error in the spacing */
-    double error;                           /* of it on a jittered lattice, h/max|f| */
-    double error_edge;                      /* the same where the support is cut off */
+    double error;                           /* of that field on a jittered lattice, h/max|f| */
+    double error_edge;                      /* error where the support is truncated */
     double condition;                       /* largest there */
     double momentum, angular;               /* defects: rate of change over sum of |terms| */
     double ns_per_point, ns_per_pair;       /* whole call, search included, one thread */
-    double neighbours;                      /* a point, in that timing */
+    double neighbours;                      /* neighbours per point in that timing */
 };
 
 /* Measures all operators in 1D, 2D and 3D (jitter 0.2, cubic_spline at eta 2, 2.4, 2.4); about a

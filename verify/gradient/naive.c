@@ -22,7 +22,7 @@ static bool pair_load(struct pair *pair, const struct kernel *kernel, enum naive
 {
     const int dim = cloud->points.dim;
     real r2 = 0, h = cloud->h[fault == NAIVE_WIDTH_OF_NEIGHBOUR ? j : i];
-    double shift[3] = {0}, d2 = 0; /* to the nearest image; far pairs are not worth more */
+    double shift[3] = {0}, d2 = 0; /* to the nearest image, in double precision */
     for (int a = 0; a < dim; a++) {
         const double d = cloud->points.x[a][j] - cloud->points.x[a][i];
         const double length =

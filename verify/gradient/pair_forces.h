@@ -51,6 +51,6 @@ bool pair_forces_state(struct pair_forces_state *state, const struct kernel *ker
 bool pair_forces_gradients(struct pair_forces_state *state, const struct gradient_subject *subject,
                            const struct kernel *kernel);
 
-/* All of it: the rates of one state. */
+/* Makes a state and returns its rates. */
 bool pair_forces_rates(const struct pair_forces_subject *subject, int dim, unsigned long seed,
                        struct pair_forces_rates *rates);

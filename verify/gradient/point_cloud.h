@@ -15,9 +15,9 @@ struct point_cloud {
     const char *name[CSV_COLUMNS_MAX];
 };
 
-/* eta, h: what the user gave, 0 for neither; a column h wins, else h for all, else h =
- * eta volume^(1/dim). STATUS_BAD_INPUT: the message names file, line and column. Free with
- * point_cloud_free, also after a failure. */
+/* eta, h: the user's values, 0 if not given; a column h takes precedence, then h for all points,
+ * then h = eta volume^(1/dim). STATUS_BAD_INPUT: the message names file, line and column. Call
+ * point_cloud_free even after a failure. */
 enum status point_cloud_read(const char *path, int dim, double eta, double h,
                              struct point_cloud *cloud, struct error *error);
 void point_cloud_free(struct point_cloud *cloud);
