@@ -12,7 +12,7 @@ struct norms norm_errors(size_t n, const double *x, const double window[2], cons
 {
     struct norms norms = {0};
     double weight = 0;
-    bool lost = false; /* a particle that is nowhere must not just drop out */
+    bool lost = false; /* a particle with a NaN position must not be ignored */
     for (size_t i = 0; i < n; i++) {
         if (!(window[0] <= x[i] && x[i] <= window[1])) {
             lost |= !isfinite(x[i]);
@@ -26,7 +26,7 @@ struct norms norm_errors(size_t n, const double *x, const double window[2], cons
         weight += volume[i];
         norms.n++;
     }
-    if (lost || !norms.n || !isfinite(norms.l1)) { /* fmax ignores a NaN */
+    if (lost || !norms.n || !isfinite(norms.l1)) { /* fmax ignores NaN */
         norms.l1 = norms.l1_whole = norms.l2 = norms.linf = norms.particle_mean = (double)NAN;
         return norms;
     }
@@ -62,7 +62,7 @@ static double field_value(double x, void *call)
 void norm_bin_means(norm_field *field, const void *context, const double window[2], size_t bins,
                     double *means)
 {
-    enum { INTERVALS = 400 }; /* a jump takes one halving per binary digit: ample */
+    enum { INTERVALS = 400 }; /* a jump needs one halving per binary digit, so this is enough */
     struct field_call call = {field, context};
     gsl_function function = {field_value, &call};
     gsl_integration_workspace *workspace = gsl_integration_workspace_alloc(INTERVALS);

@@ -24,8 +24,8 @@ struct norms {
 struct norms norm_errors(size_t n, const double *x, const double window[2], const double *volume,
                          const double *value, const double *exact);
 
-/* L1 with the weights w_i. A particle without weight counts for nothing, even where it has no
- * value; a weight that is no number, or weights that are all 0, give NaN. */
+/* L1 with the weights w_i. A particle with weight 0 is ignored, even if its value is NaN; a weight
+ * that is NaN, or weights that are all 0, give NaN. */
 double norm_l1(size_t n, const double *weight, const double *value, const double *exact);
 
 /* An exact solution at one instant. */
@@ -36,8 +36,8 @@ typedef double norm_field(const void *context, double x);
 void norm_bin_means(norm_field *field, const void *context, const double window[2], size_t bins,
                     double *means);
 
-/* The seed program's binned error, corrected: mean over the bins that hold particles of
- * |exact_mean - sum w_i q_i / sum w_i|; parts are half open, the last one closed. bins <=
- * NORM_BINS_MAX (NORM_BINS is the standard); NaN where the window is empty. */
+/* The seed program's binned error, corrected: mean of |exact_mean - sum w_i q_i / sum w_i| over the
+ * bins that contain particles; bins are half open, the last one closed. bins <= NORM_BINS_MAX
+ * (NORM_BINS is the standard); NaN if the window is empty. */
 double norm_binned_l1(size_t n, const double *x, const double window[2], const double *volume,
                       const double *value, size_t bins, const double *exact_means);

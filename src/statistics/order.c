@@ -30,14 +30,14 @@ static enum order_class classify(const struct order_fit *fit, double ratio)
         best = fmax(best, fit->pairwise[i]);
         falls = falls && fit->pairwise[i] > 0;
     }
-    /* A floor shows at the fine end only: what went before must have fallen all the way. */
+    /* A floor appears only at the fine end: all errors before it must have fallen. */
     bool fell = true;
     for (size_t i = 0; i + 1 < last; i++) fell = fell && fit->pairwise[i] > 0;
     if (fell && fit->pairwise[last] < best / 3) return ORDER_FLOOR_LIMITED;
     return falls ? ORDER_ASYMPTOTIC : ORDER_OSCILLATING;
 }
 
-/* The slope of a straight line through n points, and what is known of its error. */
+/* The slope of a straight line through n points, and the half-width of its interval. */
 struct line {
     double slope, half;
 };
@@ -50,8 +50,8 @@ static double half_by_scatter(size_t n, double scatter)
     return gsl_cdf_tdist_Pinv(0.975, freedom) * sqrt(scatter / freedom);
 }
 
-/* With them, the slope is sum c_i y_i and its variance sum c_i^2 s_i^2, with the degrees of freedom
- * of Satterthwaite (Biometrics Bull. 2, 110, 1946) and Welch (1947). */
+/* With replicates, the slope is sum c_i y_i and its variance sum c_i^2 s_i^2, with the degrees of
+ * freedom of Satterthwaite (Biometrics Bull. 2, 110, 1946) and Welch (1947). */
 static double half_by_replicates(size_t n, const double *x, const double *weight,
                                  const struct order_noise *noise)
 {
@@ -67,8 +67,9 @@ static double half_by_replicates(size_t n, const double *x, const double *weight
     return gsl_cdf_tdist_Pinv(0.975, total * total / parts) * sqrt(total);
 }
 
-/* Weights 1/variance; a variance from few replicates is drawn towards the mean of all, or the
- * level whose replicates agree by accident would have all the weight. false: no noise at all. */
+/* Weights 1/variance; a variance from few replicates is shrunk towards the mean of all, because
+ * otherwise a level whose replicates agree by accident would have all the weight. false: no noise
+ * at all. */
 static bool weigh(size_t n, const struct order_noise *noise, double *weight)
 {
     const double known = (double)(noise->replicates - 1), drawn = 24; /* by simulation: orders.c */
@@ -88,8 +89,8 @@ static struct line fit_line(size_t n, const double *x, const double *y,
     gsl_fit_wlinear(x, 1, weight, 1, y, 1, n, &c0, &c1, &cov00, &cov01, &cov11, &chi2);
     const double scatter = half_by_scatter(n, cov11 * chi2);
     if (!noisy) return (struct line){c1, scatter};
-    /* If levels lie farther off the line than their noise explains (an F test at 1 %), the rest is
-     * curvature, which the scatter of replicates does not contain. */
+    /* If levels deviate from the line by more than their noise explains (an F test at 1 %), the
+     * rest is curvature, which the scatter of replicates does not contain. */
     const double freedom = (double)(n - 2), known = (double)(n * (noise->replicates - 1));
     const bool curved = gsl_cdf_fdist_Q(chi2 / freedom, freedom, known) < 0.01;
     const double half = half_by_replicates(n, x, weight, noise);
@@ -177,8 +178,8 @@ static double richardson_order(struct richardson *r)
     return p;
 }
 
-/* How the errors of three values fall whose differences promise the order p (NaN: none), where the
- * exact value lies outside of what they extrapolate to. */
+/* The class of three values whose differences suggest the order p (NaN: none) but whose
+ * extrapolation does not contain the exact value. */
 static enum order_class class_by_errors(const double spacing[3], const double value[3],
                                         double exact, double p)
 {
@@ -187,7 +188,7 @@ static enum order_class class_by_errors(const double spacing[3], const double va
     const double last = log(error[1] / error[2]) / log(spacing[1] / spacing[2]);
     const double whole = log(error[0] / error[2]) / log(spacing[0] / spacing[2]);
     if (fabs(whole) < ORDER_FLAT || last < p / 3) return ORDER_FLOOR_LIMITED;
-    /* of values in a row: where the last step is one towards the exact one, so is the first */
+    /* the values are monotonic: if the last step is towards the exact value, so is the first */
     return error[1] > error[2] ? ORDER_PREASYMPTOTIC : ORDER_DIVERGING;
 }
 

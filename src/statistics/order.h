@@ -14,11 +14,11 @@
 enum { ORDER_LEVELS_MIN = 4, ORDER_LEVELS_MAX = 64 };
 
 #define ORDER_CLASS_LIST(CLASS)                                                                    \
-    CLASS(ASYMPTOTIC, "asymptotic")        /* falls from level to level */                         \
-    CLASS(FLOOR_LIMITED, "floor-limited")  /* does not fall any more, or never did */              \
-    CLASS(PREASYMPTOTIC, "pre-asymptotic") /* falls, but not yet to the exact value as promised */ \
-    CLASS(OSCILLATING, "oscillating")      /* falls on the whole, not from level to level */       \
-    CLASS(DIVERGING, "diverging")          /* does not fall, or is not finite */
+    CLASS(ASYMPTOTIC, "asymptotic")        /* decreases from level to level */                     \
+    CLASS(FLOOR_LIMITED, "floor-limited")  /* does not decrease any more, or never did */          \
+    CLASS(PREASYMPTOTIC, "pre-asymptotic") /* decreases, but not yet towards the exact value */    \
+    CLASS(OSCILLATING, "oscillating")      /* decreases on the whole, not from level to level */   \
+    CLASS(DIVERGING, "diverging")          /* does not decrease, or is not finite */
 
 enum order_class {
 #define CLASS(name, text) ORDER_##name,
@@ -26,7 +26,7 @@ enum order_class {
 #undef CLASS
 };
 
-/* The class as results and reports write it. */
+/* The name of a class in results and reports. */
 const char *order_class_name(enum order_class class);
 
 struct order_fit {
@@ -43,14 +43,14 @@ struct order_gate {
 };
 
 enum { ORDER_GATE_TEXT = 160 };
-/* The widest interval with which an order still says something: half of its width. */
+/* Largest half-width of the interval of a meaningful order. */
 #define ORDER_HALF_WIDTH_MAX 0.15
 
-/* An order nearer to 0 than this over the whole ladder is none: the error sits on a floor. */
+/* An order closer to 0 than this over all levels counts as none: the error is at a floor. */
 #define ORDER_FLAT 0.1
 
-/* What replicates say of the noise: variance of the mean log(error) at each level (the replicates'
- * own divided by their number, >= 2 at each level). */
+/* Noise from replicates: variance of the mean log(error) at each level (the variance of the
+ * replicates divided by their number, >= 2 at each level). */
 struct order_noise {
     const double *variance;
     size_t replicates;
@@ -70,13 +70,12 @@ bool order_passes(const struct order_fit *fit, const struct order_gate *gate, ch
 
 struct order_extrapolation {
     double order;                /* observed; NaN unless the class is asymptotic */
-    double value;                /* extrapolated to spacing 0; NaN likewise */
+    double value;                /* extrapolated to spacing 0; NaN unless the class is asymptotic */
     double gci_fine, gci_coarse; /* fractions of the value, safety factor 1.25 */
     enum order_class class;
 };
 
-/* Of a functional at three levels, coarsest first, spacings strictly falling. exact: its exact
- * value, NaN where it is unknown; a sequence that converges to another value is not called
- * asymptotic. */
+/* For a functional at three levels, coarsest first, spacings strictly decreasing. exact: its exact
+ * value, NaN if unknown; a sequence that converges to another value is not called asymptotic. */
 struct order_extrapolation order_extrapolate(const double spacing[3], const double value[3],
                                              double exact);

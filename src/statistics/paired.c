@@ -4,8 +4,8 @@
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 
-/* Relative; less than that makes nothing better, however alike the draws are: the noise that
- * `sphproof diff` allows errors. */
+/* Smallest relative change that counts, however alike the draws are: the noise that `sphproof diff`
+ * allows errors. */
 static const double least = 1e-3;
 
 const char *const paired_verdicts[PAIRED_VERDICTS] = {"none", "better", "worse", "unknown"};

@@ -50,7 +50,7 @@ static double distance(size_t n, const double *volume, const double *a, const do
     return sum;
 }
 
-/* How far a field is from its own mean, as a distance. */
+/* Distance of a field from its own mean. */
 static double spread(size_t n, const double *volume, const double *a)
 {
     double whole = 0, mean = 0, sum = 0;

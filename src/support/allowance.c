@@ -9,7 +9,7 @@
 
 enum { PATH_LENGTH = 4096, LINE_LENGTH = 1024 };
 
-/* The number that stands in a file; infinite where there is none ("max"). */
+/* The number in a file; infinite if there is none ("max"). */
 static double number_in(const char *path)
 {
     double bytes;
@@ -20,8 +20,8 @@ static double number_in(const char *path)
     return bytes;
 }
 
-/* A group is allowed no more than those above it. In a container the path may be that of the host;
- * the container's own group is then the uppermost. */
+/* The least limit of a control group and its parents. In a container the path may be that of the
+ * host; the container's own group is then the topmost one. */
 static double least_of_groups(const char *root, const char *top, char *group, const char *file)
 {
     char path[PATH_LENGTH];
@@ -34,7 +34,7 @@ static double least_of_groups(const char *root, const char *top, char *group, co
     return least;
 }
 
-/* Lines "number:controllers:/path"; of version 2 there is one, without a controller. */
+/* Reads lines "number:controllers:/path"; version 2 has a single one, without controllers. */
 static double of_groups(const char *root)
 {
     char path[PATH_LENGTH], line[LINE_LENGTH];

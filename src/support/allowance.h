@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What the system lets this process have. */
+ * Limits that the system sets for this process. */
 #pragma once
 
-/* Bytes of memory: of the machine, less where `ulimit -v` or a control group (a container, a job of
- * a cluster) allows less. Of control groups as they stand below the folder root: "" but in tests.
- */
+/* Memory available to this process in bytes: that of the machine, or less if `ulimit -v` or a
+ * control group (a container, a cluster's job) limits it. root: prefix of the control groups'
+ * files; "" except in tests. */
 double allowance_memory(const char *root);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Bytes as base64, as data in a page are. Internal to pages. */
+ * Base64 encoding, for data in pages. Internal to pages. */
 #pragma once
 
 #include "buffer.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Room for n more bytes and the NUL. */
+/* Ensures capacity for n more bytes and the NUL. */
 static bool reserve(struct buffer *to, size_t n)
 {
     if (to->failed) return false;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A string that grows. Running out of memory is remembered, not reported at each step: the caller
- * checks `failed` (or buffer_take's NULL) once at the end. */
+ * A growing string. Running out of memory is recorded, not reported at each call: the caller checks
+ * `failed` (or the NULL of buffer_take) once at the end. */
 #pragma once
 
 #include <stdbool.h>
@@ -18,10 +18,10 @@ void buffer_add_bytes(struct buffer *to, const char *bytes, size_t n);
 void buffer_format(struct buffer *to, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Escaped for HTML and XML: content and attribute values; control characters, which XML forbids,
- * become U+FFFD. */
+/* Appends a string escaped for HTML and XML, as content or attribute value; control characters,
+ * which XML forbids, become U+FFFD. */
 void buffer_escape(struct buffer *to, const char *string);
 
-/* The string, which the caller frees; the buffer is empty again. NULL: out of memory. */
+/* Returns the string, which the caller frees, and empties the buffer. NULL: no memory. */
 char *buffer_take(struct buffer *to);
 void buffer_free(struct buffer *to);

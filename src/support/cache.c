@@ -51,7 +51,7 @@ static FILE *open_program(void)
 #endif
 }
 
-/* What the last bits of these functions are, which the C library chooses by the processor. */
+/* Hashes the last bits of mathematical functions, which the C library chooses for the processor. */
 static uint64_t hash_mathematics(uint64_t hash)
 {
     for (int k = 1; k <= 64; k++) {
@@ -62,7 +62,7 @@ static uint64_t hash_mathematics(uint64_t hash)
     return hash;
 }
 
-/* Any change of the program, or of the library its mathematics come from, is another build. */
+/* Any change of the program, or of the mathematical library, gives another build. */
 void cache_build(char build[CACHE_BUILD_MAX])
 {
     char bytes[1 << 16];
@@ -80,7 +80,7 @@ void cache_build(char build[CACHE_BUILD_MAX])
     snprintf(build, CACHE_BUILD_MAX, "%016" PRIx64, hash_mathematics(hash));
 }
 
-/* Of one of the folders of entries; temporaries that a killed process left go the same way. */
+/* Prunes one of the folders of entries; also removes old temporaries of killed processes. */
 static void prune(const char *folder, double seconds, struct cache_census *census)
 {
     DIR *opened = opendir(folder);
@@ -137,7 +137,7 @@ void cache_path(const struct cache *cache, const char *key, char path[CACHE_PATH
              (unsigned)(hash % FOLDERS), hash);
 }
 
-/* A file's bytes and a NUL; NULL where it cannot be read. */
+/* A file's bytes and a NUL; NULL if it cannot be read. */
 static char *read_file(const char *path, size_t *length)
 {
     struct stat is;
@@ -153,14 +153,14 @@ static char *read_file(const char *path, size_t *length)
     return text;
 }
 
-/* The first line of an entry: what its body must be. */
+/* Writes the first line of an entry: length and checksum of its body. */
 static int head_of(const char *body, size_t length, char head[HEAD_MAX])
 {
     return snprintf(head, HEAD_MAX, "sphproof-entry/1 %016" PRIx64 " %zu\n",
                     cache_hash(CACHE_HASH, body, length), length);
 }
 
-/* The body of an entry whose length and checksum are right, else NULL. */
+/* The body of an entry, or NULL if its length or checksum is wrong. */
 static const char *body_of(const char *text, size_t length)
 {
     char head[HEAD_MAX];
@@ -192,7 +192,7 @@ json_t *cache_load(const struct cache *cache, const char *key, bool *damaged)
     const char *own = json_string_value(json_object_get(entry, "key"));
     if (build && own && strcmp(build, cache->build) == 0 && strcmp(own, key) == 0)
         document = json_incref(json_object_get(entry, "document"));
-    if (document) utimensat(AT_FDCWD, path, NULL, 0); /* used: stays another month */
+    if (document) utimensat(AT_FDCWD, path, NULL, 0); /* marks the entry as used today */
     if (damaged && text && !document) *damaged = true;
     json_decref(entry);
     free(text);

@@ -15,14 +15,14 @@ extern char **environ;
 
 enum { PIPES = 2, PART = 4096 };
 
-/* Starts the program with its standard output and error on the ends for writing. */
+/* Starts the program with standard output and error connected to the pipes. */
 static int start(const char *const *words, int pipes[PIPES][2], pid_t *pid)
 {
     posix_spawn_file_actions_t files;
     posix_spawnattr_t how;
     sigset_t usual;
     sigemptyset(&usual);
-    sigaddset(&usual, SIGPIPE); /* which this program ignores */
+    sigaddset(&usual, SIGPIPE); /* ignored by this program */
     posix_spawn_file_actions_init(&files);
     posix_spawnattr_init(&how);
     posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", 0, 0);
@@ -39,7 +39,7 @@ static int start(const char *const *words, int pipes[PIPES][2], pid_t *pid)
     return reason;
 }
 
-/* Reads both pipes to their ends; false: no memory. */
+/* Reads both pipes to the end. false: no memory. */
 static bool listen_to(int pipes[PIPES][2], struct child_said *said)
 {
     char part[PART];
@@ -97,7 +97,7 @@ enum status child_run(const char *const *words, struct child_said *said, struct 
                          heard ? strerror(reason) : "no memory for what it says");
     }
     said->exit = WIFSIGNALED(ended) ? 128 + WTERMSIG(ended) : WEXITSTATUS(ended);
-    said->complaint[strcspn(said->complaint, "\n")] = '\0'; /* its first line says it */
+    said->complaint[strcspn(said->complaint, "\n")] = '\0'; /* keeps the first line */
     status_clean(said->complaint);
     return STATUS_OK;
 }

@@ -11,8 +11,8 @@ static double seconds(clockid_t clock)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Of all threads. CLOCK_PROCESS_CPUTIME_ID advances by whole ticks of 4 ms once a process has a
- * limit of its CPU time (ulimit -t). */
+/* CPU time of all threads. CLOCK_PROCESS_CPUTIME_ID advances in ticks of 4 ms once a process has a
+ * CPU time limit (ulimit -t). */
 static double cpu_seconds(void)
 {
     struct rusage usage;

@@ -15,12 +15,12 @@ struct reader {
     FILE *stream;
     const char *path;
     size_t line, bytes;
-    const char *separators; /* as the names have them: a comma, or else blanks */
+    const char *separators; /* a comma if the line of names has one, otherwise blanks */
     char text[CSV_LINE_MAX + 1];
     struct error *error;
 };
 
-/* STATUS_BAD_INPUT with the place in front. */
+/* Sets STATUS_BAD_INPUT, with file, line and character before the message. */
 static enum status __attribute__((format(printf, 3, 4)))
 fail(const struct reader *reader, size_t character, const char *format, ...)
 {
@@ -33,7 +33,7 @@ fail(const struct reader *reader, size_t character, const char *format, ...)
                      reader->line, character, what);
 }
 
-/* The next line without its end into text; *more is false at the end of the file. */
+/* Reads the next line, without its end, into text; *more is false at the end of the file. */
 static enum status next_line(struct reader *reader, bool *more)
 {
     size_t n = 0;
@@ -69,7 +69,8 @@ static bool blank(const char *text)
     return text[strspn(text, " \t")] == '\0' || text[strspn(text, " \t")] == '#';
 }
 
-/* Cuts the next value off *rest, without blanks around; its character (from 1) in the line. */
+/* Cuts the next value off *rest, without surrounding blanks; *character: its position in the line,
+ * from 1. */
 static char *next_value(const struct reader *reader, char **rest, size_t *character)
 {
     const bool blanks = *reader->separators == ' ';
@@ -85,7 +86,7 @@ static char *next_value(const struct reader *reader, char **rest, size_t *charac
     return value;
 }
 
-/* JSON takes no other names. */
+/* JSON requires UTF-8. */
 static bool is_utf8(const char *name)
 {
     char copy[CSV_LINE_MAX + 1];
@@ -94,7 +95,7 @@ static bool is_utf8(const char *name)
     return strcmp(copy, name) == 0;
 }
 
-/* Fortran writes 1.0D0. */
+/* Also accepts Fortran's 1.0D0. */
 static bool read_number(const char *text, double *value)
 {
     char copy[64];

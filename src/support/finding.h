@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A finding: what a check, a gate, a run or anything else that is judged has come to. There is one
- * kind of it, so that there is one verdict, one order in which failures are told, one JUnit file
+ * A finding: the result of a check, a gate, a run or anything else that is judged. One struct
+ * serves all of them, so that there is one verdict, one order of reporting failures, one JUnit file
  * and one exit status. */
 #pragma once
 
-/* Only FAIL fails anything, and only PASS and FAIL are judged. NONE: nothing was asked. KNOWN:
- * fails, as its case says that it does. SMOKE: passes, but too coarsely to say more than that
- * nothing is broken. UNDETERMINED: nobody can tell, as an interval is wider than what it is held
- * to. SKIP: could not be measured. */
+/* Only FAIL counts as a failure, and only PASS and FAIL are verdicts. NONE: not requested. KNOWN:
+ * fails, as its case announces. SMOKE: passes, but is so coarse that it only shows that nothing is
+ * broken. UNDETERMINED: the interval is wider than the bound allows to judge. SKIP: could not be
+ * measured. */
 enum finding_status {
     FINDING_NONE,
     FINDING_PASS,
@@ -17,29 +17,28 @@ enum finding_status {
     FINDING_UNDETERMINED,
     FINDING_SKIP,
 };
-/* As results write them; ends with NULL. */
+/* Names of the statuses in results; ends with NULL. */
 extern const char *const finding_words[];
 
 struct finding {
-    const char *group;          /* of a check, or the area of what is none ("gate", "run" ...) */
-    const char *what;           /* a check, a case, a file */
-    const char *subject;        /* which figure or gate of it, and where */
-    double value, bound, floor; /* NaN: there is none */
+    const char *group;   /* group of a check, or the area of another finding ("gate", "run" ...) */
+    const char *what;    /* a check, a case, a file */
+    const char *subject; /* its figure or gate, and where */
+    double value, bound, floor; /* NaN: none */
     double seconds;             /* NaN: not measured */
     enum finding_status status;
-    int rank;                   /* of failures the one of least rank is told first, see check.h */
+    int rank;                   /* failures with the lowest rank are reported first, see check.h */
     const char *reason;         /* why it does not pass; "" or NULL: see finding_excess */
-    const char *command, *plot; /* what shows it again, and where it is drawn; or NULL */
+    const char *command, *plot; /* command that reproduces it, and its plot; or NULL */
 };
 
-/* PASS where value <= bound and the noise below the value allows to say so, floor <= bound; a NaN
- * fails. */
+/* PASS if value <= bound and the noise is small enough to tell, floor <= bound; NaN fails. */
 enum finding_status finding_judge(double value, double bound, double floor);
 
-/* value/bound, the measure of how near a figure is to failing; infinite for a NaN, and for what is
- * beyond a bound of 0. */
+/* value/bound, a measure of how close a figure is to failing; infinite for NaN, and for a positive
+ * value with bound 0. */
 double finding_ratio(double value, double bound);
 
-/* What fails of a figure: *beyond is its value, or its floor where the value alone would pass.
- * Returns how far that is beyond the bound, in units of it. */
+/* Sets *beyond to the part of a figure that fails: its value, or its floor if the value alone would
+ * pass. Returns its distance from the bound in units of the bound. */
 double finding_excess(const struct finding *finding, double *beyond);

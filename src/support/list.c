@@ -5,15 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The room doubles whenever count has reached a power of two, so that no capacity has to be kept.
- */
+/* Doubles the capacity whenever count is a power of two, so that no capacity has to be stored. */
 bool list_grow(void *list, size_t count, size_t size)
 {
     void *old, *grown;
     const size_t room = count ? 2 * count : 1;
     if (count & (count - 1)) return true;
     if (room < count || room > SIZE_MAX / size) return false;
-    memcpy(&old, list, sizeof old); /* the type of the caller's pointer is not known */
+    memcpy(&old, list, sizeof old); /* memcpy, as the type of the caller's pointer is unknown */
     grown = realloc(old, room * size);
     if (grown) memcpy(list, &grown, sizeof grown);
     return grown;

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Lists that grow, for everything whose number follows a family or what a user asks for, and sorted
- * numbers. */
+ * Growing lists, for items whose number depends on a family or on the user, and sorting of numbers.
+ */
 #pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Makes room for one item more behind the count items of size bytes each that a pointer points to;
- * list: that pointer's address. An empty list is NULL; free it with free. A list may move when it
- * grows. False: no memory, and the list is as it was. */
+/* Ensures capacity for one more item after the `count` items of `size` bytes of a list; list:
+ * address of the pointer to its items. An empty list is NULL; free it with free. The list may move.
+ * False: no memory, and the list is unchanged. */
 bool list_grow(void *list, size_t count, size_t size);
 
-/* Sorts n numbers, the least first. */
+/* Sorts n numbers in ascending order. */
 void list_sort(double *values, size_t n);

@@ -11,14 +11,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Names of the temporaries in being, where a signal handler can reach them. */
+/* Names of the existing temporaries, accessible to a signal handler. */
 enum { SLOTS = 16 };
 static struct {
     volatile sig_atomic_t used;
     char name[PATH_MAX];
 } slots[SLOTS];
 
-static volatile sig_atomic_t guarded; /* a group of processes that an interrupt ends, or 0 */
+static volatile sig_atomic_t guarded; /* process group that an interrupt ends, or 0 */
 
 static void interrupted(int number)
 {
@@ -58,7 +58,7 @@ static enum status cannot_write(const char *path, int reason, struct error *erro
     return error_set(error, STATUS_ENVIRONMENT, "cannot write '%s': %s", path, strerror(reason));
 }
 
-/* The file behind path, following links; a copy of path where it does not exist yet. */
+/* The file that path refers to after following links; a copy of path if it does not exist yet. */
 static char *resolve(const char *path)
 {
     char *real = realpath(path, NULL);
@@ -106,8 +106,8 @@ enum status output_open(struct output *output, const char *path, struct error *e
     return STATUS_OK;
 }
 
-/* Why writing to standard output failed. Where the write that failed was in the midst of others,
- * its errno is gone; that a reader has left can still be seen, and the next write fails again. */
+/* The reason why writing to standard output failed. If an earlier write failed, its errno is lost;
+ * a closed pipe can still be detected, and the next write fails again. */
 static int stdout_reason(int reason)
 {
     struct pollfd polled = {.fd = STDOUT_FILENO, .events = POLLOUT};
@@ -125,11 +125,11 @@ enum status output_close(struct output *output, struct error *error)
     if (output->stream == stdout) {
         output->stream = NULL;
         if (reason) reason = stdout_reason(reason);
-        /* a reader that left is none of our errors; see output_finish_process */
+        /* a closed pipe is not an error; see output_finish_process */
         return reason && reason != EPIPE ? cannot_write("standard output", reason, error)
                                          : STATUS_OK;
     }
-    /* part of a long write failed without a reason: the next write fails again and gives it */
+    /* part of a long write failed without a reason: the next write fails again and sets it */
     if (reason == EIO && write(fileno(output->stream), "", 1) < 0) reason = errno;
     if (fclose(output->stream) && !reason) reason = errno;
     if (!reason && output->temporary && rename(output->temporary, output->path)) reason = errno;
@@ -144,7 +144,7 @@ enum status output_text(const char *path, const char *text, struct error *error)
     struct output output;
     const enum status status = output_open(&output, path, error);
     if (status) return status;
-    fputs(text, output.stream); /* output_close tells whether it worked */
+    fputs(text, output.stream); /* output_close reports errors */
     return output_close(&output, error);
 }
 
@@ -161,7 +161,7 @@ void output_discard(struct output *output)
 enum status output_probe(const char *path, struct error *error)
 {
     struct stat info;
-    /* opening a pipe would wait for its reader */
+    /* opening a pipe would wait for a reader */
     if (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))
         return access(path, W_OK) == 0 ? STATUS_OK : cannot_write(path, errno, error);
     struct output output;
@@ -207,8 +207,8 @@ FILE *output_temporary(void)
 
 void output_prepare_process(void)
 {
-    /* A closed standard stream is replaced by one that fails, so that no data file gets its
-     * number. */
+    /* Replaces closed standard streams by ones that fail, so that no data file gets their numbers.
+     */
     const int modes[3] = {O_WRONLY, O_RDONLY, O_WRONLY};
     for (int i = 0; i < 3; i++)
         if (fcntl(i, F_GETFD) < 0 && open("/dev/null", modes[i]) != i) return;

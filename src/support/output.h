@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Files that appear whole or not at all: written beside their place under a temporary name, renamed
+ * Files that appear whole or not at all: written under a temporary name in the same folder, renamed
  * when complete. An interrupt or an error removes the temporary. */
 #pragma once
 
@@ -10,38 +10,39 @@
 struct output {
     FILE *stream; /* write here; NULL when closed */
     char *path, *temporary;
-    int slot; /* in the list of what an interrupt removes; -1: none */
+    int slot; /* in the list of temporaries that an interrupt removes; -1: none */
 };
 
 /* Opens path for writing ("-": standard output; a device or a pipe is written directly).
- * STATUS_ENVIRONMENT: it cannot be written; nothing has then been left behind. */
+ * STATUS_ENVIRONMENT: it cannot be written; nothing is left behind. */
 enum status output_open(struct output *output, const char *path, struct error *error);
 
-/* Flushes, and puts the file in its place. On an error the file is as it was before. */
+/* Flushes the file and renames it to its path. On an error the old file is unchanged. */
 enum status output_close(struct output *output, struct error *error);
 
-/* A file that holds this text. */
+/* Writes a file with this text. */
 enum status output_text(const char *path, const char *text, struct error *error);
 
-/* Gives up: the file is as it was before output_open. Harmless after output_close. */
+/* Discards the output: the old file is unchanged. Allowed after output_close. */
 void output_discard(struct output *output);
 
-/* Could path be written now? For a clear answer before hours of work. */
+/* Tests whether path can be written, so that an error is reported before hours of work. */
 enum status output_probe(const char *path, struct error *error);
 
-/* Makes a folder and those above it; one that is there is fine. */
+/* Creates a folder and its parents, unless they exist. */
 enum status output_folder(const char *path, struct error *error);
 
-/* A file without a name, in $TMPDIR if that is set, else where the system has such files; NULL:
- * errno says why there is none. */
+/* A file without a name, in $TMPDIR if set, otherwise in the system's folder for temporary files;
+ * NULL: see errno. */
 FILE *output_temporary(void);
 
-/* An interrupt also ends this group of processes; 0: none. */
+/* Sets the process group that an interrupt also ends; 0: none. */
 void output_guard(int group);
 
-/* At start-up: interrupts remove temporaries, a full disk or a closed pipe is an error, not a
- * signal; closed standard streams cannot be taken by a file. */
+/* For the start of a program: interrupts remove temporaries, a full disk or a closed pipe is an
+ * error, not a signal; files cannot take the numbers of closed standard streams. */
 void output_prepare_process(void);
 
-/* At the end: is everything on standard output? STATUS_OK also where the reader has left. */
+/* For the end of a program: reports whether standard output was written completely. STATUS_OK also
+ * if its reader has closed the pipe. */
 enum status output_finish_process(struct error *error);

@@ -7,7 +7,7 @@
 
 #include "version.h"
 
-/* Is it there? Paths that do not fit are not. */
+/* True if the path exists; false also for paths that are too long. */
 static bool try(char path[PLACE_LENGTH], const char *root, const char *folder, const char *name)
 {
     const int length = snprintf(path, PLACE_LENGTH, "%s%s/%s", root, folder, name);

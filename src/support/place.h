@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Where an installed program finds what was installed with it: relative to itself, so that the
- * whole tree may be moved; else at the place it was configured for. */
+ * Finds the installed files of an installed program: relative to the program, so that the whole
+ * tree may be moved; otherwise at the configured place. */
 #pragma once
 
 #include <stdbool.h>
@@ -9,5 +9,5 @@
 enum { PLACE_LENGTH = 4096 };
 
 /* The path of an installed file or folder, such as "cases/sod.ini" or "sphproof-1.schema.json".
- * False: it is not there (a program that was only built has none), path is then "". */
+ * False, with path = "": it does not exist (for example if the program is not installed). */
 bool place_find(const char *name, char path[PLACE_LENGTH]);

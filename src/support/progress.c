@@ -6,7 +6,7 @@
 
 #include "clock.h"
 
-/* seconds: nothing before, then so often on a terminal and in a log */
+/* in seconds: first output, then intervals on a terminal and in a log */
 static const double patience = 1, interval_terminal = 0.2, interval_log = 10;
 
 void progress_begin(struct progress *progress, const char *what, bool quiet)
@@ -22,7 +22,7 @@ void progress_from(struct progress *progress, double share)
     progress->since = clock_wall();
 }
 
-/* Is it time to say something? */
+/* True if the next output is due. */
 static bool due(struct progress *progress, double time)
 {
     const double wait = progress->spoke > 0  ? progress->spoke

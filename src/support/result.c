@@ -14,7 +14,7 @@
 #include "output.h"
 #include "version.h"
 
-/* The processor's name where the system tells it (Linux), else "". */
+/* The processor's name if the system provides it (Linux), otherwise "". */
 static void processor_name(char *name, size_t size)
 {
     char line[256];
@@ -68,7 +68,7 @@ json_t *result_numbers(const double *values, size_t n)
     return array;
 }
 
-/* -1: a value is NULL, for lack of memory. */
+/* Returns -1 if a value is NULL for lack of memory. */
 static int add(json_t *object, const char *members, va_list values)
 {
     int status = 0;
@@ -128,7 +128,7 @@ enum status result_load(json_t **document, const char *path, struct error *error
         return error_set(error, STATUS_BAD_INPUT, "'%.200s': %s", path, strerror(errno));
     if (!S_ISREG(is.st_mode))
         return error_set(error, STATUS_BAD_INPUT, "'%.200s': not a regular file", path);
-    /* a tool that rewrites a document may write 1.0 as 1 and 1e30 with all its digits */
+    /* other tools may write 1.0 as 1 and 1e30 with all its digits */
     *document = json_load_file(path, JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL, &reason);
     if (!*document)
         return error_set(error, STATUS_BAD_INPUT, "%.200s:%d: no result document: %.200s", path,

@@ -10,31 +10,30 @@
  * owns the reference. */
 json_t *result_new(const char *command);
 
-/* A number, or the string "nan", "inf" or "-inf" where it is not finite; value_real reads it. New
+/* A number, or the string "nan", "inf" or "-inf" if it is not finite; value_real reads it. New
  * reference. */
 json_t *result_number(double value);
 
-/* The same; null for NaN: there is none. */
+/* The same; null for NaN, which means no value. */
 json_t *result_number_or_null(double value);
 
 /* An array of n numbers. */
 json_t *result_numbers(const double *values, size_t n);
 
-/* Adds members to an object:
- *     result_add(object, "case=%s steps=%zu cpu_s=%g", "sod", steps, 0.2);
- * As printf has it: %s string, %d int, %zu size_t, %g double, as result_number writes it. And %g?
- * as result_number_or_null writes it, %d? bool, %p a value, whose reference is taken. */
+/* Adds members to an object: result_add(object, "case=%s steps=%zu cpu_s=%g", "sod", steps, 0.2);
+ * Conversions as in printf: %s string, %d int, %zu size_t, %g double, as result_number. Others: %g?
+ * as result_number_or_null, %d? bool, %p a value, whose reference is taken. */
 void result_add(json_t *object, const char *members, ...) __attribute__((format(printf, 2, 3)));
 
-/* A new object with such members; NULL: no memory. */
+/* A new object with members as for result_add; NULL: no memory. */
 json_t *result_object(const char *members, ...) __attribute__((format(printf, 1, 2)));
 
 /* The document as text, 17 significant digits; malloced, NULL: no memory. */
 char *result_text(const json_t *document);
 
-/* Reads a result document. STATUS_BAD_INPUT: it cannot be read, is no JSON or none of ours. */
+/* Reads a result document. STATUS_BAD_INPUT: unreadable, not JSON, or not one of our documents. */
 enum status result_load(json_t **document, const char *path, struct error *error);
 
-/* Writes the document to path ("-": standard output), 17 significant digits; a file appears whole
+/* Writes the document to path ("-": standard output), 17 significant digits; the file appears whole
  * or not at all. STATUS_ENVIRONMENT: path cannot be written. */
 enum status result_write(const json_t *document, const char *path, struct error *error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * SHA-256 (FIPS 180-4): results name files by the same sums as the program sha256sum prints. */
+ * SHA-256 (FIPS 180-4): results identify files by the sums that the program sha256sum prints. */
 #pragma once
 
 #include <stdbool.h>

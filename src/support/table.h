@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Small helps for tables on standard output. */
+ * Utilities for tables on standard output. */
 #pragma once
 
 #include <stdbool.h>

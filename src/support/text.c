@@ -11,8 +11,8 @@
 
 enum { WORD_MAX = 64, NUMBER_MAX = 1024 };
 
-/* The C library reads numbers as the locale of the calling program has it: one that uses our
- * library may have set a decimal comma. Our numbers have a point. */
+/* The C library reads numbers according to the locale, and a program that uses our library may have
+ * set a decimal comma. Our numbers have a point. */
 static bool read_number(const char *text, double *number)
 {
     const char *point = localeconv()->decimal_point, *dot = strchr(text, '.');
@@ -29,7 +29,7 @@ static bool read_number(const char *text, double *number)
 
 bool text_real(const char *text, double *value)
 {
-    /* strtod also takes blanks, hex, inf and nan: the alphabet is checked first. */
+    /* strtod also accepts blanks, hex, inf and nan: check the alphabet first. */
     if (!*text || text[strspn(text, "0123456789.eE+-")]) return false;
     double number;
     if (!read_number(text, &number) || !isfinite(number)) return false;
@@ -121,7 +121,7 @@ const char *text_nearest(const char *word, const char *const *names, size_t n)
         const size_t distance = text_distance(word, names[i]);
         if (distance < best) best = distance, nearest = names[i];
     }
-    /* A part of a name says more than letters in common: cubic -> cubic_spline. */
+    /* The beginning of a name counts more than a small edit distance: cubic -> cubic_spline. */
     for (size_t i = 0; !nearest && length >= 2 && i < n; i++)
         if (strncmp(names[i], word, length) == 0) nearest = names[i];
     for (size_t i = 0; !nearest && length >= 3 && i < n; i++)
@@ -129,7 +129,7 @@ const char *text_nearest(const char *word, const char *const *names, size_t n)
     return nearest;
 }
 
-/* word for a message: cut, and with '?' for what a terminal would not show. */
+/* Copies word for a message: shortened, with '?' for unprintable characters. */
 static void printable(const char *word, char *copy, size_t size)
 {
     size_t i = 0;

@@ -7,7 +7,7 @@
 
 static pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
 
-/* All are there at once before the first one may go. */
+/* Keeps all threads alive until all have started. */
 static void *wait_at_gate(void *nothing)
 {
     pthread_mutex_lock(&gate);

@@ -69,7 +69,7 @@ double *value_numbers(const json_t *array, size_t *n)
     return values;
 }
 
-/* What stands there instead, in words. */
+/* Describes a value of the wrong type in words. */
 static void describe(const json_t *value, char *text, size_t size)
 {
     static const char *const types[] = {"an object", "a list", "a string", "a number",
