@@ -17,7 +17,8 @@ enum status problem_check_state(const struct settings *settings, enum setting ke
 }
 
 /* Position without the boost, in the box. */
-static void serialise_back(const struct prepared *p, const double x[3], double t, double place[3])
+static void unboosted_position(const struct prepared *p, const double x[3], double t,
+                               double place[3])
 {
     for (int d = 0; d < 3; d++) {
         place[d] = x[d];
@@ -32,7 +33,7 @@ void problem_sample(const struct prepared *p, const double x[3], double t,
                     struct problem_state *state)
 {
     double place[3];
-    serialise_back(p, x, t, place);
+    unboosted_position(p, x, t, place);
     p->problem->sample(p, place, t, state);
     for (int d = 0; d < p->domain.dim; d++)
         if (p->boost[d] != 0) state->v[d] += p->boost[d];
@@ -87,7 +88,7 @@ void problem_place(const struct prepared *p, const struct snapshot *s, size_t i,
 {
     double place[3];
     for (int d = 0; d < 3; d++) place[d] = d < p->domain.dim ? s->x[d][i] : 0;
-    serialise_back(p, place, s->time, x);
+    unboosted_position(p, place, s->time, x);
 }
 
 void problem_velocity(const struct prepared *p, const struct snapshot *s, size_t i, double v[3])

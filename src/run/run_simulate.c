@@ -91,8 +91,7 @@ static bool after_step(void *context, double time, uint64_t steps)
     const struct run_settings *settings = &watch->run->asked;
     const double t_end = settings_real(&watch->run->settings, SETTING_t_end);
     struct checkpoint *checkpoint = settings->checkpoint;
-    if (trace_wants(watch->trace, steps))
-        keep_trace(watch, time); /* before the checkpoint, which contains the trace */
+    if (trace_wants(watch->trace, steps)) keep_trace(watch, time); /* part of a checkpoint */
     /* not after the last step, so that a checkpoint always has a next step */
     if (checkpoint && time < watch->until && checkpoint_due(checkpoint)) {
         checkpoint->snapshot = settings->snapshots ? snapshots_last(settings->snapshots) : -1;
@@ -107,7 +106,7 @@ static bool after_step(void *context, double time, uint64_t steps)
 }
 
 /* Writes an intermediate snapshot. A failure does not end the run. */
-static void leave_snapshot(const struct watch *watch, size_t number)
+static void make_snapshot(const struct watch *watch, size_t number)
 {
     struct snapshots *snapshots = watch->run->asked.snapshots;
     struct run_result moment = *watch->result; /* without measurements */
@@ -127,7 +126,7 @@ static void leave_snapshot(const struct watch *watch, size_t number)
 }
 
 /* Runs from the saved state to each snapshot that is due, then restores the saved state. */
-static void go_aside(const struct watch *watch)
+static void make_due_snapshots(const struct watch *watch)
 {
     struct snapshots *snapshots = watch->run->asked.snapshots;
     for (; snapshots->next < snapshots->count; snapshots->next++) {
@@ -138,7 +137,7 @@ static void go_aside(const struct watch *watch)
         if (simulation_run(watch->simulation, time, NULL, NULL, &error))
             snapshots_fail(snapshots, &error);
         else
-            leave_snapshot(watch, snapshots->next);
+            make_snapshot(watch, snapshots->next);
     }
     snapshots_return(snapshots, watch->simulation);
     snapshots_go_on(snapshots);
@@ -155,7 +154,7 @@ static enum status run_until(struct watch *watch, double until, simulation_progr
         snapshots_keep(snapshots, watch->simulation, seen.time, until);
     }
     for (;;) {
-        if (snapshots && snapshots->state) go_aside(watch);
+        if (snapshots && snapshots->state) make_due_snapshots(watch);
         const enum status status = simulation_run(watch->simulation, until, progress, watch, error);
         if (!snapshots || !snapshots->state) return status;
     }

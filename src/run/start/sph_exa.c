@@ -44,16 +44,16 @@ static void set_attributes(struct hdf5_image *image, const struct run_result *re
     hdf5_image_attribute(image, "boundaryType", HDF5_CHAR, periodic, 3);
 }
 
-/* Writes a dataset: values times factor, plus number. room: work array of n. */
+/* Writes a dataset: values times factor, plus number. scratch: n numbers. */
 static void set_field(struct hdf5_image *image, const char *name, const double *values,
-                      double factor, double number, size_t n, double *room)
+                      double factor, double number, size_t n, double *scratch)
 {
-    for (size_t i = 0; i < n; i++) room[i] = (values ? factor * values[i] : 0) + number;
-    hdf5_image_data(image, name, HDF5_DOUBLE, room, n, 1);
+    for (size_t i = 0; i < n; i++) scratch[i] = (values ? factor * values[i] : 0) + number;
+    hdf5_image_data(image, name, HDF5_DOUBLE, scratch, n, 1);
 }
 
 static void set_fields(struct hdf5_image *image, const struct run_result *result, double step,
-                       double *room)
+                       double *scratch)
 {
     const struct snapshot *s = &result->snapshot;
     const double warm = (result->problem.gamma - 1) * ion_weight / gas_constant;
@@ -80,7 +80,7 @@ static void set_fields(struct hdf5_image *image, const struct run_result *result
                   {"alpha", NULL, 0, alpha_min}};
     for (size_t k = 0; k < sizeof fields / sizeof *fields; k++)
         set_field(image, fields[k].name, fields[k].values, fields[k].factor, fields[k].number, s->n,
-                  room);
+                  scratch);
 }
 
 static enum status write_sph_exa(const struct run_result *result, const char *path,
@@ -89,13 +89,13 @@ static enum status write_sph_exa(const struct run_result *result, const char *pa
     struct hdf5_image image;
     const double step = first_step(result);
     if (hdf5_image_possible(path, error)) return error->status;
-    double *room = malloc(result->n * sizeof *room);
-    if (!room) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
+    double *scratch = malloc(result->n * sizeof *scratch);
+    if (!scratch) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
     hdf5_image_begin(&image);
     hdf5_image_group(&image, "Step#0");
     set_attributes(&image, result, step);
-    set_fields(&image, result, step, room);
-    free(room);
+    set_fields(&image, result, step, scratch);
+    free(scratch);
     return hdf5_image_end(&image, path, error);
 }
 
