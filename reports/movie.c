@@ -59,8 +59,7 @@ static void keep_range(struct movie_range *range, struct plot_panel *panel, stru
         widen(range, heat->z, heat->nx * heat->ny);
         const double reach = fmax(fabs(range->low), fabs(range->high));
         panel->heat = heat;
-        if (!(range->high - range->low > 1e-6 * reach))
-            return; /* uniform: gnuplot chooses the range */
+        if (!(range->high - range->low > 1e-6 * reach)) return; /* uniform: default range */
         heat->low = heat->diverging ? -reach : range->low;
         heat->high = heat->diverging ? reach : range->high;
     } else if (panel->y_min == panel->y_max) {

@@ -393,8 +393,7 @@ static void panel_script(struct buffer *to, const struct plot *plot, const struc
 {
     const struct plot_panel *panel = &plot->panels[p];
     const struct layout_panel *at = &layout->panels[p];
-    bool last =
-        plot->beside || p + 1 == plot->panel_count || panel[1].own_x; /* last of its stack */
+    bool last = plot->beside || p + 1 == plot->panel_count || panel[1].own_x; /* in its stack */
     const char *ink = style_colors[STYLE_plot_ink].light;
     buffer_add(to, "\nunset arrow\nunset label\n");
     buffer_format(to, "set lmargin at screen %.5f\nset rmargin at screen %.5f\n",

@@ -70,8 +70,7 @@ static void headline(struct buffer *to, const struct tally *tally, const json_t 
     }
     buffer_format(to, "%zu %s%s%s%s", count, count == 1 ? "failure: " : "failures; look first at ",
                   plain ? "" : area, plain ? "" : " ", value_text(first, "name"));
-    if (strstr(subject, "broke down"))
-        return; /* the message has the position, but not the subject */
+    if (strstr(subject, "broke down")) return; /* it has no subject */
     enum { LONGEST = 64 };
     size_t length = strlen(subject), whole = length;
     if (length > LONGEST) /* cut at the end of a word */

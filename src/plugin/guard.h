@@ -31,7 +31,7 @@ struct guard_verdict {
     size_t printed_bytes;
 };
 
-enum { GUARD_LIMIT = 300, GUARD_CALL_LIMIT = 1 }; /* seconds: in total; CPU time per call */
+enum { GUARD_LIMIT = 300, GUARD_CALL_LIMIT = 1 }; /* seconds: total; CPU time per call */
 
 /* Runs work for at most limit seconds. If the work completed, returns its status, with its message
  * in error. Else returns STATUS_CHECK_FAILED or, if guard_begun was not called, STATUS_BAD_INPUT;

@@ -13,8 +13,7 @@ static char failure[300];
 /* Finds a function (size = 0), or copies the value of a variable of `size` bytes. */
 static void find(void *library, const char *symbol, void *result, size_t size)
 {
-    void *address = dlsym(RTLD_DEFAULT,
-                          symbol); /* a program linked with HDF5 has its own copies of variables */
+    void *address = dlsym(RTLD_DEFAULT, symbol); /* a linked program has copies of variables */
     if (!address) address = dlsym(library, symbol);
     if (!address)
         snprintf(failure, sizeof failure, "%s is not in %s", symbol, H5_SONAME);

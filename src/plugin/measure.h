@@ -48,8 +48,7 @@ struct measure_class {
         int count, k; /* their number; derivative, position and size of the largest jump */
         double at, jump;
     } accident;
-    struct measure_jump
-        jump[MEASURE_CLASS_MAX + 2]; /* of derivative k, the most significant jump */
+    struct measure_jump jump[MEASURE_CLASS_MAX + 2]; /* of derivative k, the most significant */
 };
 
 /* A jump counts if it exceeds its floor by this factor. */

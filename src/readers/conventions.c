@@ -25,8 +25,7 @@ struct near {
 struct sample {
     int dim;
     size_t n;
-    double
-        reach; /* over h: distance up to which the neighbour lists of all particles are complete */
+    double reach; /* over h: all neighbours up to here are known */
     struct near near[CONVENTIONS_SAMPLE];
 };
 

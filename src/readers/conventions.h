@@ -10,9 +10,8 @@
 #include "snapshot_file.h"
 
 enum { CONVENTIONS_SAMPLE = 60, CONVENTIONS_CANDIDATES = 24 };
-#define CONVENTIONS_BETTER 10. /* required ratio of the best other kernel's residual to the best   \
-                                */
-#define CONVENTIONS_WORST 1e-3 /* a larger residual proves nothing */
+#define CONVENTIONS_BETTER 10.  /* least ratio of another kernel's residual to the best */
+#define CONVENTIONS_WORST  1e-3 /* a larger residual proves nothing */
 
 enum density_sum {
     DENSITY_MASSES, /* rho_i = sum m_j W_ij(h_i) */

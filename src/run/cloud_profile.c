@@ -159,8 +159,7 @@ static void add_particles(const struct curve *curve, json_t *profile)
 {
     const struct run_result *result = curve->result;
     const size_t n = result->snapshot.n;
-    uint64_t chosen =
-        1; /* at random, since every k-th particle would follow the rows of a lattice */
+    uint64_t chosen = 1; /* at random: lattices have rows */
     for (size_t i = 0; i < n; i++) {
         double place[3], at, values[QUANTITIES], exact[QUANTITIES];
         chosen = chosen * 6364136223846793005u + 1442695040888963407u;

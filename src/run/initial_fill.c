@@ -29,8 +29,7 @@ static bool in_window(const void *context, const double x[3])
 enum status initial_fill_ball(const struct prepared *p, const struct settings *settings,
                               double radius, struct initial *initial, struct error *error)
 {
-    static const double parts[] = {0, 1, M_PI / 4,
-                                   M_PI / 6}; /* volume over that of the bounding box */
+    static const double parts[] = {0, 1, M_PI / 4, M_PI / 6}; /* of the bounding box */
     const int dim = p->domain.dim;
     const enum lattice kind = (enum lattice)settings_choice(settings, SETTING_lattice);
     const size_t n = (size_t)round(settings_real(settings, SETTING_n) / parts[dim]);

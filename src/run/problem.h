@@ -25,9 +25,8 @@ struct problem_state {
 struct prepared {
     const struct problem *problem;
     struct domain domain;
-    struct window
-        window;      /* region where errors are measured; its centre is the middle of the domain */
-    double boost[3]; /* added to all velocities; the solution and the window move with it */
+    struct window window; /* for errors; its centre is the middle of the domain */
+    double boost[3];      /* added to all velocities; the solution and the window move with it */
     enum boundary boundary[3];
     bool walled;       /* particles beyond a non-periodic end are not part of the gas */
     double gravity[3]; /* acceleration; prepare may set an automatic one */

@@ -13,11 +13,9 @@
 #include "regularity.h"
 
 enum { SWEEPS = 60 };
-static const double reach = 2.5; /* spacings */
-static const double
-    first_step = 0.06,
-    fading = 0.95; /* first step in spacings per unit of force, and its factor per sweep */
-static const double longest = 0.3; /* in spacings per sweep */
+static const double reach = 2.5;                      /* spacings */
+static const double first_step = 0.06, fading = 0.95; /* spacings per force; per sweep */
+static const double longest = 0.3;                    /* in spacings per sweep */
 static const double judge_eta = 3.6;
 
 /* Points and their smoothing lengths. */

@@ -64,8 +64,7 @@ static bool compare(struct comparison *of, const struct run_result *result)
             squares += (v[d] - exact_v[d]) * (v[d] - exact_v[d]);
         }
         of->place[i] = window_contains(&p->window, place) ? 0 : 2;
-        for (int d = 0; d < p->domain.dim; d++)
-            of->place[i] += 0 * x[d]; /* NaN if x is not finite */
+        for (int d = 0; d < p->domain.dim; d++) of->place[i] += 0 * x[d]; /* NaN if x is */
         of->part[i] = problem_window_part(p, s, i);
         of->jump[i] = sqrt(squares);
         if (!problem_is_circular(p)) continue;

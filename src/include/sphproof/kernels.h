@@ -21,12 +21,11 @@ struct sphproof_shape {
     double (*dw)(double q, int dim); /**< dw/dq */
     int dim;                         /**< the only valid dimension; 0: all three */
     double constant[4];              /**< C_d at index d; 0: found by quadrature */
-    const double
-        *knots;     /**< 0 < q < 1 where a derivative jumps, increasing; must outlive the kernel */
-    int knot_count; /**< number of knots; negative: not declared, found automatically */
-    int smoothness; /**< k of C^k over origin, knots and edge; negative: measured */
-    bool negative;  /**< intended to have a negative lobe */
-    bool single;    /**< computes in single precision */
+    const double *knots;             /**< ascending, 0 < q < 1; must outlive the kernel */
+    int knot_count;   /**< number of knots; negative: not declared, found automatically */
+    int smoothness;   /**< k of C^k over origin, knots and edge; negative: measured */
+    bool negative;    /**< intended to have a negative lobe */
+    bool single;      /**< computes in single precision */
     const char *name; /**< for messages; must outlive the kernel */
 };
 

@@ -159,9 +159,7 @@ static size_t left_share(const struct grading *grading, size_t n, double rho_lef
     if (grading->g == 1)
         lo = (size_t)fmin(fmax(round((double)n * fraction), 1), (double)(n - 1));
     else
-        while (
-            lo <
-            hi) { /* the left side's share of the weights increases with its number of particles */
+        while (lo < hi) { /* the left side's share rises with its number */
             const size_t middle = (lo + hi) / 2;
             const double left = grading_sum(grading, middle);
             const double right = grading_sum(grading, n - middle);
