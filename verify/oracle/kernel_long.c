@@ -9,8 +9,8 @@
 #ifdef __clang__
 #pragma clang diagnostic ignored "-Wkeyword-macro"
 #endif
-/* Not <tgmath.h>: musl's macros say double themselves. One that a kernel needs and that is not here
- * narrows its argument, which the compiler refuses. */
+/* Not <tgmath.h>, because musl's macros contain double. A function that a kernel needs and that is
+ * missing here narrows its argument, which the compiler refuses. */
 #define cbrt cbrtl
 #define cos  cosl
 #define cosh coshl

@@ -7,9 +7,9 @@
 #include "integrator.h"
 #include "oracle_parts.h"
 
-/* Has every choice of a scheme its formula here? Gradients and viscosities may join their lists
- * without one. Switches without a default: a member that joins one of those lists does not compile
- * until it is placed. (pair_width: see find_gradients.) */
+/* True if the oracle has a formula for every choice of a scheme. Gradients and viscosities may join
+ * their lists without one. The switches have no default, so that a new member of those lists does
+ * not compile until it is handled. (pair_width: see find_gradients.) */
 bool oracle_covers(const struct scheme *scheme)
 {
     switch (scheme->gradient) {
@@ -74,7 +74,7 @@ enum status oracle_create(struct oracle *oracle, const struct setup *setup, stru
         return error_set(error, STATUS_BAD_INPUT, "oracle: it has no formula for this scheme");
     *oracle = (struct oracle){
         .scheme = setup->scheme, .dim = setup->dim, .gamma = setup->gamma, .n = setup->n};
-    long double share = 1; /* of the box, a particle's */
+    long double share = 1; /* the box's volume, then the mean spacing */
     for (int k = 0; k < setup->dim; k++) {
         oracle->lo[k] = setup->lo[k];
         oracle->period[k] = (long double)setup->hi[k] - setup->lo[k];
@@ -116,8 +116,8 @@ void oracle_free(struct oracle *oracle)
     oracle->distance = NULL;
 }
 
-/* The sums of particle i at width h: y, and what h follows, in units of a density (mass; with the
- * number element m_i n_i); with their derivatives in h. */
+/* Sums of particle i at smoothing length h: rho, and y, which h follows, in units of a density
+ * (mass; with the number element m_i n_i); and their derivatives in h. */
 struct sums {
     long double rho, drho, y, dy;
 };
@@ -184,9 +184,9 @@ static enum status solve_h(struct oracle *oracle, size_t i, struct error *error)
     return error_set(error, STATUS_BROKE_DOWN, "oracle: particle %zu has no smoothing length", i);
 }
 
-/* h_method predicted: one sum at 1/h extrapolated from the last two, by a quarter at most; a
- * Newton step from it for the next. The sums and gradients keep that width, h itself is what the
- * sum asks for. */
+/* h_method predicted: one sum at 1/h extrapolated from the last two, by a quarter at most, then a
+ * Newton step for the next. The sums and gradients keep the predicted width; h itself follows from
+ * the density sum. */
 static void predict_h(struct oracle *oracle, size_t i)
 {
     struct oracle_particle *a = &oracle->particles[i];
@@ -204,7 +204,7 @@ static void predict_h(struct oracle *oracle, size_t i)
     a->found = fminl(fmaxl(a->found, next / 2), next * 2);
 }
 
-/* The pressure follows a volume that was predicted wrong. */
+/* Corrects the pressure for the error of the predicted volume. */
 static long double follow(const struct oracle *oracle, const struct oracle_particle *a)
 {
     const long double weight = oracle->scheme.integrator->follow * (oracle->gamma - 1);
@@ -298,7 +298,7 @@ static void find_rates(struct oracle *oracle, size_t i)
                     : 0;
 }
 
-/* Of a first state, closed: potentials by eight evaluations, each no longer than 1/(20 h). */
+/* Iterates the potentials of a first state by eight evaluations, each no longer than 1/(20 h). */
 static void find_potentials(struct oracle *oracle)
 {
     for (size_t i = 0; i < oracle->n; i++)

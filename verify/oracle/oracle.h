@@ -24,22 +24,21 @@ struct oracle_particle {
     long double grad_h_rho, grad_h_y; /* h/(d rho_sum) times d rho_sum/dh, dy/dh */
     struct oracle_matrix C;           /* inverse of the moments of the gradient in use */
     long double condition;            /* of those moments, in the 2-norm; standard: 0 */
-    bool ill;                         /* beyond the bound: pairs use the standard gradient */
-    long double steep;                /* blended: the standard gradient's share */
-    struct oracle_matrix L;           /* linear_exact gradient of v: d v_a/d x_b at [a][b] */
-    struct oracle_matrix projector;   /* onto the direction of the local shear */
+    bool ill;                       /* condition above the bound: pairs use the standard gradient */
+    long double steep;              /* blended: the standard gradient's share */
+    struct oracle_matrix L;         /* linear_exact gradient of v: d v_a/d x_b at [a][b] */
+    struct oracle_matrix projector; /* onto the direction of the local shear */
     long double balsara;
     struct oracle_matrix slope_C;   /* inverse of the moments of L; 0 where they are ill */
-    long double alpha_local, decay; /* of the switch: what alpha tends to, and its rate */
+    long double alpha_local, decay; /* of the switch: target of alpha, and decay rate */
     /* rates dp/dt, dU/dt, d(e)/dt, dalpha/dt; divergence of v; signal speed */
     oracle_vector F;
     long double dU, de, dalpha, div_v, signal;
-    /* particle shifting: velocity relative to the flow, and rates of the exchange, in none of the
-     * above
-     */
+    /* particle shifting: velocity relative to the flow, and rates of the exchange, which the rates
+     * above do not include */
     oracle_vector shift, potential, of_one, dp_shift;
     long double dm, de_shift;
-    size_t neighbours; /* others with r < h */
+    size_t neighbours; /* other particles with r < h */
 };
 
 struct oracle {
@@ -48,15 +47,17 @@ struct oracle {
     int dim;
     oracle_vector lo, period;
     long double gamma, time;
-    bool without_grad_h;        /* wrong on purpose: set after oracle_create */
-    long double last_dt, ahead; /* h_method predicted: by how many last changes of 1/h */
+    bool without_grad_h; /* deliberately wrong; set after oracle_create */
+    long double last_dt,
+        ahead; /* h_method predicted: number of last changes of 1/h to extrapolate */
     size_t n, steps;
     struct oracle_particle *particles; /* in the setup's order */
     struct oracle_particle *start;     /* n, workspace of the integrators */
-    long double *distance;             /* n n 3: of each pair and image, of the last evaluation */
+    long double *distance;             /* n n 3: of each pair and image, from the last evaluation */
 };
 
-/* The oracle must stay where it is. STATUS_ENVIRONMENT: no memory. Free with oracle_free. */
+/* Creates an oracle, which must not move in memory. STATUS_ENVIRONMENT: no memory. Free with
+ * oracle_free. */
 enum status oracle_create(struct oracle *oracle, const struct setup *setup, struct error *error);
 void oracle_free(struct oracle *oracle);
 
@@ -69,15 +70,15 @@ void oracle_signals(struct oracle *oracle);
 /* The time step of the present signal speeds. */
 long double oracle_time_step(const struct oracle *oracle);
 
-/* Is everything that an evaluation with this scheme asks for written here a second time; the steps
- * of this integrator? */
+/* True if the oracle has its own implementation of everything that an evaluation with this scheme
+ * needs; of the steps of this integrator. */
 bool oracle_covers(const struct scheme *scheme);
 bool oracle_covers_step(const struct integrator *integrator);
 
-/* Advances by dt; rates must be there, and are when it returns. STATUS_BAD_INPUT: an integrator
- * that the oracle does not know. */
+/* Advances by dt; needs rates and leaves those of the new state. STATUS_BAD_INPUT: an unknown
+ * integrator. */
 enum status oracle_step(struct oracle *oracle, long double dt, struct error *error);
 
-/* Steps to t_end; oracle_evaluate is called first, and last where a step does not end with it: the
- * derived fields are those of the state at t_end. */
+/* Evaluates, steps to t_end, and evaluates again if the last step does not end with it: the derived
+ * fields belong to the state at t_end. */
 enum status oracle_run(struct oracle *oracle, long double t_end, struct error *error);

@@ -10,12 +10,13 @@ struct oracle_kernel {
     long double (*w)(int parameter, long double q);
     long double (*dw)(int parameter, long double q);
     int dim;
-    int parameter;               /* of a spline: its M_n; of sinc_n: n; of Wendland's: the power */
-    const struct kernel *source; /* of a kernel that the oracle does not know: itself; else NULL */
+    int parameter;               /* n of a spline M_n or of sinc_n; power of a Wendland kernel */
+    const struct kernel *source; /* a kernel that the oracle does not know; else NULL */
 };
 
-/* The kernel in dim dimensions, by its name. One that the oracle does not know, such as a new one,
- * is taken as it is: then the sums are judged, not the kernel (group kernels does that). */
+/* Finds the kernel in dim dimensions by its name. A kernel that the oracle does not know, such as a
+ * new one, is used itself: then only the sums are judged, and the group kernels judges the
+ * kernel. */
 struct oracle_kernel oracle_kernel_find(const struct kernel *source, int dim);
 
 /* w and dw/dq at q >= 0. */

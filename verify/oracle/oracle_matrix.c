@@ -38,7 +38,7 @@ static long double condition_of(int dim, struct oracle_matrix A)
     return low > 0 ? high / low : INFINITY;
 }
 
-/* By the adjugate; rows and columns beyond dim are those of the unit matrix. */
+/* Inverse by the adjugate; rows and columns beyond dim are those of the unit matrix. */
 static struct oracle_matrix invert(int dim, struct oracle_matrix A)
 {
     struct oracle_matrix inverse;
@@ -116,7 +116,7 @@ long double oracle_weight(const struct oracle *oracle, long double r, long doubl
                                                          : oracle_W(oracle, r, h);
 }
 
-/* Whether the scheme asks for gradients of the velocity. */
+/* True if the scheme needs velocity gradients. */
 static bool needs_slope(const struct scheme *scheme)
 {
     return scheme->balsara == BALSARA_ON || scheme->viscosity == VISCOSITY_RECONSTRUCTED ||
@@ -157,7 +157,7 @@ static void find_steep(const struct oracle *oracle, size_t i)
     a->steep = t <= 0 ? 0 : t >= 1 ? 1 : 3 * t * t - 2 * t * t * t;
 }
 
-/* -0.12 eta h c sum_j V_j C_i x weight, no longer than c/10; none where the matrix is ill. */
+/* -0.12 eta h c sum_j V_j C_i x weight, limited to c/10; 0 if the matrix is ill-conditioned. */
 static void find_shift(const struct oracle *oracle, size_t i)
 {
     struct oracle_particle *a = &oracle->particles[i];

@@ -7,7 +7,8 @@
 
 #include "oracle.h"
 
-/* What every pair asks for stands here, for it to be inlined: a third of the oracle's time. */
+/* Functions that every pair calls are here to be inlined: they take a third of the oracle's
+ * time. */
 static inline long double oracle_dot(const oracle_vector a, const oracle_vector b)
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -19,7 +20,7 @@ static inline void oracle_product(const struct oracle_matrix *A, const oracle_ve
     for (int a = 0; a < 3; a++) Ax[a] = oracle_dot(A->row[a], x);
 }
 
-/* In 1D h may be wider than half of the box: the images -1, 0, 1 about the nearest one count. */
+/* In 1D h may exceed half of the box: the images -1, 0, 1 about the nearest one count. */
 static inline int oracle_images(const struct oracle *oracle)
 {
     return oracle->dim == 1 ? 1 : 0;
@@ -40,7 +41,7 @@ static inline long double oracle_separation(const struct oracle *oracle,
     return sqrtl(oracle_dot(x, x));
 }
 
-/* The same length of particles i and j, as oracle_find_distances found it at the start of the
+/* The same length for particles i and j, which oracle_find_distances computed at the start of the
  * evaluation. */
 void oracle_find_distances(struct oracle *oracle);
 static inline long double *oracle_distance_at(const struct oracle *oracle, size_t i, size_t j,

@@ -8,7 +8,8 @@
 #include "integrator.h"
 #include "oracle_parts.h"
 
-/* result = a + rates * dt, rates being those now in the particles; a, result may be them. */
+/* result = a + rates * dt with the rates now in the particles; a and result may be the particles
+ * themselves. */
 static void advance(struct oracle *oracle, const struct oracle_particle *a, long double dt)
 {
     for (size_t i = 0; i < oracle->n; i++) {
@@ -42,8 +43,8 @@ static void mix(struct oracle *oracle, long double weight)
     }
 }
 
-/* Kick half a step, drift a step with the kicked velocity, evaluate with everything else predicted
- * to the end of the step, kick the half-kicked values half a step. */
+/* Kicks half a step, drifts a step with the kicked velocity, evaluates with everything else
+ * predicted to the end of the step, and kicks the half-kicked values half a step. */
 static enum status leapfrog(struct oracle *oracle, long double dt, struct error *error)
 {
     struct oracle_particle *half = oracle->start;
@@ -71,7 +72,8 @@ static enum status leapfrog(struct oracle *oracle, long double dt, struct error 
     return status;
 }
 
-/* The leapfrog's rates stay those of the predicted end; here they become those of the end. */
+/* The leapfrog keeps the rates of the predicted end; this integrator replaces them by those of the
+ * end. */
 static enum status modified_leapfrog(struct oracle *oracle, long double dt, struct error *error)
 {
     const enum status status = leapfrog(oracle, dt, error);
@@ -191,7 +193,7 @@ enum status oracle_step(struct oracle *oracle, long double dt, struct error *err
     if (!step)
         return error_set(error, STATUS_BAD_INPUT, "oracle: no integrator %s",
                          oracle->scheme.integrator->member.name);
-    /* density sums stand in the middle of the steps */
+    /* density sums are made in the middle of the steps */
     oracle->ahead = oracle->last_dt > 0 ? (oracle->last_dt + dt) / (2 * oracle->last_dt) : 0;
     oracle->last_dt = dt;
     const enum status status = step(oracle, dt, error);
@@ -211,7 +213,7 @@ long double oracle_time_step(const struct oracle *oracle)
     return oracle->scheme.cfl * least;
 }
 
-/* The first step: a part of that, and not longer than accelerations allow. */
+/* The first step: a fraction of the time step, limited by accelerations. */
 static long double first_step(const struct oracle *oracle)
 {
     const double part = oracle->scheme.integrator->first_step;
@@ -224,7 +226,7 @@ static long double first_step(const struct oracle *oracle)
     return dt;
 }
 
-/* Where the last evaluation was not of the end: its density, pressure and h, by Newton's method. */
+/* If the last evaluation was not at the end: density, pressure and h there, by Newton's method. */
 static enum status find_end(struct oracle *oracle, struct error *error)
 {
     const enum h_method method = oracle->scheme.h_method;

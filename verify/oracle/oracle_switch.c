@@ -9,7 +9,7 @@ static long double trace(const struct oracle_matrix *A)
     return A->row[0][0] + A->row[1][1] + A->row[2][2];
 }
 
-/* What the sums over a particle's neighbours, itself included, come to. */
+/* Sums over a particle's neighbours and itself. */
 struct switch_sums {
     long double R, div_a, v_sig;
 };
@@ -60,7 +60,7 @@ void oracle_find_switch(struct oracle *oracle)
     }
 }
 
-/* Up at once, down with the rate 1/tau, by an implicit step. */
+/* alpha rises at once and decays at the rate 1/tau, by an implicit step. */
 void oracle_apply_switch(struct oracle *oracle, long double dt)
 {
     for (size_t i = 0; i < oracle->n; i++) {

@@ -40,7 +40,7 @@ static enum status broke_down(const struct plain *plain, ptrdiff_t i, const char
                      value);
 }
 
-/* Wraps, sorts by insertion (particles hardly ever cross), copies the images. */
+/* Wraps positions, sorts by insertion (particles hardly ever cross) and copies the images. */
 static enum status arrange(struct plain *plain, struct error *error)
 {
     struct plain_particle *a = plain->particles;
@@ -65,7 +65,7 @@ static enum status arrange(struct plain *plain, struct error *error)
     return STATUS_OK;
 }
 
-/* rho and drho/dh at width h; notes the neighbours. */
+/* Sums rho and drho/dh at width h and stores the range of neighbours. */
 static void sum_density(struct plain *plain, ptrdiff_t i, double h, double *rho, double *drho)
 {
     struct plain_particle *all = plain->particles, *a = &all[i];
@@ -90,7 +90,7 @@ static void sum_density(struct plain *plain, ptrdiff_t i, double h, double *rho,
     *drho = -C_1 * h_inverse * h_inverse * (sum + sum_slope);
 }
 
-/* h = eta m/rho(h): h rho(h) rises with h, so a bracket catches what Newton misses. */
+/* Solves h = eta m/rho(h): h rho(h) rises with h, so a bracket secures Newton's method. */
 static enum status find_density(struct plain *plain, ptrdiff_t i, struct error *error)
 {
     struct plain_particle *a = &plain->particles[i];
@@ -115,7 +115,7 @@ static enum status find_density(struct plain *plain, ptrdiff_t i, struct error *
     return broke_down(plain, i, "smoothing length (no root was found)", h, error);
 }
 
-/* Neighbours within the wider of both: those that see i, besides those that i sees. */
+/* Extends the neighbours of i to those within the larger of both smoothing lengths. */
 static void find_pairs(struct plain *plain)
 {
     struct plain_particle *a = plain->particles;
@@ -128,7 +128,8 @@ static void find_pairs(struct plain *plain)
         }
 }
 
-/* The neighbours of an image are the images of its original's, as far as there are any. */
+/* Copies the state to the images; their neighbours are the images of the original's, as far as
+ * these exist. */
 static void copy_state(struct plain *plain)
 {
     struct plain_particle *a = plain->particles;
@@ -197,7 +198,8 @@ static enum status evaluate(struct plain *plain, struct error *error)
     return STATUS_OK;
 }
 
-/* Kick-drift-kick with all else predicted to the end of the step, and rates of its own state. */
+/* Kick-drift-kick with the other variables predicted to the end of the step, and rates of the final
+ * state. */
 static enum status step(struct plain *plain, double dt, struct error *error)
 {
     struct plain_particle *a = plain->particles;

@@ -10,7 +10,7 @@
 struct plain_particle;
 
 struct plain {
-    struct plain_particle *all, *particles; /* with images at both ends, without */
+    struct plain_particle *all, *particles; /* with images at both ends; without */
     double *arrays;                         /* of the snapshot */
     size_t n, ghosts;
     double lo, period, gamma, time, time_step;

@@ -10,8 +10,8 @@
 #include "initial.h"
 #include "rate_table.h"
 
-/* Of a displacement, in spacings: differences of forces lose 1e-12/STEP to round-off and STEP^2 to
- * what is not linear. */
+/* A displacement in spacings: differences of forces lose 1e-12/STEP to round-off and STEP^2 to
+ * nonlinearity. */
 static const double step = 1e-5;
 
 enum status lattice_waves_begin(struct lattice_waves *lattice, const struct run_settings *settings,
@@ -38,9 +38,9 @@ void lattice_waves_free(struct lattice_waves *lattice)
     initial_free(&lattice->at_rest);
 }
 
-/* A copy of the lattice, displaced along `axis` by `shift` times the wave, moving so with `speed`
- * times it, with internal energies changed by `heat` times the power of that motion; evaluated.
- * wave: n values; power: n, or NULL. */
+/* Evaluates a copy of the lattice, displaced along `axis` by `shift` times the wave, moving with
+ * `speed` times the wave, and with internal energies changed by `heat` times the power of that
+ * motion. wave: n values; power: n, or NULL. */
 struct disturbed {
     int axis;
     double shift, speed, heat;

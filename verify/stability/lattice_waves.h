@@ -17,7 +17,8 @@ struct lattice_waves {
     double spacing, c; /* (box/n)^(1/d), sound speed: the units of growth are c/spacing */
 };
 
-/* STATUS_BAD_INPUT: settings of no such lattice. Free with lattice_waves_free, also then. */
+/* STATUS_BAD_INPUT: the settings have no such lattice. Call lattice_waves_free even after a
+ * failure. */
 enum status lattice_waves_begin(struct lattice_waves *lattice, const struct run_settings *settings,
                                 struct error *error);
 void lattice_waves_free(struct lattice_waves *lattice);
@@ -30,7 +31,7 @@ struct lattice_wave {
 enum status lattice_waves_at(const struct lattice_waves *lattice, const int whole[3],
                              struct lattice_wave *wave, struct error *error);
 
-/* The worst of all waves that the box holds (of square and cubic lattices those that symmetry tells
- * apart): growth and frequency each over all of them; *where: of the fastest growth. */
+/* The worst of all waves in the box (for square and cubic lattices of one of each symmetric set):
+ * growth and frequency each over all of them; *where: of the fastest growth. */
 enum status lattice_waves_worst(const struct lattice_waves *lattice, struct lattice_wave *worst,
                                 int where[3], struct error *error);

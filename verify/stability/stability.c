@@ -17,7 +17,7 @@ static const double growth_floor = 1e-6; /* growth below it is round-off of a st
 
 /* --- the kernel's derivatives on the lattice -------------------------------------------------- */
 
-/* w''(q) from inside its piece; at a knot the mean of both sides. */
+/* w''(q) within its piece; at a knot the mean of both sides. */
 static double curvature(const struct pieces *pieces, double q)
 {
     double floor, below = 0, above = 1;
@@ -106,15 +106,16 @@ enum status stability_begin(struct stability *lattice, const struct scheme *sche
     return STATUS_OK;
 }
 
-/* --- variation of everything that a state implies --------------------------------------------- */
+/* --- variation of all quantities that depend on the state
+ * --------------------------------------- */
 
-/* From one particle to its neighbour. */
+/* Phase factor between neighbouring particles. */
 static double complex phase(double angle)
 {
     return cos(angle) + (double complex)I * sin(angle);
 }
 
-/* Amplitudes given, and what follows from them. */
+/* The given amplitudes, and those that follow from them. */
 struct wave {
     double complex x, v, u, h;
     double complex rho, rho_h, y, y_h, V, P, C, factor;

@@ -20,12 +20,12 @@ struct stability_pair {
 struct stability {
     struct scheme scheme;
     double gamma, h, rho, u, P;
-    double approaching; /* share of the pairs that viscosity acts on: 1/2 in the mean */
+    double approaching; /* fraction of pairs on which viscosity acts: 1/2 on average */
     int reach;
     struct stability_pair pair[STABILITY_REACH_MAX + 1]; /* at offsets 0 .. reach */
 };
 
-/* Is there a theory of this gradient? */
+/* True if the theory covers this gradient. */
 bool stability_covers(enum gradient gradient);
 
 /* The lattice of a scheme; pair_width max is linearised as mean (it has no derivative). Viscosity
@@ -34,9 +34,9 @@ bool stability_covers(enum gradient gradient);
 enum status stability_begin(struct stability *lattice, const struct scheme *scheme, double gamma,
                             struct error *error);
 
-/* What a wave x = X cos, v = V cos, U = U0 + E sin, h = h0 + H sin (of kappa j) does: dV/dt =
+/* Response to a wave x = X cos, v = V cos, U = U0 + E sin, h = h0 + H sin (of kappa j): dV/dt =
  * force_x X + force_v V + force_u E + force_h H, dE/dt = energy_v V; the density sum at these
- * widths asks for 1/h = 1/h0 + (found_x X + found_h H) sin. */
+ * widths gives 1/h = 1/h0 + (found_x X + found_h H) sin. */
 struct stability_response {
     double force_x, force_v, force_u, force_h, energy_v, found_x, found_h;
 };
@@ -53,7 +53,7 @@ void stability_rates(const struct stability *lattice, double kappa, struct stabi
  * frequency (may be NULL): |Im|, the sound wave's omega. */
 double stability_growth(const struct stability *lattice, double kappa, double *frequency);
 
-/* The fastest growth over all waves; kappa (may be NULL): where. */
+/* The fastest growth over all waves; kappa (may be NULL): its wavenumber. */
 double stability_worst(const struct stability *lattice, double *kappa);
 
 /* Stable intervals of eta between the existence limit of h and `to`, in rising order, at most max;
@@ -64,8 +64,8 @@ struct stability_interval {
 int stability_intervals(const struct scheme *scheme, double gamma, double to,
                         struct stability_interval *intervals, int max);
 
-/* Whether the steps of this integrator are written here too; the three functions below give NaN,
- * NaN and 0 for others. */
+/* True if the theory has the steps of this integrator; the three functions below return NaN, NaN
+ * and 0 for others. */
 bool stability_knows(const struct integrator *integrator);
 
 /* Displacement and velocity of a wave after `count` steps dt of the scheme's integrator, from X = 1
@@ -73,8 +73,8 @@ bool stability_knows(const struct integrator *integrator);
 void stability_follow(const struct stability *lattice, double kappa, double dt, int count,
                       double *x, double *v);
 
-/* Largest |eigenvalue| of one time step dt over all waves: the integrator of the scheme with all
- * that it keeps from step to step (old rates, predicted widths). */
+/* Largest |eigenvalue| of one time step dt over all waves: the scheme's integrator with all its
+ * memory (old rates, predicted widths). */
 double stability_amplification(const struct stability *lattice, double dt);
 
 /* The largest stable c dt/dx, searched up to `to`. */

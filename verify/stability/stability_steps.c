@@ -19,8 +19,8 @@ struct wave_step {
     struct stability_response r;
     double h, dt, s[STATES];
     bool predicted;
-    double follow; /* dU for a volume that was predicted wrong, over h times the error of 1/h */
-    double ratio;  /* how far the next width is extrapolated: 1; 0 in the first step */
+    double follow; /* dU per error of the predicted volume: over h times the error of 1/h */
+    double ratio;  /* extrapolation of the next width: 1; 0 in the first step */
 };
 
 static void evaluate(struct wave_step *w)
@@ -177,7 +177,7 @@ void stability_follow(const struct stability *lattice, double kappa, double dt, 
     void (*step)(struct wave_step *) = find_step(lattice);
     stability_response(lattice, kappa, &w.r);
     w.s[X] = 1;
-    /* the first density sum solves for h, as if it had been predicted right */
+    /* the first density sum solves for h, as if the prediction were exact */
     w.s[FOUND] = w.s[LAST] = w.r.found_x / (1 + w.h * w.h * w.r.found_h);
     w.predicted = false;
     evaluate(&w);

@@ -10,7 +10,8 @@
 #include "stress_part.h"
 
 enum { STEPS_QUICK = 30000, STEPS_NIGHTLY = 3000000 };
-/* Steps times n^2, which is what they cost where few particles see all: about a minute. */
+/* Budget of steps times n^2, proportional to the cost if few particles interact with all: about a
+ * minute. */
 static const double work_nightly = 1e11;
 
 /* --- the cells -------------------------------------------------------------------------------- */
@@ -240,7 +241,7 @@ static json_t *column_labels(const struct stress_group *group, bool nightly)
     return list;
 }
 
-/* What the number of a cell is. */
+/* The quantity of a cell's number. */
 static const char *number_of(enum stress_kind kind)
 {
     switch (kind) {

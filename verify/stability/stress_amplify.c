@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define MOVED "1e-13" /* of the spacing: a little more than what positions are rounded by */
+#define MOVED "1e-13" /* in spacings: slightly more than the rounding of positions */
 
 static enum status run_cell(const struct stress_cell *cell, const char *jitter,
                             struct run_result *result, struct error *error)
@@ -37,7 +37,7 @@ static double change(const struct run_result *a, const struct run_result *b, enu
     return most;
 }
 
-/* The growth of the change, and where it is; both runs must end. */
+/* The growth of the change and its field; both runs must finish. */
 static enum status measure(const struct stress_cell *cell, double *grown, enum field *of,
                            struct error *error)
 {

@@ -10,7 +10,7 @@
 #include "lattice_waves.h"
 #include "problem_list.h"
 
-/* ---- columns: the cases that there are ---- */
+/* ---- columns: the available cases ---- */
 
 enum { CASES_MAX = 64, KEYS = 64, USUAL = 1000, SMALL = 3000 };
 
@@ -59,7 +59,7 @@ static double nearest(const struct run_result *result, size_t i)
     return sqrt(least);
 }
 
-/* Share of the particles whose next neighbour is nearer than half the spacing there. */
+/* Fraction of particles whose nearest neighbour is closer than half the local spacing. */
 static double paired(const struct run_result *result)
 {
     const struct snapshot *s = &result->snapshot;
@@ -95,7 +95,7 @@ static json_t *judge(const struct stress_cell *cell, const struct run_result *re
 
 /* ---- lattices ---- */
 
-/* Slower than this is not seen in a noise run that quick. */
+/* Slower growth does not show in so short a noise run. */
 const double stress_cloud_slowest = 0.02;
 
 static enum status lattice_worst(const struct stress_cell *cell, struct lattice_wave *worst,
@@ -142,9 +142,9 @@ static enum status growth(const struct stress_cell *cell, json_t **document, str
     return STATUS_OK;
 }
 
-/* Leapfrog's limit is 2/omega where forces follow from places alone. That is so without viscosity
- * and with gamma next to 1: else energies that are predicted with velocities let noise grow at a
- * third of that step. What these, or another integrator, make of it is measured. */
+/* Leapfrog's limit is 2/omega if forces depend on positions alone: without viscosity and with gamma
+ * close to 1. Otherwise energies predicted with velocities let noise grow at a third of that step.
+ * Noise runs measure the limits of all other schemes. */
 static enum status time_step(const struct stress_cell *cell, json_t **document, struct error *error)
 {
     enum { BISECTIONS = 6 };

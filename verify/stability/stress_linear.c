@@ -40,7 +40,7 @@ static json_t *limit(const struct stress_cell *cell, const struct scheme *scheme
         return stress_outcome((double)NAN, grows ? ETA_MAX : (double)NAN,
                               grows ? "inaccurate" : "ok", reason);
     }
-    /* beyond the limit, but not in the next stable interval; long enough for the growth there */
+    /* beyond the limit but before the next stable interval, for long enough to show the growth */
     const double next = count > 1 ? stable[1].from : ETA_MAX;
     const double beyond = fmin(1.05 * predicted, 0.5 * (predicted + next));
     const double theory = growth_at(scheme, gamma, beyond), half = 5 / theory;
@@ -68,9 +68,9 @@ static json_t *limit(const struct stress_cell *cell, const struct scheme *scheme
 
 /* --- largest time steps ----------------------------------------------------------------------- */
 
-/* Viscosity acts on approaching pairs: on half of those of noise at rest, which is what the cells
- * measure. A sound wave switches it off where gas expands, and rk2 and vl2, which live on it
- * (without, their longest stable step is near zero), then get less far. Measured as the step at
+/* Viscosity acts on approaching pairs: on half of those in noise at rest, which the cells measure.
+ * A sound wave switches it off in expanding gas, where rk2 and vl2, which need it (without it their
+ * longest stable step is near zero), are stable only for shorter steps. Measured as the step at
  * which the velocity error is 1.5 times that of short steps (amplitude 1e-4, 64 particles, t = 10),
  * eta 2 and 4.8: rk2 0.49, 1.65; vl2 0.50, 1.64; rk3 0.93, 3.06; leapfrog 0.50, 1.57;
  * modified_leapfrog 0.75, 2.21. Noise at rest, by theory: rk2 0.59, 1.79. */

@@ -24,7 +24,7 @@ double stress_noise_after(struct run_settings settings, double time)
     const double spacing =
         pow(settings_real(&settings.settings, SETTING_n), -1. / settings.file.dimension);
     stress_noise_set(&settings, SETTING_t_end, time / c * spacing);
-    /* time steps that collapse are growth, too */
+    /* collapsing time steps count as growth */
     double budget = 500 + 8 * time;
     settings.progress = within_budget;
     settings.progress_context = &budget;
@@ -37,9 +37,9 @@ double stress_noise_after(struct run_settings settings, double time)
     return noise;
 }
 
-enum { EARLY = 20 }; /* spacings/c: the noise has found its balance of motion and pressure */
+enum { EARLY = 20 }; /* spacings/c, until motion and pressure of the noise balance */
 
-/* From a jitter of 1e-6: it has grown already, and may not double again. */
+/* Noise from a jitter of 1e-6 above this has already grown and need not double again. */
 static const double much = 1e-3;
 
 bool stress_noise_grows(const struct run_settings *settings, double time)

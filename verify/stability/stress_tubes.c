@@ -14,8 +14,8 @@ static double log_uniform(gsl_rng *rng, double low, double high)
     return low * pow(high / low, gsl_rng_uniform(rng));
 }
 
-/* How long the window is free of the tube that the ends of the periodic box hold, whose waves run
- * half a unit of length to it; on the safe side where they meet others on their way. */
+/* Time until waves from the tube at the ends of the periodic box, which travel half a unit of
+ * length, reach the window; a lower limit if they meet others. */
 static double free_time(const struct riemann_state *left, const struct riemann_state *right)
 {
     struct riemann_solution tube, mirror;
@@ -33,7 +33,7 @@ static double draw_state(gsl_rng *rng, double rho, double P, struct riemann_stat
     return c;
 }
 
-/* A tube that keeps the window free; false: another one, please. */
+/* Draws a tube; false if waves would reach its window. */
 static bool draw(gsl_rng *rng, char keys[KEYS])
 {
     struct riemann_state left, right;

@@ -15,11 +15,11 @@ struct check_run; /* collects the subjects and figures of one check; see check_r
 void check_measure(struct check_run *run, double value, double bound, double floor,
                    const char *subject, ...) __attribute__((format(printf, 5, 6)));
 
-/* The figure could not be measured here, and why; neither passes nor fails. */
+/* Notes why the figure could not be measured; it neither passes nor fails. */
 void check_skip(struct check_run *run, const char *why, ...) __attribute__((format(printf, 2, 3)));
 
-/* Adds a right subject. size: the check is given a copy of so many bytes; 0: the subject itself,
- * which outlives the suite. */
+/* Adds a right subject. size: bytes to copy for the check; 0: the subject itself, which must
+ * outlive the suite. */
 void check_subject(struct check_run *run, const void *subject, size_t size);
 
 /* True once a mutant has been rejected: long loops over subjects may stop there. Never true for a
@@ -37,26 +37,26 @@ extern const struct user_figures *check_kernel_plugin;
 struct check_mutant {
     const char *name;    /* distinct over the program */
     const char *fault;   /* one line: what is wrong with it */
-    const void *subject; /* what the check gets instead of a right one */
+    const void *subject; /* replaces a right subject */
 };
 
 struct check {
     const char *group; /* kernels gradients conservation riemann exact hydro norms ... */
     const char *name;
-    /* Of several checks that fail the one of least rank names the cause, and is told first: 100 and
-     * more for kernels, 200 gradients, 300 conservation, 400 riemann, 500 exact, 600 norms, 700
+    /* Of several failed checks the one of least rank names the cause and is reported first: from
+     * 100 for kernels, 200 gradients, 300 conservation, 400 riemann, 500 exact, 600 norms, 700
      * hydro, 800 clouds, 900 stability; in each group +0 to +49 for checks of one formula, +50 for
-     * those that follow from several. From 1000 on stands what is no check (see findings.h). */
+     * those that follow from several. Ranks from 1000 on are no checks (see findings.h). */
     int rank;
-    const char *says;     /* of what fails it; NULL: that its name is off, and by how much */
-    const char *property; /* one line, a formula where it helps */
+    const char *says;     /* message of a failure; NULL: "NAME off by VALUE" */
+    const char *property; /* one line, with a formula if it helps */
     bool slow;            /* not in the quick suite */
-    double cost; /* seconds that it takes with its mutants, about: shares are even by it; 0: few */
+    double cost; /* estimated seconds including mutants, by which shares are balanced; 0: few */
     /* Adds the right subjects, in order. NULL: measure is called once, with NULL as the right one.
      */
     void (*subjects)(struct check_run *run);
-    /* Measures at least one figure on a subject, or says why not (check_skip): one that does
-     * neither is a failure, and so is a check that has skipped everything. */
+    /* Measures at least one figure on a subject, or gives the reason (check_skip). A check that
+     * does neither, or that skips everything, fails. */
     void (*measure)(struct check_run *run, const void *subject);
     const struct check_mutant *mutants; /* ends with a NULL name; must not be empty */
 };

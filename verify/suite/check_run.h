@@ -4,7 +4,7 @@
 
 #include "suite.h"
 
-/* A right subject; copy: where it is the run's own. */
+/* A right subject; copy: set if the run owns it. */
 struct subject {
     const void *given;
     void *copy;

@@ -28,7 +28,7 @@ static void member_of(const char *subject, char member[MEMBER_LENGTH])
     member[length] = '\0';
 }
 
-/* What stands behind the member in a subject. */
+/* The part of a subject after the member. */
 static const char *place_of(const char *subject)
 {
     const char *place = subject + strcspn(subject, ",:");
@@ -71,8 +71,8 @@ static void say(const struct cause *cause, char *text, size_t size)
         snprintf(text, size, "%s off by %.2g", cause->check->name, cause->worst->value);
 }
 
-/* Of causes[0..count-1], in order, those of the member of causes[first]; the others were or will be
- * told on their own. */
+/* The headline of the member of causes[first], from its entries in causes[0..count-1]; other
+ * members have headlines of their own. */
 static json_t *headline(const struct cause *causes, size_t count, size_t first)
 {
     const struct cause *main = &causes[first];
@@ -87,7 +87,7 @@ static json_t *headline(const struct cause *causes, size_t count, size_t first)
         if (strcmp(cause->member, main->member) != 0) continue;
         figures += cause->figures;
         if (i != first) json_array_append_new(also, json_string(cause->check->name));
-        if (said >= 2) continue; /* the first failure, and one more figure beside it */
+        if (said >= 2) continue; /* the first failure and one more figure */
         const size_t used = strlen(text);
         say(cause, part, sizeof part);
         snprintf(text + used, sizeof text - used, "%s%s", said ? "; " : "", part);

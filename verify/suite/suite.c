@@ -30,7 +30,7 @@ void suite_free(struct suite *suite)
     *suite = (struct suite){0};
 }
 
-/* Moves the run's figures into the suite, and its series where one failed. */
+/* Moves the run's figures into the suite, and its series if a figure failed. */
 static bool take_figures(struct suite *suite, struct check_run *run)
 {
     size_t failed = 0;
@@ -57,7 +57,7 @@ static void free_run(struct check_run *run)
     free_series(run->series, run->series_count);
 }
 
-/* What has compared nothing has not passed. */
+/* Fails a run without any measured figure. */
 static void refuse_silence(struct check_run *run)
 {
     size_t measured = 0;
@@ -171,7 +171,7 @@ bool suite_names(const char *name, const struct check *check)
 
 double suite_cost(const struct check *check)
 {
-    const double few = 0.03; /* of one that does not say what it costs */
+    const double few = 0.03; /* for a check without a cost */
     return check->cost > 0 ? check->cost : few;
 }
 

@@ -26,7 +26,7 @@ struct series {
 struct mutant_outcome {
     const struct check *check;
     const struct check_mutant *mutant;
-    double value, bound; /* of the figure that fails most clearly, else of the largest; NaN: none */
+    double value, bound; /* of the clearest failure, else of the largest figure; NaN: none */
     bool detected;
 };
 
@@ -36,7 +36,8 @@ struct suite {
     struct series *series;           /* of failing checks only */
     size_t figure_count, outcome_count, series_count;
     size_t passed, failed, skipped;   /* figures */
-    size_t mutants, mutants_detected; /* distinct names; detected wherever it is listed */
+    size_t mutants, mutants_detected; /* distinct names; a mutant counts as detected if every check
+                                         that lists it detects it */
     double seconds;
 };
 
@@ -49,27 +50,27 @@ struct suite_choice {
     void *context;
 };
 
-/* Runs the chosen ones of checks[0..count-1]. STATUS_CHECK_FAILED if a figure failed or a mutant
+/* Runs the chosen checks of checks[0..count-1]. STATUS_CHECK_FAILED if a figure failed or a mutant
  * was not detected (suite is complete); STATUS_ENVIRONMENT: no memory (suite is empty). Free a
  * suite with suite_free. */
 enum status suite_run(struct suite *suite, const struct check *const *checks, size_t count,
                       const struct suite_choice *choice, struct error *error);
 void suite_free(struct suite *suite);
 
-/* What suite_run found of one check, as a document, and what suite_run would have found of several,
- * from their documents in the order of the checks. STATUS_*: as suite_run, also STATUS_ENVIRONMENT
- * where a document is not one of its check; the suite is then empty. */
+/* suite_keep: the result of suite_run for one check as a document. suite_join: the suite of several
+ * checks from their documents in the order of the checks. STATUS_*: as suite_run, and
+ * STATUS_ENVIRONMENT if a document does not belong to its check; the suite is then empty. */
 json_t *suite_keep(const struct suite *suite);
 enum status suite_join(struct suite *suite, const struct check *const *checks,
                        const json_t *const *documents, size_t count, struct error *error);
 
-/* An estimate of the seconds that a check takes with its mutants, above 0. */
+/* Estimated seconds of a check including its mutants, above 0. */
 double suite_cost(const struct check *check);
 
 /* True if the check is among those that were chosen. */
 bool suite_chosen(const struct check *check, const struct suite_choice *choice);
 
-/* Counts the figures and outcomes, once all are there. STATUS_OK or STATUS_CHECK_FAILED. */
+/* Counts figures and outcomes when the suite is complete. STATUS_OK or STATUS_CHECK_FAILED. */
 enum status suite_count(struct suite *suite);
 
 /* True if GROUP or GROUP/NAME means this check. */

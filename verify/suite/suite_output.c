@@ -15,7 +15,7 @@
 
 enum { SERIES_SHOWN = 8, PATH_LENGTH = 1024 };
 
-/* The figures of one check stand together, in suite->figures[begin..end-1]. */
+/* The figures of one check: suite->figures[begin..end-1]. */
 struct tally {
     const struct check *check;
     size_t begin, end, failed, skipped;
@@ -45,7 +45,7 @@ static const char *paint(bool color, const char *code)
     return color ? code : "";
 }
 
-/* How far within the bound, as people say it. */
+/* Prints the margin to the bound in words. */
 static void print_margin(const struct figure *figure, FILE *stream)
 {
     const double ratio = finding_ratio(figure->value, figure->bound);
@@ -84,8 +84,8 @@ static void print_check(const struct suite *suite, const struct tally *t, FILE *
     if (t->failed && details) print_failures(suite, t, stream);
 }
 
-/* How far beyond the bound the faintest rejected mutant of a check lies; infinite where the bound
- * is 0 or the figure NaN. */
+/* Ratio to the bound of the faintest rejected mutant of a check; infinite if the bound is 0 or the
+ * figure NaN. */
 static double faintest_rejected(const struct suite *suite, const struct check *check)
 {
     double least = HUGE_VAL;
@@ -212,7 +212,7 @@ static json_t *failure_json(const struct suite *suite, const struct tally *t)
     return document;
 }
 
-/* The data that the check gave along with its figures; 0 curves: it gave none. */
+/* The series that the check added to its figures; 0 curves: none. */
 static size_t curves_of(const struct suite *suite, const struct check *check,
                         struct plot_series curves[SERIES_SHOWN])
 {
@@ -226,8 +226,8 @@ static size_t curves_of(const struct suite *suite, const struct check *check,
     return n;
 }
 
-/* Every figure of the check over its bound, in the order of measuring: failing ones lie above 1.
- * x, low, high: room for all of them. */
+/* Every figure of the check over its bound, in measuring order; failing ones exceed 1. x, low,
+ * high: space for all of them. */
 static size_t figures_of(const struct suite *suite, const struct tally *t,
                          struct plot_series curves[SERIES_SHOWN], double *x, double *low,
                          double *high)
@@ -249,7 +249,7 @@ static size_t figures_of(const struct suite *suite, const struct tally *t,
     return 2;
 }
 
-/* The check's data, and its figures over their bounds. True if it was plotted. */
+/* Plots the check's data, and its figures over their bounds. True if plotted. */
 static bool plot_failure(const struct suite *suite, const struct tally *t, const char *path)
 {
     const size_t n = t->end - t->begin;
@@ -314,6 +314,6 @@ enum status suite_output_failures(const struct suite *suite, const char *folder,
         if (!status && plot_failure(suite, &t, plot) && stream)
             fprintf(stream, "plot:             %s\n", plot);
     }
-    if (!suite->failed) rmdir(folder); /* where nothing else is in it */
+    if (!suite->failed) rmdir(folder); /* succeeds only if the folder is empty */
     return status;
 }
