@@ -23,7 +23,7 @@ void code_values(struct code_values *values, const struct code_external *externa
 char **code_words_of(const struct code_external *external, const char *command,
                      const struct code_values *values);
 void code_words_free(char **words);
-/* In one line, malloced; NULL: no memory. */
+/* The words as one line, malloced; NULL: no memory. */
 char *code_words_line(char **words);
 
 /* Writes the templates into a folder, filled in. */
@@ -31,9 +31,10 @@ enum status code_write_templates(const struct code_external *external,
                                  const struct code_values *values, const char *folder,
                                  struct error *error);
 
-/* Adds the filled texts and sums of the files that decide what a run of the code computes. */
+/* Adds to a cache key the filled texts and checksums of the files that decide what the code
+ * computes. */
 enum status code_add_key(const struct run_external *external, const struct run *run, json_t *key,
                          struct error *error);
 
-/* The sum of the command's program; "" where it cannot be read. */
+/* The checksum of the command's program; "" if it cannot be read. */
 void code_program_sum(const struct code_external *external, char sum[SHA256_TEXT]);

@@ -18,7 +18,7 @@
 #include "sharing.h"
 #include "text.h"
 
-/* What all kinds of benchmark are given. */
+/* The arguments of all benchmarks. */
 struct request {
     const struct options *options;
     struct bench_rules rules;
@@ -96,7 +96,7 @@ static enum status present(struct request *request, struct precision *precision,
     return status;
 }
 
-/* Each n a computation of its own, for many machines. */
+/* Measures each n as a separate job, for several machines. */
 static enum status in_shares(struct request *request, const struct run_settings *settings,
                              const struct sweep *sweep, const size_t *ladder, size_t count,
                              struct sharing *sharing, struct error *error)

@@ -246,8 +246,8 @@ static enum status one_snapshot(struct side *side, const struct side *other, boo
     return status;
 }
 
-/* A lattice may come out the same for two numbers of particles, as two snapshots always do: that is
- * one draw, not two. */
+/* True if an earlier draw has the same particles, as lattices for two numbers of particles may have
+ * and two snapshots always do: that is one draw, not two. */
 static bool seen(const struct comparison *c, size_t r)
 {
     for (int s = 0; s < 2; s++)
@@ -283,7 +283,7 @@ static enum status serialise_out(struct comparison *c, const struct options *opt
     return status;
 }
 
-/* ---- what is said ---- */
+/* ---- verdict ---- */
 
 static void say(char *text, size_t size, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
@@ -332,7 +332,7 @@ static void conclude(struct comparison *c)
     for (size_t k = 0; k < count; k++)
         c->of[k] = paired_compare(c->draws, c->sides[0].error[k], c->sides[1].error[k], single,
                                   LEVEL / (double)count);
-    bool timed = true; /* a clock may be too coarse for one of them */
+    bool timed = true; /* a coarse clock may measure 0 */
     for (size_t r = 0; r < c->draws; r++) {
         ratio[r] = c->sides[1].cpu_s[r] / c->sides[0].cpu_s[r];
         timed = timed && isfinite(ratio[r]);

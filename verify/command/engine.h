@@ -9,20 +9,20 @@
 
 enum { ENGINE_TASKS_MAX = 1000 }; /* Slurm's usual MaxArraySize, less one */
 
-/* What is to be done, and with what. Nothing is owned. */
+/* The work of an engine. Nothing is owned. */
 struct engine_work {
-    const struct options *options; /* of the command line, from which that of a share is made */
+    const struct options *options; /* of the command line; a share's command line is made from it */
     const struct pool *pool;
     const struct cache *cache;
     int jobs;  /* processes of a share */
-    int tasks; /* shares; 0: as many as are ten minutes' work each */
+    int tasks; /* shares; 0: about ten minutes of work each */
     struct progress *progress;
 };
 
 struct engine {
     const char *name, *label;
-    /* Computes all that has a key, in shares, into the cache. NULL: leaves everything to the pool.
-     * STATUS_ENVIRONMENT: not all is there; what is there stays. */
+    /* Computes all jobs with a key, in shares, into the cache. NULL: leaves all to the pool.
+     * STATUS_ENVIRONMENT: some results are missing; the others are kept. */
     enum status (*compute)(const struct engine_work *work, struct error *error);
 };
 

@@ -19,7 +19,7 @@ struct request {
     const char *path;
     int dim;
     double eta, h, tolerance;
-    const char *checks; /* COLUMN=dx[,dy,dz], one a line, or NULL */
+    const char *checks; /* COLUMN=dx[,dy,dz], one per line, or NULL */
     bool boxed;
     double lo[DIM_MAX], hi[DIM_MAX];
     struct kernel kernel;
@@ -32,8 +32,8 @@ struct answer {
 };
 
 struct judgement {
-    const double *column;         /* whose gradient is judged */
-    size_t field;                 /* its place among the fields */
+    const double *column;         /* the field whose gradient is judged */
+    size_t field;                 /* its index in the fields */
     const double *given[DIM_MAX]; /* columns of the file */
     size_t judged, failed, worst; /* points; the worst one's row */
     double departure, bound;      /* relative, at the worst point */
@@ -46,7 +46,7 @@ struct judgements {
 
 /* ---- input ---- */
 
-/* "0:1" for all directions, or one such pair for each. */
+/* Reads --box: "0:1" for all directions, or one such pair for each. */
 static enum status take_box(const struct options *options, struct request *r, struct error *error)
 {
     const char *text = options_value(options, "box");
@@ -168,7 +168,7 @@ static bool is_given(const struct judgements *all, int dim, const double *column
     return false;
 }
 
-/* Takes the columns that hold gradients out of the fields to differentiate. */
+/* Removes the columns of given gradients from the fields to differentiate. */
 static enum status leave_out_given(const struct request *r, struct point_cloud *pc,
                                    struct judgements *all, struct error *error)
 {
@@ -209,7 +209,7 @@ static enum status take_checks(const struct request *r, struct point_cloud *pc,
     return leave_out_given(r, pc, all, error);
 }
 
-/* Positions belong into the box: one outside is more likely a wrong box than meant. */
+/* Refuses positions outside the box, which are more likely a wrong box than intended. */
 static enum status place_in_box(const struct request *r, struct point_cloud *pc,
                                 struct error *error)
 {
@@ -258,7 +258,7 @@ static void judge(const struct request *r, const struct point_cloud *pc,
             difference = hypot(difference, j->given[a][i] - g);
             ours = hypot(ours, g);
         }
-        if (isnan(ours)) continue; /* no gradient to compare with */
+        if (isnan(ours)) continue; /* no gradient of ours to compare with */
         const double condition = answer->point[i].condition;
         const double bound = r->tolerance + (r->settings.form->corrected ? 1e-15 * condition : 0);
         const double scale = fmax(ours, 1e-4 * largest / pc->h[i]);

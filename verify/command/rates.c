@@ -28,9 +28,9 @@ struct request {
     struct setup setup;
     struct csv theirs;
     double tolerance;
-    struct snapshot_file snapshot; /* what the particles come from, if they do: no columns */
-    char widths[200];              /* what was found of its h */
-    char unknown[200];             /* names of their columns that stand for no quantity */
+    struct snapshot_file snapshot; /* snapshot of the particles, if any */
+    char widths[200];              /* how its h was interpreted */
+    char unknown[200];             /* names of columns without a known quantity */
 };
 
 /* ---- input ---- */
@@ -72,7 +72,7 @@ static enum status take_boundaries(const char *text, int dim, enum boundary boun
     return STATUS_OK;
 }
 
-/* What a file says of its box holds unless the keys say otherwise. */
+/* Takes the file's box unless keys set another. */
 static enum status take_said(struct request *r, bool *lo, bool *hi, bool *boundary,
                              struct error *error)
 {
@@ -89,7 +89,7 @@ static enum status take_said(struct request *r, bool *lo, bool *hi, bool *bounda
     return STATUS_OK;
 }
 
-/* Keys of the box; others are left in rest. */
+/* Takes the keys of the box and leaves others in rest. */
 static enum status take_box(struct request *r, int n, char **arguments, char **rest, int *left,
                             struct error *error)
 {
@@ -159,7 +159,7 @@ static enum status take_theirs(struct request *r, const char *path, bool toleran
     struct snapshot_file file = {0};
     if (is_csv(path)) return snapshot_csv_named(path, &file, &r->theirs, r->unknown, error);
     const enum status status = snapshot_csv(path, &file, &r->theirs, r->widths, error);
-    /* rates of a snapshot in single precision agree to that */
+    /* single precision limits the agreement of rates */
     if (!status && !tolerance && file.precision[SINGLE] > 1e-9) r->tolerance = 1e-5;
     snapshot_file_free(&file);
     return status;

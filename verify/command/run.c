@@ -23,7 +23,7 @@
 #include "text.h"
 #include "value.h"
 
-/* eta beside the numbers that other codes state for the same width. */
+/* Prints eta and the corresponding numbers that other codes use for the same width. */
 static void print_width(const struct settings *settings)
 {
     static const double unit_ball[] = {0, 2, M_PI, 4 * M_PI / 3};
@@ -76,7 +76,7 @@ static void describe_window(const struct window *window, char *text, size_t size
                          window->lo[d], window->hi[d]);
 }
 
-/* Scalars of the state, beside what they should be. */
+/* Prints functionals of the state and their exact values. */
 static void print_functionals(const struct run_result *result, const struct table_style *style)
 {
     if (result->functional_count == 0) return;
@@ -175,7 +175,7 @@ static void print_estimate(const struct run_result *result, const struct table_s
            style->bold, style->end, 1e-6 * e->memory, e->steps, e->cpu_s);
 }
 
-/* snapshots: on the way; its path is NULL where there are none. */
+/* snapshots: intermediate ones; path NULL: none. */
 static enum status check_files(const struct options *options, const struct snapshots *snapshots,
                                struct error *error)
 {
@@ -231,7 +231,7 @@ static void remark(const struct options *options, const char *text)
     if (text[0] && !options->quiet) fprintf(stderr, "sphproof: note: %s\n", text);
 }
 
-/* A plain number counts all particles, which is easily taken for those along one side. */
+/* Remarks that a plain number counts all particles, not those along one side. */
 static void remark_count(const struct options *options, const struct settings *settings)
 {
     const struct setting_value *n = &settings->value[SETTING_n];
@@ -277,7 +277,8 @@ static void print_snapshots(const struct snapshots *snapshots, double t_end)
     free(last);
 }
 
-/* A picture of each snapshot on the way: F_0000.svg, F_0001.svg ... of F.svg, or one of a movie. */
+/* A picture of each intermediate snapshot: F_0000.svg, F_0001.svg ... for F.svg, or a frame of a
+ * movie. */
 struct pictures {
     const struct run_settings *settings;
     const char *path;
@@ -348,7 +349,7 @@ static enum status present(const struct options *options, const struct run_setti
     return STATUS_OK;
 }
 
-/* Snapshots on the way; snapshots->path is NULL where none are asked for. */
+/* Prepares intermediate snapshots; snapshots->path is NULL if none are requested. */
 static enum status take_snapshots(struct snapshots *snapshots, const struct options *options,
                                   const struct run *run, struct error *error)
 {
@@ -368,7 +369,7 @@ static enum status take_snapshots(struct snapshots *snapshots, const struct opti
     return STATUS_OK;
 }
 
-/* The state of the run in a file, and what it belongs to. */
+/* The checkpoint of the run. */
 struct kept {
     bool wanted;
     struct checkpoint checkpoint;
@@ -436,7 +437,7 @@ static enum status present_other(const struct options *options, const struct run
                           : STATUS_OK;
 }
 
-/* A snapshot, a checkpoint and a plan are our solver's. */
+/* Refuses snapshots, checkpoints and plans, which only our solver makes. */
 static enum status check_other(const struct options *options, struct error *error)
 {
     static const char *const ours[] = {"snapshot", "snapshot-every", "checkpoint",

@@ -53,7 +53,7 @@ static bool profile_fill(struct profile *profile, const struct run_result *resul
     return true;
 }
 
-/* The first field that the case asks for. */
+/* The first field that judges the case. */
 static enum field main_field(const struct run_settings *settings)
 {
     int field = 0;
@@ -130,11 +130,11 @@ end:
     return status;
 }
 
-enum { MAPS = 3, MAP_PIXELS = 340 }; /* panels; what the longer side of one may take */
+enum { MAPS = 3, MAP_PIXELS = 340 }; /* panels; longest side of a panel */
 
-/* What the cells of a panel are means of: n values. Density, speed, and how far the field that the
- * case is measured by is from its exact values (of a velocity: the size of the difference);
- * beside the window nothing is exact: NaN. */
+/* Values that the cells of a panel average, n of them: density, speed, and the error of the field
+ * that judges the case (for a velocity the size of the difference); NaN outside the window, where
+ * nothing is exact. */
 static void map_values(const struct run_result *result, int panel, enum field field, double *values)
 {
     const struct prepared *p = &result->problem;
@@ -170,7 +170,7 @@ static void map_titles(const struct run_result *result, enum field field, char t
              vector ? "|v - exact|" : "SPH - exact", field_unit(field, dim));
 }
 
-/* Wide boxes are stacked, others stand side by side. */
+/* Stacks panels of wide boxes and puts others side by side. */
 static void map_size(struct plot *plot, const struct map *map)
 {
     const double x = map->hi[0] - map->lo[0], y = map->hi[1] - map->lo[1];
@@ -186,8 +186,8 @@ static void map_size(struct plot *plot, const struct map *map)
     }
 }
 
-/* Particles over the exact curve, where the solution has one coordinate: the field that the case is
- * measured by, of circular flows the part of the velocity that is not nothing. Arrays are owned. */
+/* Particles over the exact curve, if the solution has one coordinate: the field that judges the
+ * case, for circular flows the non-zero component of the velocity. Arrays are owned. */
 struct scatter {
     struct plot_series series[2];
     double *arrays[4];

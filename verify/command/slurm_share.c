@@ -15,7 +15,8 @@ void slurm_share_log(const char *folder, const char *name, long job, int share, 
     snprintf(path, size, "%s/%s-%ld_%d.log", folder, name, job, share);
 }
 
-/* Options that a share is not given: they say where results go and which engine computes. */
+/* True for options that a share does not get: destinations of results and the choice of the
+ * engine. */
 static bool of_the_caller(const char *name)
 {
     static const char *const names[] = {"engine",  "engine-options", "engine-tasks", "failures",
@@ -33,7 +34,7 @@ static bool takes(const struct command *command, const char *name)
     return false;
 }
 
-/* A word as the shell reads it back. */
+/* Writes a word quoted for the shell. */
 static void put_quoted(FILE *line, const char *before, const char *word)
 {
     fprintf(line, " '%s", before);
@@ -93,7 +94,7 @@ enum status slurm_share_submit(const struct slurm_share *share, long *job, struc
         status = error_set(error, STATUS_BAD_INPUT, "--engine-options: more than %d words",
                            SLURM_WORDS_MAX - 10);
     const char *const last[] = {"--parsable", name, array, output, "--wrap", wrap};
-    memcpy(&words[n], last, sizeof last); /* what comes last counts */
+    memcpy(&words[n], last, sizeof last); /* the last setting of an option applies */
     if (!status) status = slurm_submit(words, job, error);
     free(own);
     free(wrap);

@@ -19,7 +19,7 @@ static const char *style_of(const struct table_style *style, const char *outcome
     return !strcmp(outcome, "ok") ? style->good : !strcmp(outcome, "broke_down") ? style->bad : "";
 }
 
-/* "ok 3.6e-3", "broke down", ... of one cell, in 12 columns. */
+/* Prints "ok 3.6e-3", "broke down", ... for one cell, in 12 columns. */
 static void print_cell(const json_t *entry, const struct table_style *style)
 {
     const char *outcome = value_text(entry, "outcome");

@@ -25,7 +25,7 @@ static void take(struct property_sink *sink, const struct finding *given)
     certificate->failed += figure.status == FINDING_FAIL;
 }
 
-/* The widths people use: the kernel's own, the seed program's, and what lies between. */
+/* Usual widths: the kernel's own, the seed program's, and those in between. */
 static void measure_lattices(struct certificate *certificate)
 {
     static const double usual[] = {1.5, 2, 2.4, 2.5, 3, 4, 4.8, 6};

@@ -23,7 +23,7 @@ struct certificate {
     struct measure_fourier fourier;
     struct terms terms;
     bool looks_single;
-    int places;     /* likely ones that were looked at */
+    int places;     /* number of likely places of faults that were tested */
     double pairing; /* see measure_pairing */
     struct {        /* lattice sums against width: multiples of the mean spacing */
         double eta, density, gradient;
@@ -32,21 +32,21 @@ struct certificate {
     size_t failed;
 };
 
-/* How hard a single kernel is looked at. */
+/* Samples and seed for a single kernel. */
 enum { CERTIFICATE_SAMPLES = 1 << 20, CERTIFICATE_SEED = 1 };
 
-/* Measures everything on a kernel in dim dimensions, on these terms (NULL: pieces_terms_usual).
- * STATUS_ENVIRONMENT: no memory. A property that does not hold is no error, see failed. Release
- * with certificate_free; kernel must outlive it. */
+/* Measures all properties of a kernel in dim dimensions on these terms (NULL: pieces_terms_usual).
+ * STATUS_ENVIRONMENT: no memory. A failed property is no error, see failed. Release with
+ * certificate_free; kernel must outlive it. */
 enum status certificate_measure(struct certificate *certificate, const struct kernel *kernel,
                                 int dim, const struct terms *terms, struct error *error);
 void certificate_free(struct certificate *certificate);
 
-/* The names of the checks that fail, a new array: what plugin_certify wants. */
+/* The names of the failed checks, a new array, for plugin_certify. */
 enum status certificate_failing(const struct kernel *kernel, int dim, const struct terms *terms,
                                 json_t **failing, struct error *error);
 
-/* For a person; h: support radius in which lengths are given. */
+/* Prints the certificate; h: support radius, which scales lengths. */
 void certificate_print(const struct certificate *certificate, double h, FILE *stream, bool color);
 
 /* Adds "normalisation", "moments", "class", "fourier" ... and "checks" to document. */
@@ -58,5 +58,5 @@ json_t *certificate_checks(const struct certificate *certificate);
 /* The curves of W, W', W'' and the transform, for certificate_plot; new reference. */
 json_t *certificate_curves(const struct certificate *certificate);
 
-/* Draws them to path (.svg or .png). */
+/* Draws the curves to path (.svg or .png). */
 enum status certificate_plot(const json_t *curves, const char *path, struct error *error);

@@ -93,7 +93,7 @@ static void print_figure(const struct finding *figure, FILE *stream, bool color)
                 figure->subject);
 }
 
-/* One line a property (the figure nearest to its bound), and every figure that fails. */
+/* One line per property (the figure nearest to its bound), and every failed figure. */
 static void print_properties(const struct certificate *c, FILE *stream, bool color)
 {
     fprintf(stream, "\n  %-4s %-18s %9s %9s %9s\n", "", "property", "value", "bound", "floor");
@@ -109,7 +109,7 @@ static void print_properties(const struct certificate *c, FILE *stream, bool col
     }
 }
 
-/* What could have been missed. */
+/* Prints the size of faults that could have been missed. */
 static void print_resolution(const struct certificate *c, FILE *stream)
 {
     const double width = 1. / (double)c->terms.samples;

@@ -52,7 +52,7 @@ void property_skip(struct property_sink *sink, const char *why, ...)
             .subject = text, .value = nan, .bound = nan, .floor = nan, .status = FINDING_SKIP});
 }
 
-/* How near to failing; infinite if it does and the bound is 0. */
+/* Value over bound; infinite if it fails a bound of 0. */
 static double property_ratio(double value, double bound)
 {
     if (bound > 0) return value / bound;

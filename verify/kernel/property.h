@@ -9,8 +9,8 @@
 #include "finding.h"
 #include "pieces.h"
 
-/* Receives the figures of a property: of a finding subject (where, or why there is none), value,
- * bound and floor as in check.h, and whether it passes, fails or was skipped. */
+/* Receives the figures of a property: of a finding the subject (position, or why there is none),
+ * value, bound and floor as in check.h, and whether it passes, fails or was skipped. */
 struct property_sink {
     void (*take)(struct property_sink *sink, const struct finding *figure);
 };
@@ -35,7 +35,7 @@ void property_take(struct property_sink *sink, double value, double bound, doubl
 void property_skip(struct property_sink *sink, const char *why, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* The same figure judged as of a kernel that computes in float. */
+/* Judges the figure as that of a kernel that computes in float. */
 struct finding property_single(const struct finding *figure);
 
 /* The worst of many figures: the one with the largest value/bound (a NaN is worst of all). */
@@ -53,7 +53,7 @@ void property_take_worst(struct property_sink *sink, const struct property_worst
 enum { PROPERTY_WIDTHS = 4 };
 extern const double property_width[PROPERTY_WIDTHS];
 
-/* Bound of a figure that should vanish up to quadrature and rounding: base where that is possible
- * (floor far below it), else 20 floors, at most `PROPERTY_BOUND_MAX`. */
+/* Bound of a figure that vanishes up to quadrature and rounding: base if the floor is far below it,
+ * else 20 floors, at most `PROPERTY_BOUND_MAX`. */
 #define PROPERTY_BOUND_MAX 1e-9
 double property_bound(double base, double floor);

@@ -11,8 +11,8 @@ struct user_figures {
     struct findings figures; /* what: a property's name; subject: kernel, dimension and where */
 };
 
-/* A kernel that crashes, never returns ... has one failing figure of property `runs`.
- * STATUS_BAD_INPUT: it cannot be used at all. Release with user_figures_free. */
+/* A kernel that crashes, never returns and so on has one failed figure of property `runs`.
+ * STATUS_BAD_INPUT: it cannot be loaded. Release with user_figures_free. */
 enum status user_figures_measure(struct user_figures *figures, const char *path,
                                  struct error *error);
 void user_figures_free(struct user_figures *figures);

@@ -11,13 +11,13 @@
 #include "places.h"
 #include "property.h"
 
-/* The series' own error estimate is a typical, not a largest error. */
+/* The error estimate of the series is a typical, not a largest error. */
 static const double margin = 40;
 
-/* Goes through places in ascending order; the series belong to the piece that it is on. */
+/* Visits positions in ascending order; the series belong to the current piece. */
 struct walk {
     const struct pieces *pieces;
-    int piece; /* -1: none yet */
+    int piece; /* -1: before the first */
     struct series_fit w, dw;
     struct property_worst *value, *slope;
 };
@@ -32,7 +32,7 @@ static void go_to(struct walk *walk, double q)
     pieces_series(pieces, p, &walk->w, &walk->dw);
 }
 
-/* Compares at q; how near to the bound the worse of w and dw is. */
+/* Compares at q; returns the larger ratio to the bound of w and dw. */
 static double look(struct walk *walk, double q)
 {
     const struct pieces *pieces = walk->pieces;
@@ -63,7 +63,7 @@ static double look(struct walk *walk, double q)
 
 enum { WORST = 16 };
 
-/* The places nearest to failing so far, one in an interval. */
+/* The positions nearest to failing so far, one per interval. */
 struct nearest {
     double q[WORST], ratio[WORST];
 };
@@ -78,7 +78,7 @@ static void remember(struct nearest *nearest, double q, double ratio)
     nearest->ratio[least] = ratio;
 }
 
-/* Closer and closer around q: a narrow fault has flanks. */
+/* Searches closer and closer to q: the flanks of a narrow fault lead to it. */
 static void close_in(struct walk *walk, double q, double width, uint64_t seed)
 {
     enum { LEVELS = 8, TRIES = 64 };

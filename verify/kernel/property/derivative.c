@@ -7,10 +7,10 @@
 #include "places.h"
 #include "property.h"
 
-/* The series' own error estimate is a typical, not a largest error. */
+/* The error estimate of the series is a typical, not a largest error. */
 static const double margin = 30;
 
-/* Slopes of noise are noisier: what is left for a bound in double, in single precision. */
+/* Differentiation amplifies noise: the greatest bound in double and in single precision. */
 static double most(const struct pieces *pieces)
 {
     return pieces->terms.single ? 1e-2 : 1e-6;

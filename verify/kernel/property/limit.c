@@ -48,7 +48,7 @@ void property_delta_limit(const struct pieces *pieces, struct property_sink *sin
     }
     floor = (measure_sphere(dim) * floor + DBL_EPSILON) / (h * h * 4); /* at the last h */
     const double second = moments.second / 2, constant = extrapolate(coefficient, LEVELS);
-    /* a negative lobe may take the second moment away; the fourth then rules the order */
+    /* a negative lobe may cancel the second moment; the fourth then determines the order */
     const double scale = pieces->terms.negative ? fmax(fabs(second), 0.01) : fabs(second);
     floor /= scale;
     if (pieces->terms.negative)
@@ -152,7 +152,8 @@ void property_transform(const struct pieces *pieces, struct property_sink *sink)
         property_take(sink, (double)NAN, 0, 0, "no memory");
         return;
     }
-    gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* the floor tells */
+    gsl_error_handler_t *handler =
+        gsl_set_error_handler_off(); /* the floor reports failures of the quadrature */
     transform_figures(pieces, &spectrum, sink);
     gsl_set_error_handler(handler);
     measure_spectrum_free(&spectrum);

@@ -6,11 +6,11 @@
 #include "measure.h"
 #include "property.h"
 
-/* Where the support is probed. 0.9992 is inside: even exp(-1/(1-q^2)) is not yet rounded to 0. */
+/* A position just inside the support, at which even exp(-1/(1-q^2)) is not yet rounded to 0. */
 static const double inside = 0.9992;
 
-/* The edge's neighbourhood to the last place, and far beyond: not so far that the polynomial which
- * (1 - q)+ multiplies is infinite there. */
+/* Positions from the edge on, including the next number above 1, and far beyond it, but not so far
+ * that the polynomial factor of (1 - q)+ overflows. */
 static const double outside[] = {1,    1 + 0x1p-52, 1 + 1e-12, 1 + 1e-8, 1.0001, 1.001, 1.01,
                                  1.05, 1.1,         1.2,       1.25,     1.5,    1.75,  2,
                                  2.5,  3,           4.75,      10,       100,    1e6,   1e25};
@@ -104,7 +104,8 @@ void property_self_term(const struct pieces *pieces, struct property_sink *sink)
     property_take(sink, w0 > 0 && w0 <= DBL_MAX ? 0 : 1, 0, 0, "W(0) = %g must be positive", w0);
 }
 
-/* The value at q itself against the nearer of its neighbours: a hole where no branch applies. */
+/* Compares the value at q with the closer of its neighbours' values: a hole is a point to which no
+ * branch applies. */
 static void look_for_hole(const struct pieces *pieces, kernel_shape *shape, double scale, double q,
                           const char *name, struct property_worst *worst)
 {
@@ -117,7 +118,7 @@ static void look_for_hole(const struct pieces *pieces, kernel_shape *shape, doub
                   "%s at q = %.6g itself against its neighbours", name, q);
 }
 
-/* Points where a formula changes: the knots, and fractions where people put them. */
+/* Tests points where a formula may change: the knots, and simple fractions. */
 static void look_for_holes(const struct pieces *pieces, struct property_sink *sink)
 {
     enum { FRACTIONS = 60 };
