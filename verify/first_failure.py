@@ -18,7 +18,7 @@ def results(build):
 
 
 def headlines(build, test):
-    """What `sphproof verify GROUP` told, where it is of this run."""
+    """The result that `sphproof verify GROUP` wrote, if it is from this run."""
     group = test["name"].split(" / ")[-1].removeprefix("verify ")
     path = os.path.join(build, "verify/test", group + ".json")
     try:

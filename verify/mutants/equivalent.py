@@ -20,7 +20,7 @@ NAME = "equivalent.txt"
 
 
 class Broken(ValueError):
-    """What a list has that is no entry; its text names file and line."""
+    """A line of a list that is not an entry; the text names file and line."""
 
 
 class Entry:
@@ -51,7 +51,7 @@ def read(path, folder):
 
 
 def read_all(tree, judged):
-    """The lists of all folders of a tree that have judged sources."""
+    """The entries of all folders of a tree with judged sources."""
     entries = []
     for folder in sorted({os.path.dirname(name) for name in judged}):
         path = os.path.join(tree, folder, NAME)
@@ -81,7 +81,7 @@ class Compiler:
                 self.commands[os.path.relpath(path, self.tree)] = entry
 
     def assembly(self, name, text):
-        """Of a source with this text; None if it does not compile."""
+        """The assembly of a source with this text; None if it does not compile."""
         entry = self.commands[name]
         words = shlex.split(re.sub(r" -(o|MF|MQ) \S+", "", entry["command"]))
         words = [w for w in words if w not in ("-MD", "-c", entry["file"]) and not re.match("-[OgW]", w)]
@@ -92,7 +92,7 @@ class Compiler:
         return None if done.returncode else done.stdout
 
     def same(self, source, start, end, new):
-        """Is the code the same with this text from start to end? Of a header it is not known."""
+        """True if replacing start to end by this text leaves the code equal. Unknown, hence False, for a header."""
         name = source.name
         if name not in self.commands or new is None:
             return False

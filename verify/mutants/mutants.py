@@ -33,7 +33,7 @@ class Mutant:
         self.old, self.new = [], []
 
     def targets(self):
-        """What must be built for its judge beside the program."""
+        """The build targets that its judge needs besides the program."""
         return (["verify/test/" + self.test] if self.test.startswith("test_") else []) + self.also.split()
 
     def apply(self, tree):
@@ -81,8 +81,8 @@ def same(a, b):
 
 
 def copy_tree(source, tree):
-    """Makes tree like source. What is alike already stays untouched, what is not gets a new date:
-    a build of the tree then makes again just what an earlier fault, or an edit, has changed."""
+    """Makes tree equal to source. Equal files stay untouched, others get a new date, so that a build of the
+    tree rebuilds only what an earlier fault, or an edit, has changed."""
     ignore = shutil.ignore_patterns("build*", ".git", "out", "__pycache__")
     os.makedirs(tree, exist_ok=True)
     names = os.listdir(source)
@@ -111,7 +111,7 @@ def demand(command):
 
 
 class Worker:
-    """A copy of the tree with its build, into which one fault after the other is put."""
+    """A copy of the tree with its build, into which faults are put one after the other."""
 
     def __init__(self, folder):
         folder = os.path.abspath(folder)
@@ -120,7 +120,7 @@ class Worker:
         self.program = os.path.join(self.build, "sphproof")
 
     def prepare(self, first=None):
-        """Configures; takes over what the first worker has built, whose copy of the tree is of the same moment."""
+        """Configures; copies the build of the first worker, whose copy of the tree is equally old."""
         shutil.rmtree(self.build, ignore_errors=True)
         demand(["meson", "setup", self.build, self.tree] + OPTIONS)
         if first:
@@ -128,13 +128,13 @@ class Worker:
             self.restore()
 
     def keep(self, targets):
-        """Builds, and keeps a copy of what was built without a fault."""
+        """Builds, and keeps a copy of the build without a fault."""
         demand(["ninja", "-C", self.build, "sphproof"] + targets)
         shutil.rmtree(self.clean, ignore_errors=True)
         shutil.copytree(self.build, self.clean, symlinks=True, ignore=shutil.ignore_patterns(*OWN))
 
     def restore(self):
-        """Puts back what a fault has changed in the build, with its dates: ninja then has nothing to do."""
+        """Restores the files of the build that a fault has changed, with their dates, so that ninja has no work."""
         for folder, _, names in os.walk(self.clean):
             here = os.path.join(self.build, os.path.relpath(folder, self.clean))
             os.makedirs(here, exist_ok=True)
@@ -144,7 +144,7 @@ class Worker:
                     shutil.copy2(kept, now)
 
     def verify(self, mutant):
-        """The exit status of what must notice it: a group of checks, a script, a test in C."""
+        """The exit status of the judge that must notice the fault: a group of checks, a script or a C test."""
         if mutant.group:
             command = [self.program, "verify", *mutant.group.split(), "--first", "--quiet", "--failures",
                        os.path.join(self.build, "failures")]
@@ -167,7 +167,7 @@ class Worker:
         return next(t["cmd"] for t in tests if t["cmd"][0] == program)
 
     def judge(self, mutant):
-        """'caught', or why it was not. Leaves the build as it is then."""
+        """Returns 'caught', or why the fault was not caught. Does not restore the build."""
         path = os.path.join(self.tree, mutant.file)
         try:
             date = os.stat(path)
@@ -187,7 +187,7 @@ class Worker:
 
 
 def share(workers, tasks, do):
-    """do(worker, task) for each task, by whichever worker is free."""
+    """Calls do(worker, task) for each task, on the next free worker."""
     waiting = queue.Queue()
     for task in tasks:
         waiting.put(task)

@@ -12,7 +12,7 @@ TYPED = re.compile(r'"(\d+(?:\.\d+)?(?:e[-+]?\d+)?)"')
 
 
 class Constant:
-    """A number of a source's text, and what stands there instead."""
+    """A number in a source's text, and its replacement."""
 
     number, function = 0, "-"  # no switch
 
@@ -33,7 +33,7 @@ def blank(text):
 
 
 def closing(text, at):
-    """Where what is opened at `at` is closed again."""
+    """The position of the bracket that closes the one at `at`."""
     depth = 0
     for i in range(at, len(text)):
         depth += (text[i] in "([{") - (text[i] in ")]}")
@@ -43,7 +43,7 @@ def closing(text, at):
 
 
 def regions(name, text):
-    """(start, end, enumerators?) of what is constant; text: without comments and strings."""
+    """(start, end, enumerators?) of constant expressions; text: without comments and strings."""
     found = []
     for m in re.finditer(r"^#define (\w+)[ \t]+(\(?-?[\d.][^\n\\]*)$", text, flags=re.M):
         if not ROOM.search(m[1]):
@@ -80,7 +80,7 @@ def alternatives(code, enumerator):
 
 
 def typed(code):
-    """The same of a number in a string."""
+    """The same for a number in a string."""
     if "e" in code:
         mantissa, _, power = code.partition("e")
         return ['"%se%d"' % (mantissa, int(power) + 1)]
@@ -90,7 +90,7 @@ def typed(code):
 
 
 def find(sources):
-    """All of the judged sources (name: generate.Source), and of the lists that they include."""
+    """All constants of the judged sources (name: generate.Source) and of the lists that they include."""
     constants = []
     for name in sorted(sources):
         source = sources[name]
@@ -115,8 +115,8 @@ def find(sources):
 
 
 def readers(sources, name):
-    """The files whose mutants a test comes past that reads constants of this one: itself, its namesakes
-    and those that include it."""
+    """The files whose mutants a test reaches if it reads constants of this one: this file, files of the same
+    name, and files that include it."""
     stem, base = os.path.splitext(name)[0], os.path.basename(name)
     return [n for n, s in sources.items() if n == name or os.path.splitext(n)[0] == stem
             or re.search(r'#include "(?:[\w/]+/)?%s"' % re.escape(base), s.text)]

@@ -51,7 +51,7 @@ def files_below(top):
 
 
 def quick_tests(build):
-    """As meson tells them, without those that look at sources and libraries alone."""
+    """The quick tests that meson lists, without those that only inspect sources and libraries."""
     tests = json.loads(quietly(["meson", "introspect", "--tests", build]).stdout)
     suites = [{s.split(":")[-1] for s in t["suite"]} for t in tests]
     return [t for t, suite in zip(tests, suites) if "quick" in suite and "once" not in suite]
@@ -116,9 +116,9 @@ def limits(cpu):
 
 
 def run_unit(unit, place, scratch, environment, usual):
-    """'' if it passes, else how it fails; and its CPU-s. place: the folder of the first build and that
-    which stands for it. usual: its CPU-s without a mutant; twice that is a hang, on the clock
-    much more, for the machine may be busy."""
+    """Returns '' if the unit passes, else how it fails; and its CPU-s. place: the folder of the first build and
+    the copy that replaces it. usual: CPU-s without a mutant; twice that is a hang. The limit of wall time
+    is much longer, because the machine may be busy."""
     shutil.rmtree(scratch, ignore_errors=True)
     os.makedirs(os.path.join(scratch, "cache"))
     built, here = place
@@ -148,22 +148,22 @@ def run_unit(unit, place, scratch, environment, usual):
 
 
 def copy_build(build, copy):
-    """The programs, to be run beside the first build's; what they are made of is left behind."""
+    """Copies the programs, so that they run beside the first build's; leaves out objects and libraries."""
     shutil.rmtree(copy, ignore_errors=True)
     shutil.copytree(build, copy, ignore=shutil.ignore_patterns("*.p", "*.a", "meson-*", "*.ninja", ".ninja*"),
                     symlinks=True)
 
 
 def in_threads(function, workers):
-    """What goes wrong in a thread goes wrong here, once all of them have ended."""
+    """Calls function(i) in `workers` threads; raises a thread's exception when all have ended."""
     with concurrent.futures.ThreadPoolExecutor(workers) as threads:
         for done in [threads.submit(function, i) for i in range(workers)]:
             done.result()
 
 
 class Table:
-    """What is known of the units without a mutant: CPU-s, the mutants that they come past, and those
-    that would make a difference there. Kept in reach.json."""
+    """Measurements of the units without a mutant: CPU-s, the mutants that they reach, and the reached mutants
+    that change a value there. Stored in reach.json."""
 
     def __init__(self, work, drawn, shard):
         self.work, self.build, self.shard = work, os.path.join(work, "build"), shard
@@ -242,7 +242,7 @@ class Table:
         return [u for u in units if self.knows(u)]
 
     def sound(self, unit, place, scratch):
-        """Does it pass without any mutant? Asked when it notices its first."""
+        """True if the unit passes without a mutant. Tested when it notices its first mutant."""
         entry = self.units[unit.name]
         if "sound" not in entry:
             failed, seconds = run_unit(unit, place, scratch, {}, max(10, 3 * entry["seconds"]))
@@ -266,7 +266,7 @@ class Judge:
             self.learn(entry)
 
     def admit(self, units):
-        """Further units, of which the table knows what they come past."""
+        """Adds units whose reached mutants the table knows."""
         for unit in units:
             entry, name = self.table.units[unit.name], unit.name
             if entry["failed"]:
@@ -290,9 +290,9 @@ class Judge:
         return self.table.units[name]["seconds"]
 
     def order(self, mutant, names):
-        """Most likely to notice for its time first: what a test did to this file, and elsewhere;
-        before anything is learnt, a test that comes past few others was written for this one. A test
-        that notices does so early, after a tenth of its time or so."""
+        """Sorts tests by probability of noticing the mutant per CPU time: from their record in this file, and
+        elsewhere. Without a record, a test that reaches few mutants is taken to be written for this one. A
+        test that notices a mutant ends early, after about a tenth of its time."""
         def worth(name):
             here, all_ = self.learnt[mutant.file, name], self.learnt["", name]
             start = 1 / (1 + self.breadth[name] / 1000)
@@ -301,8 +301,8 @@ class Judge:
         return sorted(names, key=worth)
 
     def judge(self, mutant, near, before, worker):
-        """What became of it: a line of the record. before: the record's last, or that of the round
-        before, if any; what the same units did not notice then need not be asked again."""
+        """Judges a mutant; returns a line of the record. before: its last line, or that of the previous round,
+        if any; units that did not notice the mutant then are not run again."""
         reaching = near if mutant.constant else self.differs[mutant.number]
         place, scratch = self.table.place(worker)
         if not mutant.number:  # compiled in place
@@ -334,7 +334,7 @@ class Judge:
         return entry
 
     def built(self, unit):
-        """The programs of a unit, after a source has been changed."""
+        """Builds the programs of a unit after a change of a source."""
         build = self.table.build
         targets = {os.path.relpath(w, build) for w in unit.command + [os.path.join(build, "sphproof")]
                    if w.startswith(build) and os.path.isfile(w)}

@@ -28,7 +28,7 @@ import numpy
 
 __all__ = ["Error", "State", "run", "judge", "rates", "command", "riemann", "star", "sedov", "noh", "gresho", "yee", "wave"]
 
-State = collections.namedtuple("State", "rho v P")  # arrays of the shape of the places
+State = collections.namedtuple("State", "rho v P")  # arrays with the shape of the positions
 
 
 class Error(Exception):
@@ -54,7 +54,7 @@ def _beside(*patterns):
 
 
 def _built():
-    """Of a file that is in the source tree: what is in its folder `build`."""
+    """The program in folder `build` of the source tree, if this module is in one."""
     tree, place = os.path.abspath(__file__).rsplit(os.sep, 3)[0], os.path.join("verify", "python", "sphproof.py")
     path = os.path.join(tree, "build", "sphproof")
     return path if os.path.abspath(__file__) == os.path.join(tree, place) and os.path.exists(path) else None
