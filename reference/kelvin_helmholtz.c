@@ -4,7 +4,7 @@
 #include <gsl/gsl_spline.h>
 #include <math.h>
 
-/* From the value a on the outer sides of the layers at 1/4 and 3/4 to b between them. */
+/* Joins the value a outside the layers at 1/4 and 3/4 smoothly to b between them. */
 static double joined(double y, double a, double b)
 {
     const double width = 0.025, middle = 0.5 * (a - b);

@@ -12,13 +12,12 @@ struct kelvin_helmholtz_state {
 /* The start, at x and y in the unit square. */
 struct kelvin_helmholtz_state kelvin_helmholtz_start(double x, double y);
 
-/* Their amplitude of the mode:
- *   M = 2 hypot(sum w v_y sin(4 pi x) E, sum w v_y cos(4 pi x) E) / sum w E,
- *   E = exp(-4 pi |y - 1/4|) for y < 1/2, exp(-4 pi |3/4 - y|) above,
+/* The amplitude of the mode as McNally et al. define it, M = 2 hypot(sum w v_y sin(4 pi x) E, sum w
+ * v_y cos(4 pi x) E) / sum w E, E = exp(-4 pi |y - 1/4|) for y < 1/2, exp(-4 pi |3/4 - y|) above,
  * of n points with volumes w. */
 double kelvin_helmholtz_amplitude(unsigned long n, const double *x, const double *y,
                                   const double *vy, const double *w);
 
-/* The same of their finest run, 4096 x 4096, with cubic splines in ln M between the times of its
- * table (every 0.1); NaN outside of 0 <= t <= 1.5. */
+/* The amplitude in their finest run, 4096 x 4096, by cubic splines in ln M between the times of its
+ * table (every 0.1); NaN outside 0 <= t <= 1.5. */
 double kelvin_helmholtz_reference(double t);

@@ -6,7 +6,7 @@
 #include <complex.h>
 #include <stdbool.h>
 
-/* The imaginary unit in double: I is of a float. */
+/* The imaginary unit in double precision; I is a float. */
 #define LAYER_I ((double complex)I)
 
 /* T(y) is the step from -1 to 1: tanh(y/width) between walls at y = -+wall; or, periodic with

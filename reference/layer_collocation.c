@@ -37,7 +37,8 @@ static void make_grid(struct grid *grid, const struct layer *layer)
 
 enum unknown { DENSITY, ALONG, ACROSS, PRESSURE, UNKNOWNS };
 
-/* The row of each unknown at each point, or -1 where it is given: V or p vanishes at the ends. */
+/* The row of each unknown at each point, or -1 if a boundary condition sets it: V or p vanishes at
+ * the ends. */
 static int number(const struct layer *layer, int points, int *rows)
 {
     const enum unknown zero = layer->periodic && layer->pressure_node ? PRESSURE : ACROSS;

@@ -7,6 +7,6 @@
 
 #include "layer.h"
 
-/* omega of the fastest growing mode by another method: eigenvalues of the primitive equations at
- * so many Chebyshev points (>= 8). NaN: none grows, or no memory. */
+/* omega of the fastest growing mode: eigenvalues of the primitive equations at this number of
+ * Chebyshev points (>= 8). NaN: no growing mode, or no memory. */
 double complex layer_mode_collocation(const struct layer *layer, int points);

@@ -52,14 +52,14 @@ static int slopes(double at, const double y[], double dy[], void *context)
     return GSL_SUCCESS;
 }
 
-/* From an end (node 0 or LAST) to the middle: xi and p at the nodes on the way. */
+/* Integrates from an end (node 0 or LAST) to the middle; stores xi and p at the nodes. */
 static bool shoot(const struct shot *shot, int from, double complex *xi, double complex *p)
 {
     struct shot copy = *shot;
     const gsl_odeiv2_system system = {slopes, NULL, 4, &copy};
     const int step = from ? -1 : 1;
     const bool node = shot->layer->periodic && shot->layer->pressure_node;
-    /* a pressure that belongs to a displacement of 1: the unit of its accuracy */
+    /* the pressure of a displacement of 1: the unit of absolute accuracy */
     const double omega = cabs(shot->omega),
                  unit = shot->layer->rho * omega * omega / shot->layer->k;
     const double scale[4] = {1, 1, unit, unit};
@@ -79,7 +79,7 @@ static bool shoot(const struct shot *shot, int from, double complex *xi, double 
     return sound;
 }
 
-/* What vanishes where both halves join; xi and p of the joined solution. */
+/* The mismatch of both halves in the middle, 0 for a mode; xi and p: the joined solution. */
 static double complex mismatch(const struct layer *layer, double complex omega, double complex *xi,
                                double complex *p)
 {
@@ -87,7 +87,7 @@ static double complex mismatch(const struct layer *layer, double complex omega, 
     if (!shoot(&shot, LAST, xi, p)) return (double)NAN;
     const double complex below[2] = {xi[MIDDLE], p[MIDDLE]};
     if (!shoot(&shot, 0, xi, p)) return (double)NAN;
-    const double complex ratio = xi[MIDDLE] / below[0]; /* what grows displaces the layer */
+    const double complex ratio = xi[MIDDLE] / below[0]; /* a growing mode has xi != 0 there */
     const double complex defect = below[0] * p[MIDDLE] - below[1] * xi[MIDDLE];
     for (int j = MIDDLE + 1; j <= LAST; j++) {
         xi[j] *= ratio;
@@ -96,7 +96,7 @@ static double complex mismatch(const struct layer *layer, double complex omega, 
     return defect;
 }
 
-/* Values at the nodes to coefficients of Chebyshev polynomials. */
+/* Transforms values at the nodes to Chebyshev coefficients. */
 static void transform(double complex *values)
 {
     double complex sums[LAYER_MODE_NODES];
@@ -121,7 +121,7 @@ static double complex series(const double complex *coefficients, double zeta)
     return zeta * b1 - b2 + coefficients[0];
 }
 
-/* The unit of a mode. */
+/* Normalises the mode: the greatest |v| is 1, v(0) > 0. */
 static void normalise(struct layer_mode *mode)
 {
     enum { SAMPLES = 2000 };
@@ -185,7 +185,7 @@ struct layer_amplitude layer_mode_amplitude(const struct layer_mode *mode, doubl
     const double complex s = layer->k * base.U - mode->omega;
     const double complex v = series(mode->v, zeta), xi = v / (LAYER_I * s),
                          p = series(mode->p, zeta);
-    /* of mirror images about y = 1/4 either v or all the rest changes its sign */
+    /* reflection about y = 1/4 changes the sign of either v or all the other values */
     const double sign = !mirrored ? 1 : layer->pressure_node ? -1 : 1, side = mirrored ? -sign : 1;
     return (struct layer_amplitude){
         .rho = sign * (p / base.c2 - (base.rho_dy + base.rho * layer->g / base.c2) * xi),

@@ -3,10 +3,10 @@
 
 #include <math.h>
 
-/* A wave of a series is over when exp of this is nothing beside 1. */
+/* A term of a series is negligible when exp(-over) is negligible beside 1. */
 static const double over = 42;
 
-/* Waves that are left at time t, of those with exp(-(n pi)^2 t). */
+/* Number of non-negligible terms exp(-(n pi)^2 t) at time t. */
 static int waves_at(double t)
 {
     enum { MOST = 1000000 }; /* at t = 4e-12: layers of 2e-6 of the width */

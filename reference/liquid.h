@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Exact flows of viscous liquids and of liquids under gravity, which weakly compressible SPH is
- * tested with. Lengths, times and speeds in any units that fit each other. */
+ * Exact flows of viscous liquids and of liquids under gravity, for tests of weakly compressible
+ * SPH. Any consistent units of length, time and speed. */
 #pragma once
 
 /* Between plates at y = 0, at rest, and y = 1, which moves with speed 1 from t = 0 on: the speed
@@ -12,7 +12,7 @@ double liquid_couette(double y, double t);
  * (Poiseuille flow that starts from rest; Morris, Fox & Zhu 1997). To 1e-15. */
 double liquid_poiseuille(double y, double t);
 
-/* Means of these speeds over the height. */
+/* Means of these speeds over y. */
 double liquid_couette_mean(double t);
 double liquid_poiseuille_mean(double t);
 
@@ -20,6 +20,6 @@ double liquid_poiseuille_mean(double t);
  * 228): the angular frequency of wavenumber k. */
 double liquid_wave_frequency(double k, double depth, double gravity);
 
-/* Parts along x and y of the velocity that belongs to a speed of the surface of cos(k x) upwards;
- * y: above the bottom. */
+/* Components of the velocity for an upward speed cos(k x) of the surface; y: height above the
+ * bottom. */
 void liquid_wave_mode(double k, double depth, double x, double y, double v[2]);

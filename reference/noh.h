@@ -13,5 +13,5 @@ struct noh_state {
 /* r >= 0, t >= 0. At t = 0 and ahead of the shock P = 0; at r = 0 ahead of it v = 0. */
 struct noh_state noh_sample(double gamma, int d, double r, double t);
 
-/* Where the shock is. */
+/* Radius of the shock. */
 double noh_shock(double gamma, double t);

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Widening double to long double is the point here. */
+/* Widening double to long double is intended. */
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 typedef long double real;
 
@@ -30,7 +30,7 @@ static struct side side_make(double gamma, const struct riemann_state *state, in
 
 /* ---- the jump of velocity across a wave (Toro eqs 4.6, 4.7) as a function of y ---- */
 
-/* The wave into cold gas, l = -infinity, is always one. */
+/* A wave into cold gas, l = -infinity, is always a shock. */
 static bool is_shock(const struct side *side, real y)
 {
     return !(y <= side->l);
@@ -42,7 +42,7 @@ static real rarefaction_jump(const struct side *side, real y)
     return side->c > 0 ? 2 * side->c / (gamma - 1) * expm1l(z * (y - side->l)) : 0;
 }
 
-/* The velocity that the gas loses on its way into the star region, and its derivative by y. */
+/* The velocity jump across the wave into the star region, and its derivative in y. */
 static real velocity_jump(const struct side *side, real scale, real y, real *slope)
 {
     const real gamma = side->gamma, z = (gamma - 1) / (2 * gamma);
@@ -130,7 +130,7 @@ static real star_pressure(struct problem *problem)
     return bracketed_newton(problem);
 }
 
-/* ---- what a wave leaves behind, and how fast it runs, seen from its own side ---- */
+/* ---- the state behind a wave and its speeds, seen from its own side ---- */
 
 struct wave {
     enum riemann_wave kind;

@@ -13,7 +13,7 @@
 #include <gsl/gsl_math.h>
 #include <gsl/gsl_roots.h>
 
-/* Everything over its value right behind the shock. */
+/* All values relative to those immediately behind the shock. */
 struct profile {
     double rho, v, P;
 };
@@ -63,7 +63,7 @@ static double miss(double s, void *parameters)
     return log_lambda - place->log_lambda;
 }
 
-/* The profile at lambda = r/R < 1, held at the innermost 1e-12. */
+/* The profile at lambda = r/R < 1; constant within the innermost 1e-12. */
 static struct profile profile_of(double gamma, int d, double lambda)
 {
     struct place place = {gamma, d, log(fmax(lambda, 1e-12))};
@@ -173,7 +173,7 @@ double sedov_integral(const struct sedov *sedov, double r, double t,
     const double front = sedov_shock(sedov, t);
     const double ends[] = {0, fmin(r, front), r};
     double sum = 0;
-    for (int k = 0; k < 2; k++) { /* either side of the shock */
+    for (int k = 0; k < 2; k++) { /* on either side of the shock */
         double part, error;
         const int status = gsl_integration_qag(&f, pow(ends[k], sedov->d) / sedov->d,
                                                pow(ends[k + 1], sedov->d) / sedov->d, 0, 1e-10, 200,

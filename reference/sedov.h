@@ -27,7 +27,7 @@ double sedov_shock(const struct sedov *sedov, double t);
 /* r >= 0, t > 0. Towards the centre rho falls to 0, and below the range of double it is 0. */
 struct sedov_state sedov_sample(const struct sedov *sedov, double r, double t);
 
-/* Integral over the ball of radius r (a disc; both sides of a plane) of what `of` makes of the
- * state at a distance from the centre. NaN: no memory, or it does not converge to 1e-10. */
+/* Integral over the ball of radius r (a disc; both sides of a plane) of the function `of` of the
+ * distance from the centre and the state there. NaN: no memory, or no convergence to 1e-10. */
 double sedov_integral(const struct sedov *sedov, double r, double t,
                       double (*of)(double r, const struct sedov_state *state));

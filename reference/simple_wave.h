@@ -19,7 +19,7 @@ struct simple_wave_state {
 /* NULL, or a text that says what is wrong: gamma > 1, rho0, P0, length > 0, |amplitude| < 1. */
 const char *simple_wave_fault(const struct simple_wave *wave);
 
-/* When the crest overtakes what is before it; infinite for amplitude 0. */
+/* The time when the crest breaks; infinite for amplitude 0. */
 double simple_wave_breaking_time(const struct simple_wave *wave);
 
 /* The state at x and time 0 <= t < breaking time; all NaN outside of that and where a number would

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Vortices in a plane that stand still for ever: the pull of the pressure holds what the flow
- * throws outwards, dP/dR = rho v^2/R. Any consistent units. No function here allocates or keeps
- * state. */
+ * Steady vortices in a plane: the pressure gradient balances the centrifugal force, dP/dR = rho
+ * v^2/R. Any consistent units. No function here allocates or keeps state. */
 #pragma once
 
 /* At the distance R from the centre; v: along the circle, counter-clockwise. */
