@@ -174,6 +174,8 @@ static void print_together(const json_t *document, const struct table_style *sty
     const json_t *order, *gate, *one, *drift = json_object_get(document, "conservation");
     const json_t *gates = json_object_get(document, "gates");
     size_t k, i;
+    if (json_object_get(document, "no_orders"))
+        printf("no orders: %s\n", value_text(document, "no_orders"));
     json_array_foreach(json_object_get(document, "orders"), k, order) {
         printf("order of %-16s", value_text(order, "field"));
         if (json_is_number(json_object_get(order, "order")))
@@ -344,8 +346,8 @@ const struct command command_judge = {
         "(`sphproof list snapshots`). The kernel and the meaning of h are found by summing the\n"
         "density again. Everything that had to be assumed is said, with the evidence for it.\n"
         "Snapshots of `sphproof run` name their case, and need no option.\n"
-        "Several snapshots: orders where numbers of particles differ, conservation where only\n"
-        "times do; gates look at the one of most particles.\n"
+        "Several snapshots of one problem: orders where only numbers of particles differ,\n"
+        "conservation where only times do; gates look at the one of most particles.\n"
         "Exit status 1: a gate failed, a snapshot is far from the case's solution or of another "
         "gas, "
         "or\nnothing is known at its time that it could be compared with.",

@@ -80,8 +80,8 @@ void judge_sum(const struct prepared *problem, const struct snapshot *snapshot,
 /* ---- several snapshots ---- */
 
 /* Differences of the conserved sums between the first and the last of several snapshots of one run
- * (of several runs: the one with most particles). False if no two snapshots have as many particles
- * and different times. */
+ * (of several runs: the one with most particles). False if no two snapshots have as many particles,
+ * one problem and different times. */
 bool judge_drift(const struct judged *judged, size_t n, struct trace_drift *drift, size_t pair[2]);
 
 /* The largest differences from the first snapshot over all snapshots between these two, {"mass",
@@ -93,8 +93,15 @@ json_t *judge_conservation(const struct judged *judged, size_t n, struct trace *
 /* The snapshot that gates judge: the last one of those with most particles. */
 const struct judged *judge_main(const struct judged *judged, size_t n);
 
+/* True if the last snapshots of each n are of one problem (case, dimension, gamma, initial states)
+ * and at one time, without which there are no orders. Otherwise `why` names the difference and two
+ * files. */
+enum { JUDGE_WHY = 420 };
+bool judge_one_ladder(const struct judged *judged, size_t n, char why[JUDGE_WHY]);
+
 /* Orders of L1 against n^(1/d) for all fields, from the last snapshot of each n: [{"field", "norm",
- * "order", "low", "high", "pairwise"}], [] without two different n. New reference. */
+ * "order", "low", "high", "pairwise"}], [] without two different n of one problem. New reference.
+ */
 json_t *judge_orders(const struct judged *judged, size_t n);
 
 /* Judges the gates of the command line ("density_l1=2e-3,order.density>=0.9"; NULL: none) and, if

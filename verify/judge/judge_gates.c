@@ -140,7 +140,8 @@ static enum status no_such_figure(const json_t *figures, const char *name, struc
                      strncmp(name, "order", 5) ? "" : "; orders need several numbers of particles");
 }
 
-static enum status ask(const char *text, const json_t *figures, json_t *gates, struct error *error)
+static enum status ask(const char *text, const json_t *figures, const char *no_orders,
+                       json_t *gates, struct error *error)
 {
     for (const char *at = text;
          at && (*at || at == text);) { /* the loop also runs once for an empty text, to refuse it */
@@ -168,6 +169,9 @@ static enum status ask(const char *text, const json_t *figures, json_t *gates, s
             return error_set(error, STATUS_BAD_INPUT, "--gate %.48s%s%.40s: allowed: %s", name,
                              relation, number, order ? "a number" : "above 0");
         const json_t *figure = json_object_get(figures, name);
+        if (!figure && order && *no_orders)
+            return error_set(error, STATUS_BAD_INPUT, "--gate %.48s: no orders: %s", name,
+                             no_orders);
         if (!figure) return no_such_figure(figures, name, error);
         json_array_append_new(gates, gate_json(name, figure, least, bound, JUDGE_ASKED));
         at += length + (at[length] == ',');
@@ -265,9 +269,13 @@ enum status judge_gates(const char *asked, bool of_case, const struct judged *ju
 {
     const struct judged *main = judge_main(judged, n);
     json_t *figures = figures_of(judged, n);
+    char no_orders[JUDGE_WHY] = "";
+    const bool one = judge_one_ladder(judged, n, no_orders);
     *gates = json_array();
-    enum status status = ask(asked, figures, *gates, error);
+    enum status status = ask(asked, figures, no_orders, *gates, error);
     if (!status && of_case) status = check_case(main, error);
+    if (!status && of_case && !one)
+        status = error_set(error, STATUS_BAD_INPUT, "--gates case: no orders: %s", no_orders);
     if (!status && of_case) add_case(main, figures, *gates);
     json_decref(figures);
     return status;

@@ -164,6 +164,8 @@ json_t *judge_json(const struct judged *judged, size_t n, json_t *gates, bool pr
     if (trace.count)
         json_object_set_new(document, "through_time", trace_json(&trace, main->file.dim));
     json_object_set_new(document, "orders", judge_orders(judged, n));
+    char why[JUDGE_WHY];
+    if (!judge_one_ladder(judged, n, why)) result_add(document, "no_orders=%s", why);
     if (gates)
         json_object_set(document, "gates", gates);
     else
