@@ -30,10 +30,16 @@ def make(points, binary, field, grid, kind):
         return "".join(" ".join(map(repr, row)) + "\n" for row in rows).encode()
 
     n = len(points)
-    text = b"# vtk DataFile Version 3.0\nparticles\n" + (b"BINARY\n" if binary else b"ASCII\n")
+    paired = field != grid  # offsets and connectivity, as version 5.1 has cells
+    text = b"# vtk DataFile Version %s\nparticles\n" % (b"5.1" if paired else b"3.0") + (b"BINARY\n" if binary else b"ASCII\n")
     text += b"DATASET UNSTRUCTURED_GRID\n" if grid else b"DATASET POLYDATA\n"
     text += b"POINTS %d %s\n" % (n, kind) + numbers([(x, y, 0.0) for x, y, *_ in points], kind.decode())
-    text += (b"CELLS" if grid else b"VERTICES") + b" %d %d\n" % (n, 2 * n) + numbers([(1, i) for i in range(n)], "i")
+    text += b"CELLS" if grid else b"VERTICES"
+    if paired:
+        text += b" %d %d\nOFFSETS vtktypeint64\n" % (n + 1, n) + numbers([(i,) for i in range(n + 1)], "q")
+        text += b"CONNECTIVITY vtktypeint64\n" + numbers([(i,) for i in range(n)], "q")
+    else:
+        text += b" %d %d\n" % (n, 2 * n) + numbers([(1, i) for i in range(n)], "i")
     if grid:
         text += b"CELL_TYPES %d\n" % n + numbers([(1,)] * n, "i")
     text += b"POINT_DATA %d\n" % n

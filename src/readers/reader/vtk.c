@@ -205,15 +205,26 @@ static bool take_attribute(struct vtk *vtk, bool vectors, struct snapshot_file *
     return take_points(vtk, &array, snapshot_column_of(array.name), file);
 }
 
-/* Skips CELLS, VERTICES ...: count and size; since version 5.1 two arrays with their own names. */
-static bool skip_cells(struct vtk *vtk, bool types)
+/* Skips CELLS, VERTICES ...: count and size of one array, or, since version 5.1, of two with their
+ * own names and types. */
+static bool skip_cells(struct vtk *vtk)
 {
-    struct array array = {.name = "cells", .components = 1, .type = "int"};
-    size_t count;
-    if (!next_count(vtk, "cells", &count)) return false;
-    array.tuples = count;
-    if (!types && !next_count(vtk, "cells", &array.tuples)) return false;
-    return take_numbers(vtk, &array, NULL);
+    struct array cells[2] = {{.name = "cells", .components = 1, .type = "int"}};
+    char word[WORD];
+    cells[1] = cells[0];
+    for (int k = 0; k < 2; k++)
+        if (!next_count(vtk, "cells", &cells[k].tuples)) return false;
+    const char *before = vtk->at;
+    if (strcmp(next_word(vtk, word), "OFFSETS") != 0) {
+        vtk->at = before;
+        return take_numbers(vtk, &cells[1], NULL);
+    }
+    next_word(vtk, cells[0].type);
+    if (!take_numbers(vtk, &cells[0], NULL)) return false;
+    if (strcmp(next_word(vtk, word), "CONNECTIVITY") != 0)
+        return refuse(vtk, "CONNECTIVITY stands behind OFFSETS, not ", word);
+    next_word(vtk, cells[1].type);
+    return take_numbers(vtk, &cells[1], NULL);
 }
 
 static bool take_section(struct vtk *vtk, const char *word, bool *points,
@@ -244,8 +255,11 @@ static bool take_section(struct vtk *vtk, const char *word, bool *points,
     if (!strcmp(word, "SCALARS") || !strcmp(word, "VECTORS"))
         return take_attribute(vtk, *word == 'V', file);
     if (!strcmp(word, "CELLS") || !strcmp(word, "VERTICES") || !strcmp(word, "LINES"))
-        return skip_cells(vtk, false);
-    if (!strcmp(word, "CELL_TYPES")) return skip_cells(vtk, true);
+        return skip_cells(vtk);
+    if (!strcmp(word, "CELL_TYPES")) {
+        array = (struct array){.name = "cells", .components = 1, .type = "int"};
+        return next_count(vtk, "cells", &array.tuples) && take_numbers(vtk, &array, NULL);
+    }
     if (!strcmp(word, "METADATA")) { /* ends with an empty line */
         while (vtk->at + 1 < vtk->end && !(vtk->at[0] == '\n' && vtk->at[1] == '\n')) vtk->at++;
         return true;
