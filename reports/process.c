@@ -17,10 +17,10 @@ extern char **environ;
 
 enum { READ, WRITE };
 
-static void close_pair(int pair[2])
+static void close_pair(const int pair[2])
 {
-    for (int k = 0; k < 2; k++)
-        if (pair[k] >= 0) close(pair[k]);
+    close(pair[READ]);
+    close(pair[WRITE]);
 }
 
 /* Descriptors 0..2 may be closed in this program (`sphproof ... >&-`). The child's dup2 would
@@ -141,10 +141,10 @@ static enum turn converse(struct process *child, const char *input, size_t size,
 /* Waits for the process to end; returns its wait status. */
 static int end(struct process *child)
 {
-    int *ends[] = {&child->in, &child->out, &child->err};
-    for (size_t k = 0; k < 3; k++)
-        if (*ends[k] >= 0) close(*ends[k]);
     int status = 0;
+    close(child->in);
+    close(child->out);
+    close(child->err);
     while (waitpid(child->pid, &status, 0) < 0 && errno == EINTR) continue;
     child->pid = 0;
     return status;

@@ -177,8 +177,7 @@ void hdf5_text(const struct snapshot_source *source, const char *group, const ch
     if (variable && read_entry(&e, e.type, &all) && all) {
         snprintf(text, size, "%s", all);
         h5.free_memory(all);
-    } else if (is_text && !variable && length > 0 && length < 1 << 16 &&
-               (all = calloc(1, length + 1))) {
+    } else if (is_text && !variable && length < 1 << 16 && (all = calloc(1, length + 1))) {
         if (read_entry(&e, e.type, all)) snprintf(text, size, "%s", all);
         free(all);
     }

@@ -88,7 +88,7 @@ bool snapshot_take_box(const char *text, struct snapshot_file *file)
         if (count == 3 || !text_reals(word, ":", 2, ends)) return false;
         file->corner[count] = ends[0], file->box[count] = ends[1] - ends[0];
     }
-    return file->placed = count > 0;
+    return file->placed = true;
 }
 
 double snapshot_period(const struct snapshot_file *file, int d)

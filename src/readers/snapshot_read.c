@@ -212,16 +212,14 @@ static enum status read_parts(const char *path, const struct snapshot_options *o
                               struct snapshot_file *file, struct error *error)
 {
     char other[4096], value[32];
-    if (file->parts > 1 && !part_path(path, 0, other, sizeof other))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "%.200s: one of %d files of a snapshot; give the first, whose name has "
-                         "'.0'",
-                         path, file->parts);
     for (int part = 1; part < file->parts; part++) {
         struct snapshot_file more;
-        enum status status = STATUS_OK;
-        if (!part_path(path, part, other, sizeof other)) return STATUS_BAD_INPUT;
-        status = read_one(other, options, &more, error);
+        if (!part_path(path, part, other, sizeof other))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s: one of %d files of a snapshot; give the first, whose name "
+                             "has '.0'",
+                             path, file->parts);
+        enum status status = read_one(other, options, &more, error);
         if (!status) status = append(file, &more, other, error);
         snapshot_file_free(&more);
         if (status) return status;

@@ -95,14 +95,13 @@ static enum status read_all(struct snapshot_source *source, stream from, struct 
 
 enum status source_open(struct snapshot_source *source, const char *path, struct error *error)
 {
-    struct stat about;
+    struct stat about = {0};
     *source = (struct snapshot_source){.path = path};
     const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0 || fstat(file, &about)) {
-        error_set(error, STATUS_BAD_INPUT, "%.200s: cannot be read: %s", path, strerror(errno));
-        if (file >= 0) close(file);
-        return STATUS_BAD_INPUT;
-    }
+    if (file == -1)
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: cannot be read: %s", path,
+                         strerror(errno));
+    fstat(file, &about);
     if (!S_ISREG(about.st_mode)) {
         close(file);
         return error_set(error, STATUS_BAD_INPUT, "%.200s: is %s; allowed: a file", path,

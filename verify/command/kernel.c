@@ -13,8 +13,6 @@
 #include "text.h"
 #include "user_kernel.h"
 
-enum { POINTS_MAX = 10000 };
-
 /* The request of the command line. */
 struct request {
     int dim, sinc_order, n;
@@ -33,9 +31,6 @@ static enum status take_points(const struct options *options, struct request *re
     if (!text) return STATUS_OK;
     request->n = 1;
     for (const char *c = text; *c; c++) request->n += *c == ',';
-    if (request->n > POINTS_MAX)
-        return error_set(error, STATUS_BAD_INPUT, "kernel: --at has %d values; allowed: 1 to %d",
-                         request->n, POINTS_MAX);
     request->q = malloc((size_t)request->n * sizeof *request->q);
     if (!request->q) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     bool sound = text_reals(text, ",", (size_t)request->n, request->q);

@@ -60,8 +60,9 @@ enum status options_ladder(const struct options *options, const struct run_setti
     const struct case_file *file = &settings->file;
     if (settings->settings.value[SETTING_n].source == SOURCE_USER)
         return error_set(error, STATUS_BAD_INPUT,
-                         "%s: the key n and a ladder exclude each other; allowed: --n %s", name,
-                         least > 1 ? "N1,N2,N3,N4,..." : "N1,N2,...");
+                         "%s: the key n and a ladder exclude each other; allowed: --n "
+                         "N1,N2,N3,N4,...",
+                         name);
     if (text) return sweep_ladder(text, least, file->dimension, ladder, count, error);
     memcpy(ladder, file->ladder, sizeof file->ladder);
     *count = file->ladder_count;

@@ -17,7 +17,7 @@
 #include "snapshot_csv.h"
 #include "text.h"
 
-enum { ROWS_SHOWN = 20, ROWS_CHECKED = 5, KEYS_MAX = 256 };
+enum { ROWS_SHOWN = 20, ROWS_CHECKED = 5 };
 
 struct request {
     const char *source;
@@ -53,12 +53,16 @@ static enum status take_boundaries(const char *text, int dim, enum boundary boun
     char words[64];
     int count = 0;
     snprintf(words, sizeof words, "%s", text);
-    for (char *rest = words, *word; (word = strtok_r(rest, " \t,", &rest)) && count < 4; count++) {
+    for (char *rest = words, *word; (word = strtok_r(rest, " \t,", &rest)); count++) {
         const int member = family_index(&scheme_boundary_family, word);
         if (member < 0)
             return error_set(error, STATUS_BAD_INPUT,
                              "rates: boundary=%.40s: allowed: periodic open reflecting", word);
-        if (count < 3) boundary[count] = (enum boundary)member;
+        if (count == dim) { /* too many */
+            count = 0;
+            break;
+        }
+        boundary[count] = (enum boundary)member;
     }
     for (int a = 1; count == 1 && a < dim; a++) boundary[a] = boundary[0];
     if (count != 1 && count != dim)
@@ -167,9 +171,8 @@ static enum status take_theirs(struct request *r, const char *path, bool toleran
 
 static enum status take_file(struct request *r, int n, char **arguments, struct error *error)
 {
-    char *rest[KEYS_MAX], unknown[200]; /* file.ignored names them, too */
+    char *rest[n + 1], unknown[200]; /* file.ignored names them, too */
     int left;
-    if (n > KEYS_MAX) return error_set(error, STATUS_BAD_INPUT, "rates: %d keys are too many", n);
     enum status status =
         is_csv(r->source)
             ? snapshot_csv_named(r->source, &r->snapshot, &r->file.csv, unknown, error)

@@ -118,7 +118,7 @@ static struct clouds_settings settings_of(const struct trial *trial, enum clouds
 static void check_exactness(struct trial *trial)
 {
     static const enum gradient_function fields[] = {FUNCTION_CONSTANT, FUNCTION_LINEAR};
-    for (int degree = 0; degree < trial->promise->exact && degree < 2; degree++)
+    for (int degree = 0; degree < trial->promise->exact; degree++)
         for (int kind = 0; kind < CLOUDS_KINDS && !trial->no_memory; kind++) {
             const struct clouds_settings settings = settings_of(trial, (enum clouds_kind)kind);
             struct sample sample;

@@ -57,7 +57,7 @@ def make(points, binary, field, grid, kind):
         else:
             text += b"SCALARS %s %s%s\nLOOKUP_TABLE default\n" % (name, type_, draw.choice((b"", b" 1")))
         text += numbers(rows, LETTERS.get(type_, type_.decode()))
-    return text
+    return text[:-1]  # the last number ends the file
 
 
 def main():

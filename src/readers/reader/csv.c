@@ -179,7 +179,7 @@ static enum status read(const struct snapshot_source *source,
     struct text_table table = {.source = source};
     const char *text = (const char *)source->bytes;
     size_t at = 0, line = 1, remark = 0, remark_length = 0;
-    if (source->size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) at = 3;
+    if (strncmp(text, "\xef\xbb\xbf", 3) == 0) at = 3;
     for (; at < source->size && (!table.columns || text[at] == '#'); line++) {
         const size_t length = strcspn(text + at, "\n");
         const size_t begin = strspn(text + at, " \t\r");

@@ -296,9 +296,8 @@ static enum status take_block(const struct binary *b, const struct layout *layou
                         : block == MASSES                         ? b->massive
                                                                   : b->particles[0];
     size_t width = record ? width_of(record, each * rows) : 0;
-    size_t all = rows;
     if (record && block == ACCELERATIONS && !width) /* for all particles, not only gas */
-        width = width_of(record, each * (all = b->all));
+        width = width_of(record, each * b->all);
     if (!record) return STATUS_OK;
     if (!width)
         return error_set(error, STATUS_BAD_INPUT,
@@ -309,7 +308,7 @@ static enum status take_block(const struct binary *b, const struct layout *layou
     for (size_t d = 0; d < each; d++) {
         if (!snapshot_file_make(file, (enum snapshot_column)(column + d)))
             return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", b->source->path);
-        for (size_t i = 0; i < file->n && i < all; i++)
+        for (size_t i = 0; i < file->n; i++)
             file->column[column + d][i] = real(b, record->bytes + width * (each * i + d), width);
     }
     double *precision = &file->precision[column >= SNAPSHOT_VX];

@@ -270,8 +270,7 @@ static bool take_section(struct vtk *vtk, const char *word, bool *points,
 static bool recognises(const struct snapshot_source *source)
 {
     static const char start[] = "# vtk DataFile Version";
-    return !source->hdf5 && source->size > sizeof start &&
-           !memcmp(source->bytes, start, strlen(start));
+    return !source->hdf5 && !strncmp((const char *)source->bytes, start, strlen(start));
 }
 
 static enum status read_vtk(const struct snapshot_source *source,

@@ -484,7 +484,7 @@ static enum status read_vtu(const struct snapshot_source *source,
     const char *section = "", *end = tag.behind + source->size;
     (void)options;
     error->status = STATUS_OK;
-    while (end > tag.behind && isspace((unsigned char)end[-1])) end--;
+    while (isspace((unsigned char)end[-1])) end--; /* it has a '<' */
     if ((size_t)(end - tag.behind) < strlen(last) || memcmp(end - strlen(last), last, strlen(last)))
         return error_set(error, STATUS_BAD_INPUT, "%.200s: is cut off: does not end with %s",
                          source->path, last);

@@ -33,7 +33,7 @@
 #include "made_pieces.h"
 #include "report.h"
 
-enum { SHORT = 6, WORDS = 48, COLUMNS = 12, LINE_MAX = 1 << 16 };
+enum { SHORT = 6, WORDS = 80, COLUMNS = 12, LINE_MAX = 1 << 16 };
 
 static const char *folder;
 static char place[] = "sphproof_transcripts_XXXXXX";

@@ -188,7 +188,13 @@ TEST(inferred)
             else
                 refuses(put_all(&b), "implausible", "none fit as masses, energies");
         }
-    struct binary b = made(1); /* twice the same blocks */
+    struct binary b = made(1);
+    b.tagged = false;
+    for (int k = ID; k < BLOCKS; k++) b.there[k] = false;
+    refuses(put_all(&b), "nothing but positions and velocities", "of 3 records none fit");
+    b.there[VEL] = false;
+    refuses(put_all(&b), "positions alone", "2 records, the first of 256 bytes");
+    b = made(1); /* twice the same blocks */
     b.tagged = b.there[ACCE] = false;
     for (int t = 0; t < TYPES; t++) b.table[t] = t ? 1 : 0;
     b.rows[MASS] = b.count[0], b.there[MASS] = true;
@@ -200,6 +206,16 @@ TEST(inferred)
     size_t size = put_all(&b);
     for (int k = MASS; k <= HSML; k++) size = put_block(size, &b, k);
     refuses(size, "twice", "more than one choice fits");
+    b = made(1); /* again without widths: those that have some count */
+    b.tagged = b.there[ACCE] = b.there[MASS] = false;
+    for (int t = 0; t < TYPES; t++) b.table[t] = t ? 1 : 1.5 * SIDE / b.count[0];
+    for (size_t i = 0; i < MOST; i++) b.value[U][i] *= 10;
+    struct snapshot_file file;
+    struct error error;
+    size = put_block(put_block(put_all(&b), &b, U), &b, RHO);
+    if (read_bytes(size, &file, &error)) fail_msg("%s", error.message);
+    assert_non_null(file.column[SNAPSHOT_H]);
+    snapshot_file_free(&file);
 }
 
 TEST(records)

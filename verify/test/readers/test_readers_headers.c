@@ -283,6 +283,21 @@ TEST(dimensions)
             }
 }
 
+/* More of them than columns of positions. */
+TEST(said_dimensions)
+{
+    for (int said = 2; said <= 3; said++) {
+        struct item items[ITEMS_MAX];
+        char says[80];
+        items_of(&layouts[0], items);
+        item_called(items, "Header/Dimension")->values[0] = said;
+        item_called(items, "PartType0/Coordinates")->shape[1] = (hsize_t)said - 1;
+        snprintf(says, sizeof says, "says that it has %d dimensions, but has no %c", said,
+                 "xyz"[said - 1]);
+        refuses(&layouts[0], items, "dimensions", says);
+    }
+}
+
 /* ---- what is none of them ---- */
 
 TEST(unknown)

@@ -324,6 +324,8 @@ TEST(names)
     d = made();
     d.rows = 0;
     refuses(put_all(&d), "0 particles");
+    d.rows = 1;
+    refuses(put_all(&d), "1 gas particles");
     d = made();
     d.groups = 0;
     refuses(put_all(&d), "0 groups of arrays");

@@ -53,6 +53,7 @@ TEST(spellings)
         assert_int_equal(snapshot_column_of(units[k].name), units[k].column);
     for (size_t k = 0; k < sizeof nobody / sizeof *nobody; k++)
         assert_int_equal(snapshot_column_of(nobody[k]), -1);
+    assert_int_equal(snapshot_column_of(&" (x)"[1]), SNAPSHOT_X); /* no name stands before it */
     char word[80] = "internalenergyinternalenergyinternalenergyinternalenergy";
     assert_int_equal(snapshot_column_of(word), -1);
     memset(word, ' ', 70), strcpy(word + 70, "u"); /* blanks take no room */
@@ -84,7 +85,9 @@ TEST(units)
 
 /* ---- lines that say what columns do not ---- */
 
-#define ZEROS "0000000000000000000000000000000000000000000" /* so many that with four letters more they are 47 */
+#define ZEROS                                                                                      \
+    "0000000000000000000000000000000000000000000" /* so many that with four letters more they are  \
+                                                     47 */
 
 TEST(remarks)
 {

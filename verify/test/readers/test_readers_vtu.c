@@ -115,13 +115,13 @@ static void add_array(struct document *d, int a)
     add(d, "</DataArray>\n");
 }
 
-/* Letters as their numbers, of which those that are none are left out. */
+/* Letters as their numbers, of which those that are none are left out; nine as components. */
 static const struct {
     const char *name, *numbers;
     int count;
 } fields[] = {{"boundary", "111 112 101 110", 4},
               {"keys", "110 61 51", 3},
-              {"case", "115 31 111 32 100 255 256", 7},
+              {"case", "115 31 111 32 100 255 256 31 31", 9},
               {"box", "-1 4000 -1 4000 -1 4000", 6},
               {"ndims", "3", 1},
               {"gamma", "1.5", 1},
@@ -135,15 +135,15 @@ static void write_out(struct document *d)
     add(d, "<UnstructuredGrid><FieldData>\n");
     for (size_t k = 0; k < sizeof fields / sizeof *fields; k++)
         add(d,
-            "<DataArray type=\"Float64\" Name=\"%s\" NumberOfTuples=\"%d\" "
+            "<DataArray type=\"Float64\" Name=\"%s\" NumberOf%s=\"%d\" "
             "format=\"ascii\">%s</DataArray>\n",
-            fields[k].name, strcmp(fields[k].name, "box") ? fields[k].count : d->ends,
-            fields[k].numbers);
+            fields[k].name, fields[k].count == 9 ? "Components" : "Tuples",
+            strcmp(fields[k].name, "box") ? fields[k].count : d->ends, fields[k].numbers);
     add(d, "</FieldData><Piece NumberOfPoints=\"%d\">\n<Points>", ROWS);
     add_array(d, 0);
     add(d, "</Points><PointData>\n");
     for (int a = 1; a < ARRAYS; a++) add_array(d, a);
-    add(d, "</PointData></Piece></UnstructuredGrid>\n");
+    add(d, "</PointData><Verts><DataArray format=\"ascii\"/></Verts></Piece></UnstructuredGrid>\n");
     if (d->form == APPENDED) {
         add(d, "<AppendedData encoding=\"%s\">\n _", d->base64 ? "base64" : "raw");
         memcpy(d->text + d->length, d->appended, d->bytes);
@@ -198,6 +198,7 @@ static const struct {
     {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"1e8\"", "NumberOfPoints = '1e8'; allowed: 1"},
     {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"0\"", "NumberOfPoints = '0'; allowed: 1"},
     {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"2.5\"", "NumberOfPoints = '2.5'"},
+    {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"1\"", "1 gas particles; allowed: at least 4"},
     {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"10\"",
      "'Points' has '' as number 28 of the 30"},
     {TEXT, "format=\"ascii\">\n ", "format=\"ascii\">\n hot ",
@@ -206,6 +207,8 @@ static const struct {
      "'mass' has numbers of the type 'Float16'; allowed: Float64"},
     {TEXT, "Name=\"mass\"", "Name=\"density\"", "'density' is a second one for rho; allowed: one"},
     {TEXT, "Name=\"mass\"", "Name=\"weight\"", "no m; found"},
+    {TEXT, "Name=\"mass\" NumberOfComponents=\"1\"", "Name=\"mass\" NumberOfComponents=\"2\"",
+     "no m; found"},
     {TEXT, "format=\"ascii\">\n ", "format=\"octal\">\n ",
      "'Points' has the format 'octal'; allowed: ascii"},
     {TEXT, "<Piece ", "<Pieces ", "'Points' stands before any Piece"},
@@ -215,8 +218,12 @@ static const struct {
     {TEXT, "4000 -1 4000 -1", "-1 -1 4000 -1", "'box' goes from -1 to -1"},
     {TEXT, "\"box\" NumberOfTuples=\"6\"", "\"box\" NumberOfTuples=\"0\"",
      "'box' has 0 x 1 numbers; allowed: 1 to"},
+    {TEXT, "\"box\" NumberOfTuples=\"6\"", "\"box\" NumberOfTuples=\"1200\"",
+     "'box' has '' as number 7 of the 1200"},
     {TEXT, "\"box\" NumberOfTuples=\"6\"", "\"box\" NumberOfTuples=\"1e9\"", "1e+09 x 1 numbers"},
     {TEXT, "</VTKFile>", "</VTKFil>", "is cut off: does not end with </VTKFile>"},
+    {TEXT, "</VTKFile>", "<Points><DataArray Name=\"q\" </VTKFile>",
+     "'q' is cut off: no tag ends it"},
     {BASE64, "NumberOfPoints=\"9\"", "NumberOfPoints=\"8\"",
      "'Points' has 216 bytes; its points need 192"},
     {BASE64, "\"Float64\" Name=\"velocity\"", "\"Int8\" Name=\"velocity\"",

@@ -3,7 +3,9 @@
  * fault of gnuplot ends in a status. */
 #include "test.h"
 
+#include <fcntl.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <time.h>
 
 #include "layout.h"
@@ -184,9 +186,22 @@ static enum process_status shell(const char *command, const char *input, size_t 
     return status;
 }
 
+enum { FILES = 64 };
+
+/* How many files are open, and the first number that is above all of them. */
+static int open_files(int *above)
+{
+    int count = 0;
+    for (int k = 0; k < FILES; k++)
+        if (fcntl(k, F_GETFD) >= 0) count++, *above = k + 1;
+    return count;
+}
+
 /* A filter that answers before it has read, that reads nothing, that fails, dies, hangs. */
 TEST(processes)
 {
+    int above = 0;
+    const int files = open_files(&above);
     const size_t size = 1 << 20;
     char *input = malloc(size), message[512];
     assert_non_null(input);
@@ -215,6 +230,19 @@ TEST(processes)
     assert_int_equal(process_filter(arguments, "", 0, 5, &output, message, sizeof message),
                      PROCESS_NOT_FOUND);
     buffer_free(&output);
+    /* where there is room for some of its pipes alone */
+    enum process_status status = PROCESS_FAILED;
+    for (int room = 0; status; room++) {
+        struct rlimit usual, limit;
+        assert_int_equal(getrlimit(RLIMIT_NOFILE, &usual), 0);
+        limit = usual, limit.rlim_cur = (rlim_t)(above + room);
+        assert_int_equal(setrlimit(RLIMIT_NOFILE, &limit), 0);
+        status = shell("exit 0", input, size, 60, &output, message, sizeof message);
+        assert_int_equal(setrlimit(RLIMIT_NOFILE, &usual), 0);
+        if (!status) assert_true(room >= 6);
+        if (status) assert_string_equal(message, "sh cannot be run: Too many open files");
+        assert_int_equal(open_files(&above), files);
+    }
     free(input);
     /* none of this has changed how this process handles a broken pipe */
     sigset_t mask;
@@ -244,6 +272,8 @@ TEST(questions)
     fputs("file\n", file);
     rewind(file);
     struct process process = {0};
+    int above;
+    const int files = open_files(&above);
     for (size_t k = 0; k < sizeof asked / sizeof *asked; k++) {
         struct buffer output = {0};
         const int before = process.pid;
@@ -263,6 +293,7 @@ TEST(questions)
     const int last = process.pid;
     process_end(&process);
     assert_int_equal(process.pid, 0);
+    assert_int_equal(open_files(&above), files);
     assert_int_equal(kill(last, 0), -1);
     fclose(file);
 }
