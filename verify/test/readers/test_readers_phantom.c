@@ -16,7 +16,7 @@ enum { X, Y, Z, H, VX, VY, VZ, U, P, ALPHA }; /* the last is nobody's */
 static const char *const tags[ARRAYS] = {"x",  "y",  "z", "h",        "vx",
                                          "vy", "vz", "u", "pressure", "alpha"};
 static const int columns[ARRAYS] = {0, 1, 2, SNAPSHOT_H, 3, 4, 5, SNAPSHOT_U, SNAPSHOT_P, -1};
-static const double types[N] = {1, -1, 2, 1, 1, 3, -1, 1, 1, -2, 1, 1, 1, 1};
+static const double types[N] = {1, -1, 2, 1, 1, 3, -1, 1, 1, -2, 1, 1, 1, 0}; /* 0: of none */
 
 static uint64_t seed = 28;
 static unsigned drawn(unsigned below)
@@ -221,7 +221,7 @@ static void is_read(const struct dump *d)
                      (d->bytes[d->kind[a]] == 4 ? (double)FLT_EPSILON : DBL_EPSILON) / 2);
     }
     for (size_t i = 0; i < n; i++) {
-        const double m = d->typed ? 1 / exp2(fabs(types[row[i]])) : 0.5,
+        const double m = d->typed && types[row[i]] != 0 ? 1 / exp2(fabs(types[row[i]])) : 0.5,
                      q = 1.25 / d->array[H][row[i]];
         assert_true(file.column[SNAPSHOT_M][i] == m);
         assert_true(fabs(file.column[SNAPSHOT_RHO][i] / (m * q * q * q) - 1) < 1e-15);
