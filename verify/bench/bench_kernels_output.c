@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Costs of kernels and operators, for people and programs. */
+ * Costs of kernels and operators as a table and as JSON. */
 #include <math.h>
 #include <stdio.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How much of a run is skipped, how much could be, and where and when it sleeps. */
+ * The fraction of a run that is skipped, that could be skipped, and where and when gas sleeps. */
 #pragma once
 
 #include "initial.h"

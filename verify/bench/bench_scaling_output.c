@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A scaling study for people and programs. */
+ * A scaling study as tables, JSON and a plot. */
 #include <math.h>
 #include <stdio.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What each piece of work that a run leaves out would cost, and whether the answer is the same
- * without it. Some can be switched on by a key: both runs are made and compared. Others are passes
- * that the plan does not contain and nothing would read: these are timed by themselves. */
+ * Cost of each kind of skipped work, and whether results are the same without it. Work that a key
+ * restores: both runs are made and compared. Passes that the plan does not contain and whose
+ * results nothing reads are timed by themselves. */
 #pragma once
 
 #include <jansson.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What leaving work out saves, for people and programs. */
+ * Savings of skipped work as a table and as JSON. */
 #include <math.h>
 #include <stdio.h>
 

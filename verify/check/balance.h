@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Does an exact solution of one-dimensional gas dynamics satisfy the conservation laws? In integral
- * form over rectangles of x and t (shocks and contacts included), by Gauss-Legendre quadrature
- * between given paths of kinks, and in differential form where it is smooth. */
+ * Tests whether an exact solution of one-dimensional gas dynamics satisfies the conservation laws:
+ * in integral form over rectangles of x and t (shocks and contacts included), by Gauss-Legendre
+ * quadrature between given paths of kinks, and in differential form where the solution is
+ * smooth. */
 #pragma once
 
 #include <stddef.h>

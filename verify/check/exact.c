@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Checks of what the exact solutions give at a place and a time: they must satisfy the conservation
- * laws over rectangles of x and t, shocks and contacts and vacuum included, and the equations where
- * they are smooth. */
+ * Checks of the exact solutions at positions and times: they must satisfy the conservation laws
+ * over rectangles of x and t, including shocks, contacts and vacuum, and the equations where they
+ * are smooth. */
 #include <math.h>
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Checks of the exact flows of 2D and 3D: they satisfy Euler's equations at every place, also
- * carried along by a boost; and what is known of the shear layers that have no exact solution. */
+ * Checks of the exact flows of 2D and 3D: they satisfy Euler's equations at every position, also
+ * with a boost; and known properties of the shear layers without an exact solution. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

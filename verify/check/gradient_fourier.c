@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a gradient operator makes of a Fourier mode sin(k.x) in a periodic box: the projection on
- * the right answer k cos(k.x), which a wave feels (1: exact), and the rest, which is noise. */
+ * The gradient of a Fourier mode sin(k.x) in a periodic box: its projection on the exact k
+ * cos(k.x), which determines the speed of a wave (1: exact), and the rest, which is noise. */
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What one evaluation in 2D and 3D conserves, for every choice of a scheme: momentum and energy
- * everywhere, angular momentum where forces are along r_ij; also where planes of particles leave
- * matrices that cannot be used. And that loops which look every choice up find the same. */
+ * Conservation by one evaluation in 2D and 3D, for every choice of a scheme: momentum and energy
+ * always, angular momentum if forces are along r_ij; also with planes of particles, whose matrices
+ * cannot be used. And the specialised loops give the same results as generic ones. */
 #include <math.h>
 
 #include "check.h"

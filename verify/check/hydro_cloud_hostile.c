@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Particles where searches for neighbours and sums over them go wrong first, in 2D and 3D, against
- * the oracle: two in one place, one far from all others, all in one cell of the box, most of them
- * in a plane, a density contrast of 1e6, positions at 1e8 box lengths; their rates, and a step.
- * Each particle is judged by its own scales: thin gas beside dense gas, too. (What is
- * refused, such as widths beyond half of the box, test_cells_workspace tries.) */
+ * Extreme particle distributions in 2D and 3D against the oracle: two coincident particles, one far
+ * from all others, all in one cell of the box, most of them in a plane, a density contrast of 1e6,
+ * positions at 1e8 box lengths; their rates, and a step. Each particle is judged by its own scales,
+ * so thin gas beside dense gas counts, too. (test_cells_workspace tests what is refused, such as
+ * widths beyond half of the box.) */
 #include <math.h>
 #include <stdio.h>
 

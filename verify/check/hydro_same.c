@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Choices that must not change the answer: threads, specialised loops, left-out work. */
+ * Choices that must not change the result: threads, specialised loops, skipped work. */
 #include <math.h>
 
 #include "check.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A sound wave that runs along, across and oblique to the lattice, in 2D and 3D: the error of its
- * velocity falls by order 2, is the same along every axis, and the same to the left as to the
- * right. Whole runs against the simple wave, by the door that every command takes. */
+ * A sound wave along, across and oblique to the lattice, in 2D and 3D: the error of its velocity
+ * falls with order 2 and is the same along every axis and in both directions. Whole runs, started
+ * as every command starts them, against the simple wave. */
 #include <math.h>
 #include <stdio.h>
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What of each particle's volume lies in the window, in 1D, 2D and 3D and for windows of every
- * kind: L1 must be continuous in all positions, also where columns of a lattice stand on the edge.
- */
+ * The part of each particle's volume in the window, in 1D, 2D and 3D and for all kinds of windows:
+ * L1 must be continuous in all positions, even for columns of a lattice on the edge. */
 #include <gsl/gsl_qrng.h>
 #include <math.h>
 #include <stdlib.h>

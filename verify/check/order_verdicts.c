@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What is said of an order: whether it passes its gate, and the class of the errors. */
+ * Verdicts on an order: whether it passes its gate, and the class of the errors. */
 #include <math.h>
 
 #include "check.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Suspicion rules: results that are too good must be noticed, honest ones left alone. */
+ * Suspicion rules: they must report results that are too good, and no others. */
 #include "suspicion.h"
 
 #include <math.h>

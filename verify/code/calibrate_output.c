@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What calibrate has found, as a code file and as JSON. */
+ * Results of calibrate as a code file and as JSON. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a run of a code is called with: the values of @WORDS@, the words of its command, its
- * templates filled in; and the files that decide its result. */
+ * The call of another code: the values of @WORDS@, the words of its command, its filled-in
+ * templates, and the files that decide its result. */
 #pragma once
 
 #include "code_run.h"

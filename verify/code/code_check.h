@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What values of code files may be. */
+ * Checks the values of code files. */
 #pragma once
 
 #include "code_file.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A program in a group of processes of its own, under a process that only watches over it: that one
- * ends the group when time or memory are used up, when the program has ended, and when this process
- * does, however it ends. Nothing of it is left running. */
+ * Runs a program in a process group of its own under a supervising process, which ends the group
+ * when time or memory is exhausted, when the program has ended, or when this process ends in any
+ * way. No process is left running. */
 #pragma once
 
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The snapshot that a run of a code leaves: which file it is, and whether it can be a result of the
- * initial state that the code was given. */
+ * Finds the snapshot of another code's run and tests whether it can result from the code's initial
+ * state. */
 #pragma once
 
 #include <stdbool.h>

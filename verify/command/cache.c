@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof cache: what a folder of kept results holds, and room in it. */
+ * sphproof cache: the contents of a folder of cached results, and its pruning. */
 #include <math.h>
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Who computes what many computations consist of: a family. An engine fills the cache; the pool,
- * which runs afterwards, finds everything there, or computes it where an engine leaves it to it. */
+ * Engines that compute many jobs: a family. An engine fills the cache; the pool runs afterwards,
+ * takes the results from there and computes the rest. */
 #pragma once
 
 #include "command.h"

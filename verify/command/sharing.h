@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The options of every command that has many independent computations: how many side by side, where
- * they are kept, which share of them is this process's, and what they are. */
+ * Options of all commands with many independent computations: number of processes, cache, share of
+ * this process, and the list of computations. */
 #pragma once
 
 #include "command.h"

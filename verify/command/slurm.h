@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What is asked of Slurm, by its own commands: arrays of tasks under one name. Slurm's manuals:
- * sbatch(1), squeue(1), scancel(1). */
+ * Calls of Slurm's own commands: arrays of tasks under one name. Slurm's manuals: sbatch(1),
+ * squeue(1), scancel(1). */
 #pragma once
 
 #include <stdbool.h>

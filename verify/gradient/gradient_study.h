@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What the checks of gradient operators share: an operator or a wrong one as subject, fields with
- * known gradients, errors over a cloud with interior and edge apart. */
+ * Shared by the checks of gradient operators: a right or wrong operator as subject, fields with
+ * known gradients, errors over a cloud, interior and edge separately. */
 #pragma once
 
 #include "clouds.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The autopsy of another code's snapshots: what exact fields become at its particles' positions. */
+ * The autopsy of another code's snapshots: the errors that its particles' positions cause for exact
+ * fields. */
 #pragma once
 
 #include "autopsy.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Gates of judge: of everything that it prints, and those of the case. */
+ * Gates of judge: bounds for all its figures, and the gates of the case. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

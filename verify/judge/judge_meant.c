@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Which of our cases a snapshot is of that does not fit the one it was said to be of. */
+ * Finds the case to which a snapshot belongs if it does not fit the one named. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

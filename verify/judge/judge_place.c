@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Where the case lies in the file's box, at which time and with which gamma; all of it noted. */
+ * Finds the case's position in the file's box, its time and its gamma; notes all of it. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A snapshot of t = 0: are its particles those of the case's initial state? What they were given
- * (positions, velocities, energies, masses) is compared with the case's gas where they are; their
- * densities are sums over neighbours, which no code reads. What differs is said in words: which
- * field, of how many particles, where, and what would explain it. */
+ * A snapshot of t = 0: compares positions, velocities, energies and masses with the case's initial
+ * state (densities are sums over neighbours, which no code reads). Describes differences in words:
+ * which field, of how many particles, where, and what would explain them. */
 #pragma once
 
 #include "run.h"

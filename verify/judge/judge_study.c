@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What several snapshots say together: orders, conservation. */
+ * Results from several snapshots: orders, conservation. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

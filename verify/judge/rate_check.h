@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Rates that another code computed, against ours; and what the difference may come from: choices of
- * a scheme are changed one by one until its rates come out. */
+ * Compares rates of another code with ours and finds the cause of a difference: changes the choices
+ * of a scheme one by one until its rates agree. */
 #pragma once
 
 #include "csv.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What the files of the public library share: between its names and those of the rooms. */
+ * Functions shared by the files of the public library: they translate between its names and those
+ * of the internal libraries. */
 #pragma once
 
 #include "kernel.h"

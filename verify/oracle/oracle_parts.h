@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Inside of the oracle: geometry and kernels, the state of each particle, the terms of each pair.
- */
+ * Internal to the oracle: geometry and kernels, the state of each particle, the terms of each
+ * pair. */
 #pragma once
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a change did: the metrics of two result documents of the same command, each judged against
+ * The effect of a change: the metrics of two result documents of one command, each judged against
  * its noise. */
 #pragma once
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Readings: every figure of a result document of any kind, each with a path that stays the same
- * from one document to the next (entries of lists are named by what they are about, not by their
- * place), what it is, and how far it may move without meaning anything. Diff, history and baseline
- * are made of them. */
+ * Metrics: every figure of a result document of any kind, with a path that is the same in every
+ * document (entries of lists are named by their subject, not by their index), its kind, and its
+ * noise. Diff, history and baseline are made of them. */
 #pragma once
 
 #include <jansson.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What became of a figure: better, worse, or the same within its noise. */
+ * Judges the change of a figure: better, worse, or the same within its noise. */
 #include <math.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What an autopsy reads off the state in which a run ends. Internal to autopsy. */
+ * Measures the final state of a run for an autopsy. Internal to autopsy. */
 #pragma once
 
 #include "autopsy.h"

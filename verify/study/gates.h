@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Gates of a case beside its orders: the bound of an error at any number of particles, what schemes
- * that a report compares with the default are held to, and what one run alone can be judged by. */
+ * Gates of a case besides its orders: bounds of an error at any number of particles, gates for
+ * schemes that a report compares with the default, and gates for a single run. */
 #pragma once
 
 #include <jansson.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Runs as jobs of a pool: the key that decides a run's result, and what it leaves behind. */
+ * Runs as jobs of a pool: their cache key and their document. */
 #pragma once
 
 #include "pool.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Inside of the suite: what one run of a check collects. */
+ * Internal to the suite: the data that one run of a check collects. */
 #pragma once
 
 #include "suite.h"

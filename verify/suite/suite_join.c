@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A check that ran elsewhere: what it found, out of a suite and into another one. */
+ * Writes the result of a check as a document and adds it to another suite. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a run of checks tells: a table for people, the JSON document, a JUnit file, and for each
- * failing check a folder entry with its figures and data. */
+ * Output of the checks: a table, the JSON document, a JUnit file, and for each failed check files
+ * with its figures and data. */
 #pragma once
 
 #include <jansson.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * w and dw between the places that everything else rests on: against the Chebyshev series through
- * the nodes of their piece, at one random place in each of many equal intervals, again and again
- * around the worst of them, and at the places where a formula is likely to change. And whether the
- * same arguments give the same value after all those calls. */
+ * w and dw between the nodes of the Chebyshev series: compared with the series of their piece at
+ * one random position in each of many equal intervals, repeatedly around the worst of them, and
+ * where a formula is likely to change. Also tests whether equal arguments give equal values after
+ * all those calls. */
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
