@@ -21,7 +21,7 @@ enum plot_kind {
     PLOT_LINES_POINTS,
     PLOT_ERROR_BARS, /* points with low..high */
     PLOT_BAND,       /* filled between low and high; y unused */
-    PLOT_BARS        /* low and high with a bar at each x, from x/size to x*size */
+    PLOT_BARS        /* filled between low and high, a bar at each x, from x/size to x*size */
 };
 
 enum { PLOT_AUTO = 0, PLOT_NEUTRAL = -1 }; /* colours: automatic, text colour, or 1..PLOT_COLORS */
