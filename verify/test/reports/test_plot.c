@@ -239,7 +239,7 @@ TEST(processes)
         assert_int_equal(setrlimit(RLIMIT_NOFILE, &limit), 0);
         status = shell("exit 0", input, size, 60, &output, message, sizeof message);
         assert_int_equal(setrlimit(RLIMIT_NOFILE, &usual), 0);
-        if (!status) assert_true(room >= 6);
+        if (!status) assert_true(above - files + room >= 6); /* others may be free below */
         if (status) assert_string_equal(message, "sh cannot be run: Too many open files");
         assert_int_equal(open_files(&above), files);
     }
