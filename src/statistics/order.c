@@ -178,8 +178,8 @@ static double richardson_order(struct richardson *r)
     return p;
 }
 
-/* The class of three values whose differences suggest the order p (NaN: none) but whose
- * extrapolation does not contain the exact value. */
+/* The class of three values whose differences suggest the order p (NaN: none) but that do not
+ * approach the exact value as these suggest. */
 static enum order_class class_by_errors(const double spacing[3], const double value[3],
                                         double exact, double p)
 {
@@ -187,9 +187,10 @@ static enum order_class class_by_errors(const double spacing[3], const double va
                              fabs(value[2] - exact)};
     const double last = log(error[1] / error[2]) / log(spacing[1] / spacing[2]);
     const double whole = log(error[0] / error[2]) / log(spacing[0] / spacing[2]);
-    if (fabs(whole) < ORDER_FLAT || last < p / 3) return ORDER_FLOOR_LIMITED;
+    if (fabs(whole) < ORDER_FLAT) return ORDER_FLOOR_LIMITED;
     /* the values are monotonic: if the last step is towards the exact value, so is the first */
-    return error[1] > error[2] ? ORDER_PREASYMPTOTIC : ORDER_DIVERGING;
+    if (!(last > 0)) return whole > 0 && isfinite(p) ? ORDER_OSCILLATING : ORDER_DIVERGING;
+    return last < p / 3 ? ORDER_FLOOR_LIMITED : ORDER_PREASYMPTOTIC;
 }
 
 struct order_extrapolation order_extrapolate(const double spacing[3], const double value[3],
@@ -209,8 +210,10 @@ struct order_extrapolation order_extrapolate(const double spacing[3], const doub
     struct richardson r = {log(spacing[1] / spacing[2]), log(spacing[0] / spacing[1]), log(ratio)};
     const double p = richardson_order(&r);
     const double gci = safety * fabs(fine / value[2]) / expm1(r.fine * p);
-    const bool reached = fabs(value[2] - exact) <= gci * fabs(value[2]) + round_off;
-    if (!isnan(exact) && !(isfinite(p) && reached)) {
+    const double error = fabs(value[2] - exact);
+    const bool reached = error <= gci * fabs(value[2]) + round_off;
+    const bool falls = error < fabs(value[1] - exact) || error <= round_off;
+    if (!isnan(exact) && !(isfinite(p) && reached && falls)) {
         result.class = class_by_errors(spacing, value, exact, p);
         return result;
     }

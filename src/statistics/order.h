@@ -76,6 +76,7 @@ struct order_extrapolation {
 };
 
 /* For a functional at three levels, coarsest first, spacings strictly decreasing. exact: its exact
- * value, NaN if unknown; a sequence that converges to another value is not called asymptotic. */
+ * value, NaN if unknown; a sequence that converges to another value, or whose error does not
+ * decrease at the finest level, is not called asymptotic. */
 struct order_extrapolation order_extrapolate(const double spacing[3], const double value[3],
                                              double exact);

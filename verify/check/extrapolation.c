@@ -57,6 +57,7 @@ static void measure_richardson(struct check_run *run, const void *subject)
         {"no change", ORDER_FLOOR_LIMITED, {2.5, 2.5, 2.5}, 2.5},
         {"changes of round-off", ORDER_FLOOR_LIMITED, {2.5, 2.5 - 1e-15, 2.5 + 1e-15}, (double)NAN},
         {"exact value inside the GCI", ORDER_ASYMPTOTIC, {1.16, 1.04, 1.01}, 1.0005},
+        {"exact value inside the GCI, errors grow", ORDER_DIVERGING, {0.9, 1.6, 2}, 0},
         {"converges to a floor", ORDER_FLOOR_LIMITED, {1.16, 1.04, 1.01}, 0.5},
         {"converges to a floor from below", ORDER_FLOOR_LIMITED, {0.84, 0.96, 0.99}, 1.5},
         {"errors fall, changes grow", ORDER_PREASYMPTOTIC, {7, 5, 2}, 1},

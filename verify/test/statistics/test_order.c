@@ -263,7 +263,11 @@ TEST(test_richardson_exact)
         {{1.4, 1.2, 1.1}, 1, ORDER_ASYMPTOTIC},
         {{1.4, 1.2, 1.1}, 0.976, ORDER_ASYMPTOTIC},
         {{1.4, 1.2, 1.1}, 0.974, ORDER_PREASYMPTOTIC},
-        {{1.4, 1.2, 1.1}, 1.224, ORDER_ASYMPTOTIC},
+        /* within the GCI, but past it: errors 0.176, 0.024, 0.124; 0.11, 0.09, 0.19 */
+        {{1.4, 1.2, 1.1}, 1.224, ORDER_OSCILLATING},
+        {{1.4, 1.2, 1.1}, 1.29, ORDER_DIVERGING},
+        /* within a GCI of four times the value, and farther off from level to level */
+        {{0.000933, 0.001573, 0.002578}, 0, ORDER_DIVERGING},
         /* falls on a third of the promised order, or on less */
         {{1.4, 1.2, 1.1}, 0.716, ORDER_PREASYMPTOTIC},
         {{1.4, 1.2, 1.1}, 0.714, ORDER_FLOOR_LIMITED},
