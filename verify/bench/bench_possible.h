@@ -22,14 +22,15 @@ struct bench_shares {
     /* Possible but not skipped: particles with rates above the tolerance of sleep, which a
      * precursor has reached; and particles that are active because of their neighbours. */
     double reached, layers;
+    double spacing; /* n^(-1/d): mean spacing of the particles over the side of the box */
     /* Sleeping fraction of the gas, in intervals of t_end and of the box along x; the columns are
      * few enough that none between particles is empty at the start. NaN: no gas. */
     int columns;
     double asleep[BENCH_ROWS][BENCH_COLUMNS];
 };
 
-/* True if at least four fifths of the allowed work is skipped, apart from 2 % of all updates, or if
- * nothing is known. */
+/* True if at least four fifths of the allowed work is skipped, apart from 2 % of all updates and,
+ * with few particles, from layers; also if nothing is known. */
 bool bench_shares_enough(const struct bench_shares *shares);
 
 /* Runs it, with or without skips according to its keys. STATUS_*: as run_execute. */

@@ -38,18 +38,32 @@ TEST(test_shares)
     }
 }
 
-/* The bound itself: half of what is allowed is too little; a hundredth of all updates is nothing.
- */
+/* The bound itself: half of what is allowed is too little, unless layers of few particles explain
+ * it; a hundredth of all updates is nothing. */
 TEST(test_enough)
 {
     static const struct {
-        double skipped, allowed;
+        double skipped, allowed, layers, spacing;
         bool enough;
-    } cases[] = {{0.4, 0.8, false}, {0.6, 0.8, false}, {0.63, 0.8, true}, {0.8, 0.8, true},
-                 {0, 0.02, true},   {0, 0.1, false},   {0, NAN, true}};
+    } cases[] = {{0.4, 0.8, 0, 0, false},
+                 {0.6, 0.8, 0, 0, false},
+                 {0.63, 0.8, 0, 0, true},
+                 {0.8, 0.8, 0, 0, true},
+                 {0, 0.02, 0, 0, true},
+                 {0, 0.1, 0, 0, false},
+                 {0, NAN, 0, 0, true},
+                 /* lax with 200 particles; with fewer layers, with 1000 particles */
+                 {0.265, 0.456, 0.204, 0.005, true},
+                 {0.265, 0.456, 0.07, 0.005, false},
+                 {0.265, 0.456, 0.204, 0.001, false},
+                 /* nothing sleeps, or far too little */
+                 {0, 0.456, 0.456, 0.005, false},
+                 {0.1, 0.456, 0.356, 0.005, false}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const struct bench_shares shares = {.skipped = cases[k].skipped,
-                                            .allowed = cases[k].allowed};
+                                            .allowed = cases[k].allowed,
+                                            .layers = cases[k].layers,
+                                            .spacing = cases[k].spacing};
         assert_true(bench_shares_enough(&shares) == cases[k].enough);
     }
 }
