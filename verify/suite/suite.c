@@ -183,18 +183,33 @@ bool suite_chosen(const struct check *check, const struct suite_choice *choice)
     return choice->group_count == 0;
 }
 
+/* In the order given; by_rank: that of least rank, which names the cause, before the others. */
+static const struct check **in_order(const struct check *const *checks, size_t count, bool by_rank)
+{
+    const struct check **ordered = malloc((count + 1) * sizeof *ordered);
+    for (size_t i = 0; ordered && i < count; i++) {
+        size_t k = i;
+        for (; by_rank && k > 0 && ordered[k - 1]->rank > checks[i]->rank; k--)
+            ordered[k] = ordered[k - 1];
+        ordered[k] = checks[i];
+    }
+    return ordered;
+}
+
 enum status suite_run(struct suite *suite, const struct check *const *checks, size_t count,
                       const struct suite_choice *choice, struct error *error)
 {
     const double began = clock_wall();
-    bool sound = true;
+    const struct check **ordered = in_order(checks, count, choice->first);
+    bool sound = ordered != NULL;
     *suite = (struct suite){0};
     for (size_t i = 0; i < count && sound && !(choice->first && suite->failed); i++) {
-        if (!suite_chosen(checks[i], choice)) continue;
-        if (choice->progress) choice->progress(choice->context, checks[i], i, count);
-        sound =
-            run_subjects(suite, checks[i]) && (!choice->mutants || run_mutants(suite, checks[i]));
+        const struct check *check = ordered[i];
+        if (!suite_chosen(check, choice)) continue;
+        if (choice->progress) choice->progress(choice->context, check, i, count);
+        sound = run_subjects(suite, check) && (!choice->mutants || run_mutants(suite, check));
     }
+    free(ordered);
     if (!sound) {
         suite_free(suite);
         return error_set(error, STATUS_ENVIRONMENT, "verify: no memory");

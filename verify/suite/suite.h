@@ -45,7 +45,7 @@ struct suite_choice {
     const char *const *groups; /* GROUP or GROUP/NAME; NULL: all */
     size_t group_count;
     bool slow, mutants;
-    bool first; /* stop after the first check that fails */
+    bool first; /* run the checks by rank, and stop after the first that fails */
     void (*progress)(void *context, const struct check *check, size_t done, size_t total);
     void *context;
 };

@@ -300,6 +300,23 @@ TEST(test_first_failure)
     }
 }
 
+/* The first failure is that of the check of least rank, of equal ranks that which comes first. */
+TEST(test_first_failure_names_the_cause)
+{
+    struct check follows = bare, cause = bare, later = bare;
+    follows.measure = cause.measure = later.measure = two_figures;
+    follows.rank = 150, cause.rank = later.rank = 101;
+    const struct check *const checks[] = {&follows, &cause, &later};
+    for (int first = 0; first < 2; first++) {
+        const struct suite_choice choice = {.first = first};
+        struct suite suite;
+        assert_int_equal(suite_run(&suite, checks, 3, &choice, NULL), STATUS_CHECK_FAILED);
+        assert_int_equal(suite.failed, first ? 1 : 3);
+        assert_ptr_equal(suite.figures[0].check, first ? &cause : &follows);
+        suite_free(&suite);
+    }
+}
+
 static void skips_then_measures(struct check_run *run, const void *subject)
 {
     (void)subject;
