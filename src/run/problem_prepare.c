@@ -140,8 +140,6 @@ static enum status check_together(const struct prepared *p, const struct setting
         return error_set(error, STATUS_BAD_INPUT,
                          "%s has no form in %d dimensions; allowed: %d to %d", problem->member.name,
                          dim, problem->least_dim, problem->most_dim);
-    if (check_vectors(settings, dim, error) || check_box(&p->domain, settings, error))
-        return error->status;
     for (int i = 0; i < SETTINGS; i++) {
         if (settings->value[i].source != SOURCE_USER) continue;
         if (!problem_reads(problem, (enum setting)i))
@@ -154,6 +152,8 @@ static enum status check_together(const struct prepared *p, const struct setting
                              "key %s and dimension=%d exclude each other: it is for %s",
                              setting_keys[i].name, dim, dim > 1 ? "1" : "2 and 3");
     }
+    if (check_vectors(settings, dim, error) || check_box(&p->domain, settings, error))
+        return error->status;
     for (int d = 0; d < dim; d++)
         if (p->boost[d] != 0 && !problem->carried)
             return error_set(error, STATUS_BAD_INPUT,

@@ -23,7 +23,7 @@ static const struct command_option verify_options[] = {
     {"mutants", NULL, "also run the mutants: wrong variants that the checks must reject"},
     {"slow", NULL, "also run the checks that take more than a few seconds"},
     {"details", NULL, "show every figure that fails, not only what it comes to"},
-    {"first", NULL, "stop after the first check that fails"},
+    {"first", NULL, "the checks that name a cause first; stop after the first check that fails"},
     {"kernel-plugin", "F.so", "check a kernel of your own as well (see `sphproof kernel --help`)"},
     {"junit", "FILE", "write a JUnit file"},
     {"failures", "DIR", "where failing checks leave data (default: failures/ beside the program)"},
@@ -44,6 +44,29 @@ static void default_folder(char *folder, size_t size)
     strcat(folder, name);
 }
 
+/* Says which groups there are or, if the group exists, which checks it has. */
+static enum status refuse_name(const char *name, const char *const *groups, size_t group_count,
+                               struct error *error)
+{
+    const size_t length = strcspn(name, "/");
+    const char **names = malloc(check_registry_count * sizeof *names);
+    size_t count = 0;
+    if (!names) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    for (size_t i = 0; i < check_registry_count; i++)
+        if (name[length] && strlen(check_registry[i]->group) == length &&
+            strncmp(name, check_registry[i]->group, length) == 0)
+            names[count++] = check_registry[i]->name;
+    if (count) {
+        char where[80];
+        snprintf(where, sizeof where, "verify: group %.*s", (int)length, name);
+        text_unknown(error, where, "check", name + length + 1, names, count);
+    } else {
+        text_unknown(error, "verify", "group", name, groups, group_count);
+    }
+    free(names);
+    return error->status;
+}
+
 static enum status choose_groups(int n, char **arguments, struct error *error)
 {
     size_t count;
@@ -53,7 +76,7 @@ static enum status choose_groups(int n, char **arguments, struct error *error)
         bool known = false;
         for (size_t j = 0; j < check_registry_count; j++)
             known = known || suite_names(arguments[i], check_registry[j]);
-        if (!known) status = text_unknown(error, "verify", "group", arguments[i], names, count);
+        if (!known) status = refuse_name(arguments[i], names, count, error);
     }
     free(names);
     return status;

@@ -50,6 +50,7 @@ TEST(what_cannot_be_is_refused)
         {2, "kind=noh|boost=0 0", NULL},
         {2, "kind=noh|boost=1 0", "key boost and an initial state of kind noh"},
         {1, "boost=1", "key boost and dimension=1"},
+        {1, "boost=0.5 0", "key boost and dimension=1"},
         {1, "window_radius=1", "key window_radius and dimension=1"},
         {2, "kind=rest|boost=0 1", NULL},
         {2, "kind=rest|boost=0 1|boundary=periodic fixed",
