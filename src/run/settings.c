@@ -8,6 +8,7 @@
 #include "plugin_kernel.h"
 #include "integrator.h"
 #include "text.h"
+#include "viscosity.h"
 
 #define MEMBERS(...)                                                                               \
     (const struct member *const[])                                                                 \
@@ -302,6 +303,80 @@ int settings_choice_along(const struct settings *settings, enum setting key, int
 {
     const struct setting_value *value = &settings->value[key];
     return value->choices[value->given > 1 ? direction : 0];
+}
+
+static bool has_parameter(int viscosity, enum setting key)
+{
+    const char *parameters = viscosity_of[viscosity].parameters, *name = setting_keys[key].name;
+    const size_t length = strlen(name);
+    for (const char *at = parameters; (at = strstr(at, name)); at += length)
+        if ((at == parameters || at[-1] == ' ') && (at[length] == ' ' || !at[length])) return true;
+    return false;
+}
+
+/* The key whose value decides whether this key is read; SETTINGS: none. */
+static enum setting decides(enum setting key)
+{
+    switch (key) {
+    case SETTING_sinc_n:
+        return SETTING_kernel;
+    case SETTING_alpha:
+    case SETTING_beta:
+    case SETTING_alpha_min:
+    case SETTING_alpha_max:
+    case SETTING_noise:
+        return SETTING_viscosity;
+    case SETTING_balsara_floor:
+        return SETTING_balsara;
+    case SETTING_grade_ratio:
+        return SETTING_grade;
+    default:
+        return SETTINGS;
+    }
+}
+
+/* True if the key is read with this choice of the key that decides. */
+static bool is_read_with(enum setting key, int choice)
+{
+    switch (decides(key)) {
+    case SETTING_kernel:
+        return strcmp(kernel_family.members[choice]->name, "sinc") == 0;
+    case SETTING_viscosity:
+        return has_parameter(choice, key);
+    default:
+        return choice == BALSARA_ON;
+    }
+}
+
+bool settings_uses(const struct settings *settings, enum setting key)
+{
+    const enum setting other = decides(key);
+    if (other == SETTINGS) return true;
+    if (other == SETTING_grade) return settings_real(settings, SETTING_grade) < 1;
+    return is_read_with(key, settings_choice(settings, other));
+}
+
+enum status settings_refuse_unused(const struct settings *settings, struct error *error)
+{
+    for (int i = 0; i < SETTINGS; i++) {
+        const enum setting key = (enum setting)i, other = decides(key);
+        if (settings->value[key].source != SOURCE_USER || settings_uses(settings, key)) continue;
+        char given[SETTING_TEXT_MAX], excludes[SETTING_TEXT_MAX], allowed[SETTING_TEXT_MAX] = "";
+        const struct family *family = setting_keys[other].family;
+        size_t used = 0;
+        settings_text(settings, key, given);
+        settings_text(settings, other, excludes);
+        if (!family) snprintf(allowed, sizeof allowed, " below 1");
+        for (int k = 0; family && k < (int)family->n && used < sizeof allowed; k++)
+            if (is_read_with(key, k))
+                used += (size_t)snprintf(allowed + used, sizeof allowed - used, " %s",
+                                         family->members[k]->name);
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%s=%.40s and %s=%.80s exclude each other: %s is of %s%s",
+                         setting_keys[key].name, given, setting_keys[other].name, excludes,
+                         setting_keys[key].name, setting_keys[other].name, allowed);
+    }
+    return STATUS_OK;
 }
 
 /* Reads the keys of the scheme; open: marks the automatic choices. */

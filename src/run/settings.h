@@ -107,6 +107,14 @@ enum status settings_apply(struct settings *settings, int n, char *const *argume
 enum status settings_scheme(struct settings *settings, int dim, struct scheme *scheme,
                             struct error *error);
 
+/* False if the value of another key leaves this one without effect: a parameter of another
+ * viscosity, sinc_n of another kernel, balsara_floor without a factor, grade_ratio of equal masses.
+ * Automatic keys must have their values. */
+bool settings_uses(const struct settings *settings, enum setting key);
+
+/* STATUS_BAD_INPUT: the user gave a key that has no effect by settings_uses(). */
+enum status settings_refuse_unused(const struct settings *settings, struct error *error);
+
 double settings_real(const struct settings *settings, enum setting key);
 
 /* The value of a SETTING_VECTOR in one direction. */

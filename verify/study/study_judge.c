@@ -8,7 +8,6 @@
 #include "measure.h"
 #include "problem_list.h"
 #include "study.h"
-#include "viscosity.h"
 
 /* The lattice sums explain a lost order up to a relative error of this many floors. */
 static const double floor_reach = 20;
@@ -222,40 +221,18 @@ static void suspect(struct study_result *result, const struct case_file *file)
 
 /* ---- settings without effect ---- */
 
-/* True if the key is a parameter of this viscosity. */
-static bool reads(int viscosity, enum setting key)
-{
-    const char *parameters = viscosity_of[viscosity].parameters, *name = setting_keys[key].name;
-    const size_t length = strlen(name);
-    for (const char *at = parameters; (at = strstr(at, name)); at += length)
-        if ((at == parameters || at[-1] == ' ') && (at[length] == ' ' || !at[length])) return true;
-    return false;
-}
-
 /* True if the solver reads this key with these settings. `skip` must not change results. */
 static bool is_read(enum setting key, const struct settings *settings)
 {
-    const int viscosity = settings_choice(settings, SETTING_viscosity);
-    const int kernel = settings_choice(settings, SETTING_kernel);
     switch (key) {
     case SETTING_skip:
         return false;
-    case SETTING_sinc_n:
-        return strcmp(kernel_family.members[kernel]->name, "sinc") == 0;
-    case SETTING_alpha:
-    case SETTING_beta:
-    case SETTING_alpha_min:
-    case SETTING_alpha_max:
-    case SETTING_noise:
-        return reads(viscosity, key);
     case SETTING_seed:
         return study_is_random(settings);
-    case SETTING_grade_ratio:
-        return settings_real(settings, SETTING_grade) < 1;
     case SETTING_h_tolerance:
         return settings_choice(settings, SETTING_h_method) == H_NEWTON;
     default:
-        return true;
+        return settings_uses(settings, key);
     }
 }
 

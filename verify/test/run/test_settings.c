@@ -354,6 +354,65 @@ TEST(documents_have_what_is_read)
     }
 }
 
+/* A user's key that the value of another leaves without effect is refused; nobody else's is. */
+TEST(keys_without_effect_are_refused)
+{
+    static const struct {
+        int dim;
+        const char *keys[2];
+        const char *message; /* NULL: allowed */
+    } rows[] = {
+        {1,
+         {"sinc_n=7"},
+         "sinc_n=7 and kernel=quadratic_spline exclude each other: sinc_n is of kernel sinc"},
+        {1, {"sinc_n=7", "kernel=sinc"}, NULL},
+        {1,
+         {"alpha_max=9"},
+         "alpha_max=9 and viscosity=constant exclude each other: alpha_max is of viscosity "
+         "time_dependent cullen_dehnen"},
+        {1, {"alpha_max=9", "viscosity=time_dependent"}, NULL},
+        {2, {"alpha_min=0", "viscosity=cullen_dehnen"}, NULL},
+        {1, {"viscosity=none", "alpha=3"}, "alpha=3 and viscosity=none exclude"},
+        {1,
+         {"viscosity=time_dependent", "alpha=3"},
+         "alpha=3 and viscosity=time_dependent exclude each other: alpha is of viscosity constant "
+         "reconstructed fading projected"},
+        {2, {"viscosity=cullen_dehnen", "beta=3"}, "beta=3 and viscosity=cullen_dehnen exclude"},
+        {1, {"alpha=1", "beta=3"}, NULL},
+        {2,
+         {"viscosity=constant", "noise=2"},
+         "noise=2 and viscosity=constant exclude each other: noise is of viscosity projected"},
+        {2, {"noise=2"}, NULL},
+        {2,
+         {"balsara=off", "balsara_floor=3"},
+         "balsara_floor=3 and balsara=off exclude each other: balsara_floor is of balsara on"},
+        {2, {"balsara=on", "balsara_floor=3"}, NULL},
+        {1,
+         {"grade_ratio=1.5"},
+         "grade_ratio=1.5 and grade=1 exclude each other: grade_ratio is of grade below 1"},
+        {1, {"grade_ratio=1.5", "grade=0.5"}, NULL},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        for (int source = SOURCE_CASE; source <= SOURCE_USER; source++) {
+            struct settings settings;
+            struct scheme scheme;
+            struct error error = {0};
+            settings_init(&settings);
+            for (int i = 0; i < 2 && rows[k].keys[i]; i++)
+                assert_int_equal(
+                    settings_apply(&settings, 1, (char *const *)&rows[k].keys[i], &error),
+                    STATUS_OK);
+            for (int i = 0; i < SETTINGS && source == SOURCE_CASE; i++)
+                settings.value[i].source = SOURCE_CASE;
+            assert_int_equal(settings_scheme(&settings, rows[k].dim, &scheme, &error), STATUS_OK);
+            const bool refused = rows[k].message && source == SOURCE_USER;
+            assert_int_equal(settings_refuse_unused(&settings, &error),
+                             refused ? STATUS_BAD_INPUT : STATUS_OK);
+            if (refused && !strstr(error.message, rows[k].message))
+                fail_msg("row %zu: %s", k, error.message);
+        }
+}
+
 static int allow_plugins(void **state)
 {
     (void)state;
