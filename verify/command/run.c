@@ -79,6 +79,7 @@ static void describe_window(const struct window *window, char *text, size_t size
 /* Prints functionals of the state and their exact values. */
 static void print_functionals(const struct run_result *result, const struct table_style *style)
 {
+    bool unknown = false;
     if (result->functional_count == 0) return;
     printf("\n%s%-16s %14s %14s%s\n", style->bold, "at the end", "measured", "reference",
            style->end);
@@ -86,8 +87,16 @@ static void print_functionals(const struct run_result *result, const struct tabl
         const struct run_functional *f = &result->functionals[i];
         char exact[24] = "unknown";
         if (!isnan(f->exact)) snprintf(exact, sizeof exact, "%.8g", f->exact);
-        printf("%-16s %14.8g %14s\n", f->name, f->value, exact);
+        if (isnan(f->value))
+            printf("%-16s %14s %14s\n", f->name, "-", exact);
+        else
+            printf("%-16s %14.8g %14s\n", f->name, f->value, exact);
+        unknown |= isnan(f->value);
     }
+    if (unknown)
+        printf(
+            "-: not measured, since there are too few particles where it is measured, or the run "
+            "is too short\n");
 }
 
 static void print_errors(const struct run_settings *settings, const struct run_result *result,
