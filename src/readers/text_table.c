@@ -32,6 +32,7 @@ static int column_called(const struct text_table *table, const char *name, size_
 
 static enum status apply_map(struct text_table *table, const char *map, struct error *error)
 {
+    bool given[SNAPSHOT_COLUMNS] = {false};
     for (const char *at = map; at && *at;) {
         const size_t length = strcspn(at, ","), ours = strcspn(at, "=");
         const int column =
@@ -56,6 +57,10 @@ static enum status apply_map(struct text_table *table, const char *map, struct e
                 table->source->path, (int)(length - ours - 1 < 40 ? length - ours - 1 : 40),
                 at + ours + 1, there);
         }
+        if (given[meaning])
+            return error_set(error, STATUS_BAD_INPUT, "--map %.80s: names %s twice; allowed: once",
+                             map, snapshot_column_names[meaning]);
+        given[meaning] = true;
         for (size_t c = 0; c < table->columns; c++)
             if (table->meaning[c] == meaning) table->meaning[c] = -1;
         table->meaning[column] = meaning;
@@ -230,6 +235,11 @@ enum status text_table_read(const struct text_table *table, size_t from, size_t 
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", table->source->path);
     if (!status) status = take_rows(table, from, line, file, type, error);
     if (!status && typed) gas_first(file, type, type + file->n);
+    if (!status && file->gas < file->n) {
+        char value[64];
+        snprintf(value, sizeof value, "%zu of %zu rows", file->gas, file->n);
+        snapshot_note(&file->notes, "gas", value, "column itype: 1 is gas as SPLASH numbers types");
+    }
     free(type);
     file->precision[0] = file->precision[1] = DBL_EPSILON / 2;
     file->parts = 1;

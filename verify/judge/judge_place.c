@@ -74,10 +74,15 @@ static enum status take_time(const struct judge_request *request, struct judged 
     struct snapshot_file *file = &judged->file;
     char value[32];
     const struct snapshot_value time = request->time.known ? request->time : file->time;
+    const char *untaken = "";
+    for (size_t k = 0; k < file->notes.count; k++)
+        if (strcmp(file->notes.note[k].what, "not taken") == 0)
+            untaken = file->notes.note[k].evidence;
     if (!time.known)
-        return error_set(error, STATUS_BAD_INPUT,
-                         "%.200s: says no time; --time T helps, in text also a line '# time = T'",
-                         judged->path);
+        return error_set(
+            error, STATUS_BAD_INPUT,
+            "%.200s: says no time; --time T helps, in text also a line '# time = T'%s%.200s",
+            judged->path, *untaken ? "; not taken: " : "", untaken);
     if (!(time.value >= 0))
         return error_set(error, STATUS_BAD_INPUT, "%.200s: time = %g; allowed: 0 or above",
                          judged->path, time.value);
@@ -102,6 +107,21 @@ static void extent(const struct snapshot_file *file, size_t n, int d, double *lo
         *lo = fmin(*lo, file->column[d][i]);
         *hi = fmax(*hi, file->column[d][i]);
     }
+}
+
+/* True if all particles that are no gas lie outside the gas, as those of walls do. Those that lie
+ * among it (dust, or rows of a type that was taken for another) leave the gas to fill its box. */
+static bool has_walls(const struct snapshot_file *file)
+{
+    double lo[3], hi[3];
+    for (int d = 0; d < file->dim; d++) extent(file, file->gas, d, &lo[d], &hi[d]);
+    for (size_t i = file->gas; i < file->n; i++) {
+        bool inside = true;
+        for (int d = 0; d < file->dim; d++)
+            inside = inside && file->column[d][i] >= lo[d] && file->column[d][i] <= hi[d];
+        if (inside) return false;
+    }
+    return file->gas < file->n;
 }
 
 /* The extent of gas in 1D whose volumes fill a line, including the half spacings beyond the
@@ -162,6 +182,29 @@ static void take_liquid_box(const struct judge_request *request, struct judged *
                                  : "the file says so");
 }
 
+/* A line of gas whose volumes are together as long as the case's box fills that box elsewhere: from
+ * 0 on, about 0, or else about the middle of the gas. False: it has another length. */
+static bool shift_case_box(struct judged *judged, const struct settings *settings, struct box *box)
+{
+    struct snapshot_file *file = &judged->file;
+    double first, last;
+    const double length =
+        settings_along(settings, SETTING_hi, 0) - settings_along(settings, SETTING_lo, 0);
+    const double corners[] = {0, -0.5 * length, 0.5 * (box->lo[0] + box->hi[0] - length)};
+    char value[80];
+    if (!(fabs(box->hi[0] - box->lo[0] - length) <= 0.01 * length)) return false;
+    extent(file, file->n, 0, &first, &last);
+    int k = 0;
+    while (k < 2 && !(first >= corners[k] && last <= corners[k] + length)) k++;
+    box->known = file->boxed = true; /* and periodic, since nothing says otherwise */
+    box->lo[0] = corners[k], box->hi[0] = corners[k] + length;
+    file->box[0] = length;
+    snprintf(value, sizeof value, "%.6g to %.6g along x", box->lo[0], box->hi[0]);
+    snapshot_note(&file->notes, "box", value,
+                  "the file says none: as long as the case's, which the volumes of particles fill");
+    return true;
+}
+
 static enum status take_box(const struct judge_request *request, struct judged *judged,
                             const struct settings *settings, bool ends, struct box *box,
                             struct error *error)
@@ -202,7 +245,7 @@ static enum status take_box(const struct judge_request *request, struct judged *
             box->lo[d] = snapped - 0.5 * file->box[d], box->hi[d] = snapped + 0.5 * file->box[d];
         }
     }
-    if (!file->boxed && file->gas == file->n && fits_case(file, settings, ends)) {
+    if (!file->boxed && !has_walls(file) && fits_case(file, settings, ends)) {
         box->known = file->boxed = true; /* and periodic, since nothing says otherwise */
         for (int d = 0; d < file->dim; d++) {
             box->lo[d] = settings_along(settings, SETTING_lo, d);
@@ -214,6 +257,7 @@ static enum status take_box(const struct judge_request *request, struct judged *
                            : "the file says none; all positions lie in the case's and fill it");
     } else {
         const bool filled = !file->boxed && extent_of_volumes(file, &box->lo[0], &box->hi[0]);
+        if (filled && shift_case_box(judged, settings, box)) return STATUS_OK;
         snprintf(value, sizeof value, "%.6g to %.6g along x", box->lo[0], box->hi[0]);
         snapshot_note(&file->notes, "box", value, "%s",
                       filled         ? "the file says none: as far as volumes of particles reach; "
@@ -480,7 +524,7 @@ enum status judge_place(const struct judge_request *given, struct judged *judged
                           judged->slab;
     if (tube && place_tube(request, judged, settings, &box, &period[0], &ended, error))
         return error->status;
-    judged->boxed = box.known && !ended && judged->file.gas == judged->file.n;
+    judged->boxed = box.known && !ended && !has_walls(&judged->file);
     if ((!ended && set_window(request, judged, settings, &box, case_hi - case_lo,
                               0.5 * (case_lo + case_hi), error)) ||
         set_real(settings, SETTING_n,

@@ -191,7 +191,20 @@ def files_of_ours(folder, hdf5):
     for line, says in (("# box = -1:0.5\n", ("box", "positions")), ("# case = nope\n", "nope"),
                        ("# keys = left=1\n", ("left", "of its run")),
                        ("# box = 1:-1\n", "box = -2")):
-        refused(write(folder, "bad.csv", head + "".join(rest[:6]) + line + "".join(rest[6:])), says=says)
+        own = [one for one in rest[:6] if not one.startswith(line[:6])]  # what it says otherwise is refused as well
+        refused(write(folder, "bad.csv", head + "".join(own) + line + "".join(rest[6:])), says=says)
+    # rows of another type among the gas are counted, and missed; gas that lies elsewhere is the same gas
+    rows = [one for one in rest if one[0] not in "#\n"]
+    whole = judge(path, "--case", case)
+    typed = write(folder, "typed.csv", head.strip() + ",itype\n" + "".join(one for one in rest if one[0] == "#")
+                  + "".join("%s,%d\n" % (one.strip(), i % 3 < 2) for i, one in enumerate(rows)))
+    done = subprocess.run([PROGRAM, "judge", typed, "--case", case, "--gate", "mass=1e-3"], capture_output=True, text=True)
+    assert done.returncode == 1 and "%d of %d rows" % (-(-2 * len(rows) // 3), len(rows)) in done.stdout, done
+    assert "gate mass " in done.stdout and "times that of the case in this box" in done.stdout, done
+    moved = write(folder, "moved.csv", head + "".join("%.17g,%s" % (float(one.split(",")[0]) + 1, one.split(",", 1)[1]) for one in rows))
+    moved = judge(moved, "--case", case, "--time", repr(whole["time"]))
+    assert moved["assumptions"] != whole["assumptions"]
+    assert abs(moved["errors"]["density"]["l1"] / whole["errors"]["density"]["l1"] - 1) < 1e-6, (moved["errors"], whole["errors"])
     for text in ("1:2:3", "2:1", "-1", "x"):
         refused(path, "--window", text, says=("--window", "A:B"))
 

@@ -82,6 +82,11 @@ def draw(program, number):
     maybe(0.3, "skip", "none")
     maybe(0.1, "h_tolerance", log_uniform(rng, 1e-14, 1e-3))
     maybe(0.3, "sinc_n", rng.randint(3, 12))
+    unused = {"sinc_n": keys["kernel"] != "sinc", "alpha": keys["viscosity"] in ("none", "time_dependent"),
+              "beta": keys["viscosity"] == "none"}  # are refused
+    for key in unused:
+        if unused[key]:
+            keys.pop(key, None)
     if case in RIEMANN:
         maybe(0.2, "grade", round(rng.uniform(0.05, 1), 2))
         maybe(0.1, "mass_ratio", log_uniform(rng, 0.05, 20))

@@ -4,7 +4,8 @@
  * numbers, the names are in the last comment before them, as numpy.savetxt writes it. Lines before
  * the particles give what is not in columns: "# time = 0.2", "# gamma = 1.4", "# box = 2", "# box =
  * 2 1 1" or "# box = -1:1 0:0.5"; our own snapshots also have "case", "boundary" and "keys". Time
- * (or t) and gamma are also found within a comment: "# Sod at t = 0.2, gamma: 5/3". */
+ * (or t) and gamma are also found within a comment: "# Sod at t = 0.2, gamma: 5/3". Lines that
+ * contradict each other and decimal commas are refused. */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -48,21 +49,72 @@ static bool is_word(const char *text, size_t length, const char *word)
     return strlen(word) == length && strncasecmp(text, word, length) == 0;
 }
 
-static void take_number(const char *key, size_t length, double number, const char *line,
-                        struct snapshot_file *file)
+/* Values from comments, with the number of the line that first gave each. */
+struct remarks {
+    struct snapshot_file *file;
+    const char *path;
+    size_t line;  /* number of the current line */
+    bool untaken; /* noted */
+    size_t time, gamma, box, case_name, boundary, keys;
+};
+
+static enum status refuse(const struct remarks *remarks, const char *text, const char *allowed,
+                          struct error *error)
 {
-    if (is_word(key, length, "time") || is_word(key, length, "t"))
-        file->time = (struct snapshot_value){true, number};
-    if (is_word(key, length, "gamma")) {
-        file->gamma = (struct snapshot_value){true, number};
+    char copy[100];
+    snprintf(copy, sizeof copy, "%.99s", text);
+    status_clean(copy);
+    return error_set(error, STATUS_BAD_INPUT, "%.200s:%zu: '%s'; allowed: %s", remarks->path,
+                     remarks->line, copy, allowed);
+}
+
+/* Refuses a line that contradicts an earlier one. */
+static enum status agree(const struct remarks *remarks, size_t *first, bool same, const char *text,
+                         struct error *error)
+{
+    char allowed[80];
+    snprintf(allowed, sizeof allowed, "one value, but line %zu says another", *first);
+    if (*first && !same) return refuse(remarks, text, allowed, error);
+    if (!*first) *first = remarks->line;
+    return STATUS_OK;
+}
+
+static bool is_time(const char *key, size_t length)
+{
+    return is_word(key, length, "time") || is_word(key, length, "t");
+}
+
+static enum status take_number(struct remarks *remarks, const char *key, size_t length,
+                               double number, const char *line, struct error *error)
+{
+    struct snapshot_file *file = remarks->file;
+    const bool time = is_time(key, length);
+    if (!time && !is_word(key, length, "gamma")) return STATUS_OK;
+    struct snapshot_value *value = time ? &file->time : &file->gamma;
+    const bool same = fabs(value->value - number) <= 1e-3 * fabs(number); /* one may be rounded */
+    if (!time && !remarks->gamma)
         snapshot_note(&file->notes, "gamma", "in the file", "its line '%.100s'", line);
-    }
+    *value = (struct snapshot_value){true, number};
+    return agree(remarks, time ? &remarks->time : &remarks->gamma, same, line, error);
+}
+
+/* True for a comma between two digits, the decimal point of many languages. */
+static bool decimal_comma(const char *text, size_t at)
+{
+    return at && text[at] == ',' && isdigit((unsigned char)text[at - 1]) &&
+           isdigit((unsigned char)text[at + 1]);
+}
+
+static bool begins_number(const char *text)
+{
+    text += strspn(text, "+-.");
+    return isdigit((unsigned char)*text);
 }
 
 /* Reads every "KEY = NUMBER" and "KEY: NUMBER" of a comment. A number followed by anything but a
- * comma, a semicolon or the next key may have a unit and is ignored. A key ends at the # that
- * begins the comment. */
-static void take_numbers(const char *line, struct snapshot_file *file)
+ * comma, a semicolon or the next key may have a unit and is ignored; the first such line is noted.
+ * A key ends at the # that begins the comment. */
+static enum status take_numbers(struct remarks *remarks, const char *line, struct error *error)
 {
     double number;
     for (const char *at = line; (at = strpbrk(at, "=:")); at++) {
@@ -70,39 +122,84 @@ static void take_numbers(const char *line, struct snapshot_file *file)
         while (strchr(" \t", end[-1])) end--;
         const char *begin = end;
         while (in_word(begin[-1])) begin--;
-        const size_t size = strcspn(value, " \t,;");
+        const size_t size = strcspn(value, " \t,;"), length = (size_t)(end - begin);
         const char *rest = value + size + strspn(value + size, " \t");
-        if ((!*rest || strchr(",;#", *rest) || assigns(rest)) && take_ratio(value, size, &number))
-            take_number(begin, (size_t)(end - begin), number, line, file);
+        if (!is_time(begin, length) && !is_word(begin, length, "gamma")) continue;
+        if (decimal_comma(value, size))
+            return refuse(remarks, line, "a decimal point, such as 0.2", error);
+        if ((!*rest || strchr(",;#", *rest) || assigns(rest)) && take_ratio(value, size, &number)) {
+            if (take_number(remarks, begin, length, number, line, error)) return error->status;
+        } else if (begins_number(value) && !remarks->untaken) {
+            char place[32];
+            remarks->untaken = true;
+            snprintf(place, sizeof place, "line %zu", remarks->line);
+            snapshot_note(&remarks->file->notes, "not taken", place,
+                          "'%.100s'; allowed: a number, and no unit behind it", line);
+        }
     }
+    return STATUS_OK;
+}
+
+static enum status take_box(struct remarks *remarks, const char *value, const char *line,
+                            struct error *error)
+{
+    struct snapshot_file *file = remarks->file, said = {0};
+    bool same = true, comma = false;
+    for (size_t at = 0; value[at] && !strchr(value, ':'); at++)
+        comma = comma || decimal_comma(value, at);
+    if (!begins_number(value)) return STATUS_OK;
+    if (comma || !snapshot_take_box(value, &said))
+        return refuse(remarks, line,
+                      "lengths such as 2 or 2 1 1, or ends such as -1:1 0:0.5, with blanks between "
+                      "them and decimal points",
+                      error);
+    for (int d = 0; d < 3; d++) {
+        same = same && fabs(said.box[d] - file->box[d]) <= 1e-9 * fabs(said.box[d]) &&
+               fabs(said.corner[d] - file->corner[d]) <= 1e-9 * fabs(said.box[d]);
+        file->box[d] = said.box[d], file->corner[d] = said.corner[d];
+    }
+    same = same && file->placed == said.placed;
+    file->boxed = true, file->placed = said.placed;
+    return agree(remarks, &remarks->box, same, line, error);
+}
+
+static enum status take_text(struct remarks *remarks, size_t *first, char *said, size_t size,
+                             const char *value, const char *line, struct error *error)
+{
+    const bool same = strncmp(said, value, size - 1) == 0;
+    snprintf(said, size, "%s", value);
+    return agree(remarks, first, same, line, error);
 }
 
 /* Reads a line with a #. */
-static void take_remark(const char *line, size_t length, struct snapshot_file *file)
+static enum status take_remark(struct remarks *remarks, const char *line, size_t length,
+                               struct error *error)
 {
+    struct snapshot_file *file = remarks->file;
     char text[1200], key[16];
-    if (length >= sizeof text) return;
+    if (length >= sizeof text) return STATUS_OK;
     memcpy(text, line, length);
     text[length] = '\0';
     const size_t begin = strspn(text, "# \t"), size = strcspn(text + begin, " \t=:");
     const size_t value = begin + size + strspn(text + begin + size, " \t=:");
     char *end = text + strlen(text);
     while (strchr(" \t\r", end[-1])) *--end = '\0';
-    if (size == 0 || value >= (size_t)(end - text)) return;
+    if (size == 0 || value >= (size_t)(end - text)) return STATUS_OK;
     snprintf(key, sizeof key, "%.*s", (int)size, text + begin);
     double number;
-    if (strcmp(key, "box") == 0)
-        file->boxed = snapshot_take_box(text + value, file);
-    else if (strcmp(key, "case") == 0)
-        snprintf(file->case_name, sizeof file->case_name, "%s", text + value);
-    else if (strcmp(key, "boundary") == 0)
-        snprintf(file->boundary, sizeof file->boundary, "%s", text + value);
-    else if (strcmp(key, "keys") == 0)
-        snprintf(file->keys, sizeof file->keys, "%s", text + value);
-    else if (text_real(text + value, &number)) /* also "time 0.2" */
-        take_number(text + begin, size, number, text, file);
-    else
-        take_numbers(text, file);
+    if (strcmp(key, "box") == 0) return take_box(remarks, text + value, text, error);
+    if (strcmp(key, "case") == 0)
+        return take_text(remarks, &remarks->case_name, file->case_name, sizeof file->case_name,
+                         text + value, text, error);
+    if (strcmp(key, "boundary") == 0)
+        return take_text(remarks, &remarks->boundary, file->boundary, sizeof file->boundary,
+                         text + value, text, error);
+    if (strcmp(key, "keys") == 0)
+        return take_text(remarks, &remarks->keys, file->keys, sizeof file->keys, text + value, text,
+                         error);
+    if (text_real(text + value, &number)) /* also "time 0.2" */
+        return take_number(remarks, text + begin, size, number, text, error);
+    return take_numbers(remarks, text, error);
 }
 
 /* Commas, else semicolons, else blanks. */
@@ -161,11 +258,12 @@ enum status csv_comments(const char *path, struct snapshot_file *said, struct er
 {
     struct snapshot_source source;
     *said = (struct snapshot_file){0};
-    const enum status status = source_open(&source, path, error);
+    enum status status = source_open(&source, path, error);
+    struct remarks remarks = {.file = said, .path = path, .line = 1};
     const char *line = status ? "" : (const char *)source.bytes;
-    while (*line && !begins_with_number(line)) {
+    for (; !status && *line && !begins_with_number(line); remarks.line++) {
         const size_t length = strcspn(line, "\n");
-        if (line[strspn(line, " \t\r")] == '#') take_remark(line, length, said);
+        if (line[strspn(line, " \t\r")] == '#') status = take_remark(&remarks, line, length, error);
         line += length + (line[length] == '\n');
     }
     source_free(&source);
@@ -177,6 +275,7 @@ static enum status read(const struct snapshot_source *source,
                         struct error *error)
 {
     struct text_table table = {.source = source};
+    struct remarks remarks = {.file = file, .path = source->path};
     const char *text = (const char *)source->bytes;
     size_t at = 0, line = 1, remark = 0, remark_length = 0;
     if (strncmp(text, "\xef\xbb\xbf", 3) == 0) at = 3;
@@ -184,7 +283,8 @@ static enum status read(const struct snapshot_source *source,
         const size_t length = strcspn(text + at, "\n");
         const size_t begin = strspn(text + at, " \t\r");
         if (text[at + begin] == '#') {
-            take_remark(text + at, length, file);
+            remarks.line = line;
+            if (take_remark(&remarks, text + at, length, error)) return error->status;
             remark = at + begin + 1, remark_length = length - begin - 1;
         } else if (begin < length) {
             const bool named = !(remark_length && begins_with_number(text + at + begin));

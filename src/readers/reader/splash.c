@@ -67,11 +67,6 @@ static enum status read(const struct snapshot_source *source,
         text_table_name(&table, options->map, error) ||
         text_table_read(&table, at, line, file, error))
         return error->status;
-    if (file->gas < file->n) {
-        char value[64];
-        snprintf(value, sizeof value, "%zu of %zu rows", file->gas, file->n);
-        snapshot_note(&file->notes, "gas", value, "column itype: 1 is gas as SPLASH numbers types");
-    }
     snprintf(file->code, sizeof file->code, "unknown, through SPLASH");
     return STATUS_OK;
 }

@@ -167,10 +167,10 @@ static void every_choice(const char *name, int dim, const char *size)
 TEST(plans)
 {
     every_choice("sod", 1, "n=40");
-    every_choice("gresho", 2, "n=8^2");
-    every_choice("rest_3d", 3, "n=4^3");
-    const struct run heated = keyed_run("gresho", "alpha_u=0.5 viscosity=constant n=8^2"),
-                     heavy = keyed_run("rayleigh_taylor_mode", "n=8^2");
+    every_choice("gresho", 2, "n=10^2");
+    every_choice("rest_3d", 3, "n=10^3");
+    const struct run heated = keyed_run("gresho", "alpha_u=0.5 viscosity=constant n=10^2"),
+                     heavy = keyed_run("rayleigh_taylor_mode", "n=16^2");
     plan_is_right(&heated);
     plan_is_right(&heavy);
 }
@@ -209,7 +209,7 @@ TEST(warnings)
     warns("sod", "n=40 viscosity=none energy=total", "loses digits");
     warns("sod", "n=40 viscosity=none energy=internal", "");
     warns("gresho", "n=8^2 kernel=cubic_spline eta=2.385", "");
-    warns("gresho", "n=8^2 kernel=cubic_spline eta=5 gradient=ia", "");
+    warns("gresho", "n=10^2 kernel=cubic_spline eta=5 gradient=ia", "");
 }
 
 /* A setup without a scheme's defaults: 1D, cubic spline, no viscosity, internal energy. */

@@ -57,6 +57,7 @@ TEST(maps)
     refuses(text, size, "rho=rh", "has no column 'rh'");
     refuses(text, size, "rho=rhoo", "has no column 'rhoo'");
     refuses(text, size, "u=u,rho=Den,P=P", "has no column 'Den'; it has");
+    refuses(text, size, "rho=rho,rho=P", "--map rho=rho,rho=P: names rho twice; allowed: once");
     refuses(text, size, "rho", "NAME one of");
     refuses(text, size, "rho,P=P", "NAME one of");
     refuses(text, size, "density=rho", "NAME one of");

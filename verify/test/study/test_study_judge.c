@@ -324,7 +324,7 @@ TEST(idle_settings_are_suspected)
         {"viscosity=none,alpha=1,2", NULL, NULL},
         {"viscosity=none,beta=1,2", NULL, NULL},
         {"viscosity=cullen_dehnen,alpha=1,2", NULL, NULL},
-        {"viscosity=time_dependent,beta=1,2", NULL, NULL},
+        {"viscosity=time_dependent,beta=1,2", "beta", NULL},
         {"viscosity=time_dependent,alpha_min=0.1,0.2", "alpha_min", NULL},
         {"viscosity=cullen_dehnen,alpha_max=1,2", "alpha_max", NULL},
         {"kernel=sinc,sinc_n=3,5", "sinc_n", NULL},
