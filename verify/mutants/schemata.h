@@ -10,7 +10,7 @@
 char *getenv(const char *name);
 int atoi(const char *text);
 int open(const char *name, int flags, ...);
-int close(int file);
+int sphproof_close(int file) __asm__("close"); /* a source may have a close of its own */
 long lseek(int file, long offset, int whence);
 void *mmap(void *at, unsigned long size, int protection, int flags, int file, long offset);
 
@@ -29,7 +29,7 @@ SCHEMATA_GLOBAL __attribute__((constructor(101))) void sphproof_schemata(void)
     if (file < 0) return;
     sphproof_reach = mmap((void *)0, (unsigned long)lseek(file, 0, 2), 3, 1, file, 0);
     if (sphproof_reach != (void *)-1) sphproof_mutant = -1;
-    close(file); /* who counts descriptors finds as many as without */
+    sphproof_close(file); /* a test that counts descriptors finds as many as without */
 }
 
 static inline int sphproof_seen(int n, int same)
