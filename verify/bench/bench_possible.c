@@ -206,7 +206,7 @@ static enum status run_counting(const struct run *run, struct counting *counting
     shares->possible = counting->share / (double)counting->steps;
     shares->reached = counting->reached / (double)counting->steps;
     shares->layers = counting->layers / (double)counting->steps;
-    shares->spacing = pow((double)start.n, -1. / run->problem.domain.dim);
+    shares->spacing = run->problem.domain.dim == 1 ? 1 / (double)start.n : 0;
     shares->coarse = run->problem.problem->ahead == NULL;
     shares->columns = counting->columns;
     fill_map(counting, shares);
@@ -218,8 +218,9 @@ static enum status run_counting(const struct run *run, struct counting *counting
 
 bool bench_shares_enough(const struct bench_shares *shares)
 {
-    /* At low resolution the layers, which are so many spacings thick, are most of what is left.
-     * They explain no more than as much again as is skipped, or sleep that fails would not show. */
+    /* With few particles in 1D the layers, which are so many spacings thick, are most of what is
+     * left. They explain no more than as much again as is skipped, or sleep that fails would not
+     * show. */
     const double spacings = 40, thickest = fmin(spacings * shares->spacing, shares->skipped);
     const double explained = fmin(shares->layers, thickest);
     return !(shares->skipped + explained < 0.8 * shares->allowed - 0.02);

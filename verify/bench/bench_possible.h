@@ -22,7 +22,7 @@ struct bench_shares {
     /* Possible but not skipped: particles with rates above the tolerance of sleep, which a
      * precursor has reached; and particles that are active because of their neighbours. */
     double reached, layers;
-    double spacing; /* n^(-1/d): mean spacing of the particles over the side of the box */
+    double spacing; /* 1D: mean spacing over the length of the box; 2D and 3D: 0, nothing excuses */
     /* Sleeping fraction of the gas, in intervals of t_end and of the box along x; the columns are
      * few enough that none between particles is empty at the start. NaN: no gas. */
     int columns;

@@ -31,6 +31,7 @@ TEST(test_shares)
         const struct bench_shares shares = shares_of(cases[k].name, cases[k].keys);
         near_inside(shares.allowed, cases[k].allowed, 1);
         assert_true(bench_shares_enough(&shares));
+        assert_true((shares.spacing > 0) == !strpbrk(cases[k].name, "23")); /* 1D alone */
         near_inside(shares.skipped / shares.allowed, 0.8, 1.05);
         /* what could sleep does, or it is told why not (a step sees who sleeps after it) */
         assert_true(shares.reached >= 0 && shares.layers >= 0);
