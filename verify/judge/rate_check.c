@@ -369,20 +369,6 @@ enum status rate_check_make(struct rate_check *check, const char *path, const st
     return STATUS_OK;
 }
 
-/* The particle nearest to a position along an axis; of several the first. */
-static size_t nearest_along(const struct setup *setup, int axis, double place, double *distance)
-{
-    const double side = setup->hi[axis] - setup->lo[axis];
-    size_t nearest = 0;
-    *distance = (double)INFINITY;
-    for (size_t i = 0; i < setup->n; i++) {
-        double away = fabs(setup->x[axis][i] - place);
-        if (setup->boundary[axis] == BOUNDARY_PERIODIC) away = fabs(remainder(away, side));
-        if (away < *distance) nearest = i, *distance = away;
-    }
-    return nearest;
-}
-
 enum status rate_check_positions(const char *path, const struct csv *theirs,
                                  const struct setup *setup, struct error *error)
 {
@@ -392,19 +378,15 @@ enum status rate_check_positions(const char *path, const struct csv *theirs,
         const int column = csv_column(theirs, name);
         for (size_t i = 0; column >= 0 && i < setup->n && i < theirs->rows; i++) {
             const double theirs_at = theirs->values[column][i];
-            double away = theirs_at - setup->x[axis][i], distance;
+            double away = theirs_at - setup->x[axis][i];
             if (setup->boundary[axis] == BOUNDARY_PERIODIC) away = remainder(away, side);
             if (fabs(away) <= 1e-5 * side) continue;
-            const size_t other = nearest_along(setup, axis, theirs_at, &distance);
-            char where[60] = "";
-            if (distance <= 1e-5 * side)
-                snprintf(where, sizeof where, ", as particle %zu is", other);
             return error_set(
                 error, STATUS_BAD_INPUT,
-                "%.200s: the row of particle %zu is at %s=%.9g%s, and the particle is "
-                "at %.9g: allowed: the same positions in the same order, or no columns "
+                "%.200s: the row of particle %zu is at %s=%.9g, and the particle is at "
+                "%.9g: allowed: the same positions in the same order, or no columns "
                 "x y z",
-                path, i, name, theirs_at, where, setup->x[axis][i]);
+                path, i, name, theirs_at, setup->x[axis][i]);
         }
     }
     return STATUS_OK;

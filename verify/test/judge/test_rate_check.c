@@ -307,10 +307,8 @@ TEST(whose_rows)
             for (int a = 0; a < dim; a++) theirs.names[a] = letters[a], theirs.values[a] = x[a];
             assert_int_equal(rate_check_positions("theirs.csv", &theirs, &gas.setup, &error),
                              rows[k].good ? STATUS_OK : STATUS_BAD_INPUT);
-            if (rows[k].swapped) {
+            if (rows[k].swapped)
                 assert_non_null(strstr(error.message, "the row of particle 3 is at x="));
-                assert_non_null(strstr(error.message, ", as particle 7 is, and"));
-            }
             theirs.columns = 0; /* no positions */
             assert_int_equal(rate_check_positions("theirs.csv", &theirs, &gas.setup, &error),
                              STATUS_OK);
