@@ -100,6 +100,27 @@ static void take_box(const struct snapshot_source *source, struct snapshot_file 
         file->box[d] = isfinite(box[d]) && box[d] > 0 ? box[d] : 0;
 }
 
+/* Notes units that are not 1: the numbers of all columns are in them, and so are the case's. */
+static void note_units(const struct snapshot_source *source, struct snapshot_file *file)
+{
+    static const char *const names[][5] = {
+        {"Units:Unit length in cgs (U_L)", "Header:UnitLength_in_cm", "Parameters:UnitLength_in_cm",
+         "Header:UnitLength_In_CGS", NULL},
+        {"Units:Unit mass in cgs (U_M)", "Header:UnitMass_in_g", "Parameters:UnitMass_in_g",
+         "Header:UnitMass_In_CGS", NULL},
+        {"Units:Unit time in cgs (U_t)", "Header:UnitVelocity_in_cm_per_s",
+         "Parameters:UnitVelocity_in_cm_per_s", "Header:UnitVelocity_In_CGS", NULL}};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        const char *from = "";
+        const struct snapshot_value unit = hdf5_first(source, names[k], &from);
+        if (!unit.known || fabs(unit.value - 1) < 1e-6) continue;
+        snapshot_note(&file->notes, "units", "not converted",
+                      "%s is %g: numbers are taken as they stand, in the units of the case", from,
+                      unit.value);
+        return;
+    }
+}
+
 enum status hdf5_header(const struct snapshot_source *source, struct snapshot_file *file,
                         struct error *error)
 {
@@ -131,5 +152,6 @@ enum status hdf5_header(const struct snapshot_source *source, struct snapshot_fi
     file->total = hdf5_first(source, totals, NULL).value;
     if (dim.known && dim.value >= 1 && dim.value <= 3) file->dim = (int)dim.value;
     take_box(source, file);
+    note_units(source, file);
     return take_masses(source, file, error);
 }

@@ -32,17 +32,23 @@ static const char *const called[SNAPSHOT_COLUMNS] = {
     "du dudt udot rateofchangeofinternalenergy",
 };
 
+const char *snapshot_unit(const char *name)
+{
+    const char *unit = name + strcspn(name, "[(");
+    const bool is_unit =
+        *unit == '[' ? !isdigit((unsigned char)unit[1]) : *unit && unit > name && unit[-1] == ' ';
+    return is_unit ? unit : name + strlen(name);
+}
+
 int snapshot_column_of(const char *name)
 {
     char plain[48];
     size_t n = 0;
-    const char *unit = strpbrk(name, "[(");
-    const bool is_unit = unit && (unit[0] == '[' ? !isdigit((unsigned char)unit[1])
-                                                 : unit > name && unit[-1] == ' ');
-    for (; *name && (!is_unit || name < unit) && n + 1 < sizeof plain; name++)
+    const char *end = snapshot_unit(name);
+    for (; name < end && n + 1 < sizeof plain; name++)
         if (isalnum((unsigned char)*name)) plain[n++] = (char)tolower((unsigned char)*name);
     plain[n] = '\0';
-    for (int c = 0; n && (!*name || (is_unit && name == unit)) && c < SNAPSHOT_COLUMNS; c++)
+    for (int c = 0; n && name == end && c < SNAPSHOT_COLUMNS; c++)
         for (const char *word = called[c]; *word; word += strspn(word, " ")) {
             const size_t length = strcspn(word, " ");
             if (length == n && strncmp(word, plain, n) == 0) return c;

@@ -109,5 +109,8 @@ bool snapshot_take_box(const char *text, struct snapshot_file *file);
 /* Length of the box along d if known and periodic, else 0. */
 double snapshot_period(const struct snapshot_file *file, int d);
 
+/* Where the unit of a name such as "x [cm]" or "P (erg)" begins, or the end of the name. */
+const char *snapshot_unit(const char *name);
+
 /* The column for a usual name ("density", "v_x", "particle mass"), or -1. */
 int snapshot_column_of(const char *name);

@@ -219,6 +219,18 @@ static void gas_first(struct snapshot_file *file, const double *type, double *so
     }
 }
 
+static void note_unit(const struct text_table *table, struct snapshot_file *file)
+{
+    const char *unit = table->unit;
+    for (size_t c = 0; c < table->columns && !*unit; c++)
+        if (table->meaning[c] >= 0) unit = snapshot_unit(table->names[c]);
+    if (*unit)
+        snapshot_note(&file->notes, "units", "not converted",
+                      "the names of the columns have units such as %.24s: numbers are taken as "
+                      "they stand, in the units of the case",
+                      unit);
+}
+
 enum status text_table_read(const struct text_table *table, size_t from, size_t line,
                             struct snapshot_file *file, struct error *error)
 {
@@ -241,6 +253,7 @@ enum status text_table_read(const struct text_table *table, size_t from, size_t 
         snapshot_note(&file->notes, "gas", value, "column itype: 1 is gas as SPLASH numbers types");
     }
     free(type);
+    note_unit(table, file);
     file->precision[0] = file->precision[1] = DBL_EPSILON / 2;
     file->parts = 1;
     return status;

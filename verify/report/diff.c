@@ -206,17 +206,24 @@ static void count_causes(struct diff *diff)
     }
 }
 
+/* True if both documents have the figure and it is a number in one of them. */
+static bool is_compared(const struct difference *d)
+{
+    return d->old && d->new &&
+           (d->new->word || d->old->word || !isnan(d->old->value) || !isnan(d->new->value));
+}
+
 static void conclude(struct diff *diff)
 {
     for (size_t i = 0; i < diff->count; i++) {
         diff->verdicts[diff->list[i].verdict]++;
         diff->regressions += diff->list[i].regression;
-        diff->compared += diff->list[i].old && diff->list[i].new;
+        diff->compared += is_compared(&diff->list[i]);
     }
     if (diff->problem[0]) diff->compared = 0;
     if (!diff->compared && !diff->problem[0])
         snprintf(diff->problem, sizeof diff->problem,
-                 "nothing was compared: the documents have no figure in common");
+                 "nothing was compared: no figure is a number or a word in both documents");
     diff->well = !diff->problem[0] && !diff->regressions && !diff->verdicts[VERDICT_VANISHED] &&
                  !diff->verdicts[VERDICT_INCOMPARABLE];
 }

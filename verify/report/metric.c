@@ -96,7 +96,7 @@ static double level_noise(const json_t *level, const char *field, const char *no
     return spread > 0 && replicates > 1 ? 2 * spread / sqrt(replicates) : 0;
 }
 
-static void nobody_knows(struct metrics *metrics, const char *path, const char *why)
+static void note_trouble(struct metrics *metrics, const char *path, const char *why)
 {
     if (!metrics->trouble[0])
         snprintf(metrics->trouble, sizeof metrics->trouble, "%.200s: %s", path, why);
@@ -127,7 +127,7 @@ static void take(struct metrics *metrics, const struct place *at, const json_t *
     if (json_is_null(value) || (rule && rule->use == RULE_LEFT_OUT)) return;
     snprintf(path, sizeof path, "%s%s%.100s", at->path, *at->path ? "." : "", name);
     if (!rule) {
-        if (number || truth) nobody_knows(metrics, path, "a figure of a kind that is not known");
+        if (number || truth) note_trouble(metrics, path, "a figure of a kind that is not known");
         return;
     }
     struct metric metric = {.kind = rule->kind,
@@ -277,7 +277,7 @@ static void walk_list(struct metrics *metrics, const struct place *at, const cha
         const int length = snprintf(inside.path, sizeof inside.path, "%s%s%.80s[%s]", at->path,
                                     *at->path ? "." : "", key, name);
         if (length >= (int)sizeof inside.path || strlen(name) + 1 >= sizeof name) {
-            nobody_knows(metrics, key, "an entry whose name is too long");
+            note_trouble(metrics, key, "an entry whose name is too long");
             continue;
         }
         if (strcmp(key, "levels") == 0) inside.level = entry;
@@ -294,7 +294,7 @@ static void walk_object(struct metrics *metrics, const struct place *at, const c
     const int length = snprintf(inside.path, sizeof inside.path, "%s%s%.100s", at->path,
                                 *at->path ? "." : "", key);
     if (length >= (int)sizeof inside.path) {
-        nobody_knows(metrics, key, "a name that is too long");
+        note_trouble(metrics, key, "a name that is too long");
         return;
     }
     inside.field = key;
@@ -339,7 +339,7 @@ static void join_alike(struct metrics *metrics)
         for (next = i + 1; next < metrics->count; next++) {
             if (strcmp(list[next].path, list[i].path) != 0) break;
             if (list[worst].kind == READING_NEUTRAL)
-                nobody_knows(metrics, list[i].path, "nothing tells several entries apart");
+                note_trouble(metrics, list[i].path, "nothing tells several entries apart");
             if (metric_worse(&list[next], &list[worst])) worst = next;
         }
         struct metric one = list[worst];

@@ -218,7 +218,9 @@ static enum status take_names(struct text_table *table, const char *line, size_t
         size_t n = 0;
         while (at < length && (line[at] == ' ' || line[at] == '\t')) at++;
         if (blanks && table->columns && at < length && strchr("[(", line[at])) { /* unit */
-            at += strcspn(line + at, line[at] == '[' ? "]\n" : ")\n") + 1;
+            const size_t unit = strcspn(line + at, line[at] == '[' ? "]\n" : ")\n") + 1;
+            snprintf(table->unit, sizeof table->unit, "%.*s", (int)unit, line + at);
+            at += unit;
             continue;
         }
         while (at + n < length && !strchr(stops, line[at + n])) n++;

@@ -92,7 +92,7 @@ TEST(documents)
                               "pass", "source", "x", "name", "velocity_l2", "relation",
                               "<=", "value", 3., "bound", 2., "status", "fail", "source", "x");
     judged_of(1.01, 0.05, 2, &judged[0]);
-    judged_of(1.02, 0.1, 2.5, &judged[1]);
+    judged_of(1.02, 0.1, 2.1, &judged[1]);
     for (size_t n = 1; n <= 2; n++) {
         json_t *document = judge_json(judged, n, gates, n == 2);
         assert_non_null(document);
@@ -129,8 +129,8 @@ TEST(documents)
                           fabs(judged[0].sums.energy / 5 - 1), 1e-9);
         }
         if (n == 2) {
-            near_relative(real_at(conservation, "mass", NULL), 0.25, 1e-12);
-            near_relative(real_at(conservation, "momentum", NULL), 0.2, 1e-9);
+            near_relative(real_at(conservation, "mass", NULL), 0.05, 1e-12);
+            near_relative(real_at(conservation, "momentum", NULL), 0.1 / 2.1, 1e-9);
             assert_true(real_at(conservation, "angular_momentum", NULL) >= 0);
             near_relative(real_at(conservation, "energy", NULL),
                           fabs(judged[1].sums.energy / judged[0].sums.energy - 1), 1e-9);

@@ -239,6 +239,24 @@ TEST(mass_of_most)
 
 /* ---- far from the solution ---- */
 
+/* A box may lack, or have too much, 3 % of the case's mass, or one row of particles where that is
+ * more. */
+TEST(mass_of_the_box)
+{
+    for (int dim = 1; dim <= 3; dim++)
+        for (int k = 0; k < 4; k++) {
+            const struct judge_request request = uniform_gas();
+            const double most = dim == 1 ? 0.03 : pow(N, -1. / dim), part = k % 2 ? 0.98 : 1.02;
+            struct judged judged;
+            plant(dim, 0, boxes[dim]);
+            for (int i = 0; i < N; i++) gas.m[i] = 2. / N * (1 + (k < 2 ? part : -part) * most);
+            judges(&request, &judged);
+            assert_true(judged.foreign == (part > 1));
+            assert_true(judged.foreign == !!strstr(judged.verdict, "its mass is"));
+            judge_free(&judged);
+        }
+}
+
 /* Uniform gas has nothing to go by but means: of half of its value, of velocities the sound speed,
  * 0.2 are too much. (A fifth called our own gas at rest far, with 2 % of noise in its pressure.) */
 TEST(uniform_is_far)
@@ -259,6 +277,7 @@ TEST(uniform_is_far)
             struct judged judged;
             plant(dim, 0, boxes[dim]);
             for (int i = 0; i < N; i++) {
+                gas.m[i] = 2. / N;
                 gas.rho[i] *= 1 + rows[k].rho;
                 gas.u[i] *= (1 + rows[k].u) / (1 + rows[k].rho);
                 if (rows[k].u != 0) gas.rho[i] = 1;

@@ -147,6 +147,39 @@ TEST(boxes)
     }
 }
 
+/* A note names the first unit that is not 1. */
+TEST(units)
+{
+    static const struct {
+        const char *path;
+        double unit;
+        bool noted;
+    } rows[] = {{"Units/Unit length in cgs (U_L)", 3.1e18, true},
+                {"Units/Unit mass in cgs (U_M)", 0.9, true},
+                {"Units/Unit time in cgs (U_t)", 1 + 2e-6, true},
+                {"Units/Unit time in cgs (U_t)", 1 - 5e-7, false},
+                {"Header/UnitLength_in_cm", 2, true},
+                {"Parameters/UnitMass_in_g", 2, true},
+                {"Header/UnitVelocity_In_CGS", 1e5, true},
+                {"Header/UnitVelocity_In_CGS", 1, false},
+                {"Header/Unit", 2, false}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct snapshot_file file;
+        struct error error = {0};
+        struct item items[ITEMS_MAX];
+        const size_t n = items_of(&layouts[0], items);
+        add_number(&items[n], rows[k].path, rows[k].unit);
+        write_items(path_of("u.hdf5"), items, n + 1);
+        if (snapshot_read(path_of("u.hdf5"), &here, &file, &error)) fail_msg("%s", error.message);
+        size_t at = 0;
+        while (at < file.notes.count && strcmp(file.notes.note[at].what, "units") != 0) at++;
+        assert_true((at < file.notes.count) == rows[k].noted);
+        const char *name = strchr(rows[k].path, '/') + 1;
+        if (rows[k].noted) assert_non_null(strstr(file.notes.note[at].evidence, name));
+        snapshot_file_free(&file);
+    }
+}
+
 /* Phantom's dead, of which h is not above 0, are left out; its box counts if all others lie in it.
  */
 TEST(phantom)
