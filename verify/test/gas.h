@@ -5,7 +5,7 @@
 #include "keyed.h"
 #include "problem.h"
 
-/* A gas that jumps, and is nowhere the same. */
+/* Density of a gas that has a jump and varies everywhere. */
 static inline double gas_density(const double x[3])
 {
     return (x[0] < 0.3 ? 3 : 1) + 0.01 * x[0] + 0.5 * x[1] * x[1] + 0.25 * x[2];

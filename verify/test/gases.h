@@ -7,7 +7,7 @@
 #include "prepared.h"
 #include "riemann.h"
 
-/* A tube's two gases, solved as it is and the other way round. */
+/* The two gases of a tube, solved as they are and mirrored. */
 struct gases {
     struct riemann_state left, right;
     struct riemann_solution main, mirror;

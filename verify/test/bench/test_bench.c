@@ -15,7 +15,7 @@
 #include "precision.h"
 #include "worst.h"
 
-/* A process may have a limit of its CPU time, as this one has from here on. */
+/* From here on this process has a limit of its CPU time, as some processes have. */
 TEST(test_a_limit_of_cpu_time_leaves_the_clock_fine)
 {
     struct rlimit limit;
@@ -32,13 +32,13 @@ TEST(test_a_limit_of_cpu_time_leaves_the_clock_fine)
     near_below(before - begin, 0.5);
 }
 
-/* --- the timing core, on a clock of our own --------------------------------------------------- */
+/* --- timing, on a clock that the test controls ------------------------------------------------ */
 
 struct fake {
-    double once, warm_up, noise[BENCH_SAMPLES_MAX]; /* noise: factors, call by call */
+    double once, warm_up, noise[BENCH_SAMPLES_MAX]; /* noise: a factor for each call */
     int calls;
     uint64_t times[BENCH_SAMPLES_MAX];
-    int breaks_at; /* call, 0: never */
+    int breaks_at; /* the call that fails; 0: none */
     enum status status;
 };
 
@@ -59,7 +59,7 @@ static const struct bench_rules rules = {.least_s = 0.01, .most_s = 1e9, .sample
 
 TEST(test_samples_double_until_they_are_long_enough)
 {
-    /* calls: warm-up; 1, 2, 4, 8 ms ... 16 ms is the first sample */
+    /* calls take 1, 2, 4, 8 ms after the warm-up; 16 ms is the first sample */
     struct fake fake = {.once = 1e-3, .warm_up = 0.1};
     fake.noise[6] = 1.5, fake.noise[7] = 3, fake.noise[8] = 1.25, fake.noise[9] = 1.75;
     struct bench_subject subject = {.work = fake_work, .context = &fake};
@@ -71,14 +71,14 @@ TEST(test_samples_double_until_they_are_long_enough)
     for (int call = 6; call < 10; call++) assert_int_equal(fake.times[call], 16);
     near_relative(subject.time.cpu_s, 1e-3, 1e-12);
     near_relative(subject.time.wall_s, 2e-3, 1e-12);
-    near_relative(subject.time.spread, 0.5, 1e-12); /* 1 1.25 1.5 1.75 3 */
+    near_relative(subject.time.spread, 0.5, 1e-12); /* of 1 1.25 1.5 1.75 3 */
 }
 
 TEST(test_first_call_does_not_count)
 {
     struct fake fake = {.once = 0.02, .warm_up = 0.05};
     struct bench_subject subject = {.work = fake_work, .context = &fake};
-    fake.noise[0] = 0.1; /* a first call that is too fast to be true */
+    fake.noise[0] = 0.1; /* a first call that is implausibly fast */
     assert_int_equal(bench_measure(&subject, 1, &rules, NULL), STATUS_OK);
     near_relative(subject.time.cpu_s, 0.02, 1e-12);
     assert_int_equal(fake.calls, 6);
@@ -90,7 +90,7 @@ TEST(test_long_work_is_not_repeated_for_ever)
     struct bench_subject subject = {.work = fake_work, .context = &fake};
     const struct bench_rules short_of_time = {.least_s = 0.01, .most_s = 4, .samples = 5};
     assert_int_equal(bench_measure(&subject, 1, &short_of_time, NULL), STATUS_OK);
-    assert_int_equal(fake.calls, 2); /* the first is worth a sample */
+    assert_int_equal(fake.calls, 2); /* the first call is long enough for a sample */
     assert_int_equal(subject.time.samples, 2);
 }
 
@@ -99,7 +99,7 @@ TEST(test_samples_are_taken_in_turn)
     struct fake fake = {.once = 0.02};
     struct bench_subject subjects[2] = {{.work = fake_work, .context = &fake},
                                         {.work = fake_work, .context = &fake}};
-    /* both share their calls: 2 each to calibrate, then a b a b ...; b is dearer */
+    /* two calls of each to calibrate, then alternating calls; b takes twice as long as a */
     for (int call = 0; call < 12; call++)
         fake.noise[call] = call == 3 || (call > 3 && call % 2 == 1) ? 2 : 1;
     assert_int_equal(bench_measure(subjects, 2, &rules, NULL), STATUS_OK);
@@ -132,13 +132,13 @@ TEST(test_breakdown_leaves_the_others)
     assert_string_equal(error.message, "as arranged");
 }
 
-/* --- front and ways --------------------------------------------------------------------------- */
+/* --- Pareto front and paths along it ---------------------------------------------------------- */
 
 TEST(test_front)
 {
     static const double cost[] = {1, 2, 3, 4, 2, 1, 5, (double)NAN, 0.5, 4};
     static const double error[] = {8, 4, 5, 2, 4, 9, 2, 0.1, (double)INFINITY, 1.5};
-    /* 2: dearer and worse than 1; 1 and 4 tie; 3, 6: worse than 9 */
+    /* 2 costs more and has a larger error than 1; 1 and 4 tie; 3 and 6 are worse than 9 */
     static const bool expected[] = {true,  true,  false, false, true,
                                     false, false, false, false, true};
     enum { N = sizeof cost / sizeof *cost };
@@ -155,10 +155,10 @@ TEST(test_cost_of_an_error)
     near_relative(precision_cost_of(3, cost, error, 2e-2), 2500, 1e-12);
     near_relative(precision_cost_of(3, cost, error, 2e-3), 250000, 1e-12);
     near_relative(precision_cost_of(3, cost, error, 1e-2), 1e4, 1e-12);
-    near_relative(precision_cost_of(3, cost, error, 0.5), 1e2, 1e-12); /* the coarsest will do */
+    near_relative(precision_cost_of(3, cost, error, 0.5), 1e2, 1e-12); /* the coarsest is enough */
     assert_true(isnan(precision_cost_of(3, cost, error, 9e-4)));       /* no extrapolation */
     assert_true(isnan(precision_cost_of(0, cost, error, 1)));
-    /* an error that rises again: the first way down is the cheapest */
+    /* an error that rises again: the first crossing is the cheapest */
     const double bumpy[] = {1e-1, 1e-3, 1e-2};
     near_relative(precision_cost_of(3, cost, bumpy, 1e-2), 1e3, 1e-12);
     const double broken[] = {1e-1, (double)NAN, 1e-3};
@@ -167,7 +167,7 @@ TEST(test_cost_of_an_error)
 
 /* --- the practical limit ---------------------------------------------------------------------- */
 
-/* Contiguous arrays give the gradient that the operators find by search. */
+/* On contiguous arrays the gradient is the one that the operators find with a neighbour search. */
 static void compare_limit(const struct kernel *kernel, const struct operator_form *form, int dim)
 {
     enum { N = 64 };
@@ -214,7 +214,7 @@ TEST(test_limit_does_the_same_arithmetic)
     }
 }
 
-/* Who is near, by the plain definition, and that both kinds are there. */
+/* Neighbours by definition agree with the search's, and there are neighbours and others. */
 TEST(test_limit_of_the_search)
 {
     enum { PLACES = 192 };
@@ -233,14 +233,14 @@ TEST(test_limit_of_the_search)
         assert_true(near > PLACES / 3 && near < PLACES - 10);
         assert_int_equal(bench_limit_near(dim, PLACES, at), near);
     }
-    /* a ball takes pi/6 of its cube, three times as wide are 27 of them */
+    /* a ball fills pi/6 of its cube; the search looks at 27 cubes of a third of its width */
     near_relative(bench_limit_candidates(3) * M_PI / 6, 27. / 8, 1e-14);
     near_relative(bench_limit_candidates(2) * M_PI / 4, 9. / 4, 1e-14);
     gsl_rng_free(rng);
 }
 
-/* However often the loops are repeated, they work on ordinary numbers: no overflow, nothing that
- * settles at zero and becomes cheap. */
+/* However often the loops are repeated, their numbers stay ordinary: none overflows, and none
+ * decays to zero, where arithmetic would be cheap. */
 TEST(test_loops_stand_still)
 {
     static char *const keys[][2] = {{"kernel=quadratic_spline", "gradient=standard"},
@@ -318,7 +318,7 @@ static void compare_plain(const char *name, int n, char *const *more)
         moved = fmax(moved, fabs(b->v[0][k]));
     }
     near_below(worst, 1e-9);
-    near_inside(moved, 1e-5, 1e3); /* something has happened */
+    near_inside(moved, 1e-5, 1e3); /* the particles have moved */
     near_below(plain.momentum, 1e-12);
     near_relative(plain.errors[FIELD_DENSITY].l1, fast.errors[FIELD_DENSITY].l1, 1e-8);
     run_free(&fast);
@@ -361,12 +361,12 @@ TEST(test_difference_of_states)
     b.v[0] = w;
     near_relative(bench_skips_difference(&a, &b, 2), 1e-9, 1e-6);
     b.v[0] = v;
-    b.x[0] = x[1]; /* the same place, seen from the box's other end, but for 2e-9 */
+    b.x[0] = x[1]; /* the same position on the other side of the box, but for 2e-9 */
     near_relative(bench_skips_difference(&a, &b, 2), 2e-9, 1e-6);
     b.x[0] = x[0];
     double negative[3] = {-0., -4, 2};
     b.v[0] = negative;
-    near_inside(bench_skips_difference(&a, &b, 2), 1e-310, 1e-290); /* other bits */
+    near_inside(bench_skips_difference(&a, &b, 2), 1e-310, 1e-290); /* the bits differ */
     double broken[3] = {0, (double)NAN, 2};
     b.v[0] = broken;
     assert_true(isinf(bench_skips_difference(&a, &b, 2)));
@@ -386,7 +386,7 @@ TEST(test_promises_are_kept_or_seen_broken)
     settings.threads = 1;
     assert_int_equal(bench_skips_measure(&settings, 1, &brief, BENCH_WORK, &skips, &error), 0);
     assert_true(skips.count >= 6);
-    near_inside(skips.skips[0].shares->skipped, 0.2, 0.9); /* no signal has come far at t = 0.1 */
+    near_inside(skips.skips[0].shares->skipped, 0.2, 0.9); /* at t = 0.1 */
     for (size_t i = 0; i < skips.count; i++) {
         const struct bench_skip *skip = &skips.skips[i];
         assert_true(skip->kept);
@@ -404,7 +404,8 @@ TEST(test_promises_are_kept_or_seen_broken)
     bench_skips_free(&skips);
 }
 
-/* Without viscosity and with one of strength 0: the same bits, at the same time steps. */
+/* A run without viscosity and one with viscosity of strength 0 have the same bits and time
+ * steps. */
 TEST(test_no_viscosity)
 {
     static struct run_settings settings;
@@ -429,7 +430,8 @@ TEST(test_no_viscosity)
     }
 }
 
-/* Local steps beside global ones: the error is that of what is exact, and sums are conserved. */
+/* Local time steps beside global ones: errors are of quantities with an exact value, and sums are
+ * conserved. */
 TEST(test_steps)
 {
     static const struct {
@@ -496,7 +498,7 @@ TEST(test_promises_in_2d)
 
 /* --- sums in 2D and 3D ------------------------------------------------------------------------ */
 
-/* Pairs, counted over all of them; each pass does what it is called, and no more. */
+/* Pairs are counted over all pairs; each pass does what its name says and no more. */
 TEST(test_cells)
 {
     struct run_settings asked;
@@ -532,7 +534,7 @@ TEST(test_cells)
     bench_cells_free(&bench);
 }
 
-/* Schemes that find more of each particle have the arrays for it: forces are balanced. */
+/* Schemes that compute more per particle have the arrays for it: forces are balanced. */
 TEST(test_cells_of_schemes)
 {
     static const char *const schemes[] = {"shifting=fluxes", "shifting=closed", "gradient=blended",
@@ -622,7 +624,7 @@ TEST(test_study)
     assert_int_equal(precision.schemes[4].reference, REFERENCE_GRADED);
     near_inside(precision.points[5].error, 1e-4, 0.8 * precision.points[1].error);
     near_inside(precision.points[5].settings.value[SETTING_mass_ratio].real[0], 0.666, 0.667);
-    /* they have the least error, so they are on the front and the only way to it */
+    /* they have the least error, so they are on the front and alone compete */
     assert_true(precision.points[5].on_front && precision_competes(&precision.schemes[4]));
     /* both references compute the same */
     const struct precision_point *seed = &precision.points[6], *plain = &precision.points[8];
@@ -631,7 +633,7 @@ TEST(test_study)
     precision_free(&precision);
 }
 
-/* In shares: each n by itself; of two processors each has a front of its own. */
+/* Shares compute each n separately; on two processors each processor has its own front. */
 TEST(test_processors)
 {
     static struct run_settings settings;
@@ -655,7 +657,7 @@ TEST(test_processors)
         for (size_t l = 0; l < 2; l++)
             json_object_set_new(json_object_get(pool.jobs[l].document, "machine"), "processor",
                                 json_string(processors[two * (int)l]));
-        /* the coarse runs were dear: on the same processor they are no good for anything */
+        /* the coarse runs were expensive: on the same processor none of them is on the front */
         json_t *points = json_object_get(pool.jobs[0].document, "points"), *point;
         size_t k;
         json_array_foreach(points, k, point) json_object_set_new(point, "cpu_s", json_real(1000));
@@ -669,7 +671,7 @@ TEST(test_processors)
     }
 }
 
-/* A sound wave: errors in parts of the wave, not of the gas that carries it; second order. */
+/* A sound wave: errors are relative to the wave, not to the gas that carries it; second order. */
 TEST(test_signal)
 {
     static struct run_settings settings;
@@ -688,7 +690,8 @@ TEST(test_signal)
     assert_int_equal(precision.order, 2);
     near_relative(precision.points[0].relative, precision.points[0].error / precision.signal,
                   1e-12);
-    /* four times less error, four times the work: merit L1 x CPU says so whatever the resolution */
+    /* a quarter of the error for four times the work: the merit L1 x CPU is the same at any
+     * resolution */
     const struct precision_point *finest = &precision.points[1];
     near_relative(precision.schemes[0].merit, finest->error * finest->time.cpu_s, 1e-12);
     for (int t = 0; t < PRECISION_TARGETS; t++)
@@ -696,7 +699,7 @@ TEST(test_signal)
     precision_free(&precision);
 }
 
-/* A scheme that the case's gravity excludes is told, and the others are measured. */
+/* A scheme that the case's gravity excludes is reported, and the others are measured. */
 TEST(test_what_gravity_excludes)
 {
     static struct run_settings settings;
@@ -717,8 +720,8 @@ TEST(test_what_gravity_excludes)
     precision_free(&precision);
 }
 
-/* A vortex in 2D: errors of the velocity along its circles, in parts of how far it is from uniform;
- * work grows as n^(3/2), and the merit at order 2 is error^(3/2) x CPU. */
+/* A vortex in 2D: errors are of the velocity along its circles, relative to its distance from a
+ * uniform one; work grows as n^(3/2), and the merit at order 2 is error^(3/2) x CPU. */
 TEST(test_plane)
 {
     static struct run_settings settings;

@@ -13,7 +13,8 @@ static void find_forces(struct simulation *simulation)
     assert_int_equal(cells_sums.forces(simulation, &rate, NULL), STATUS_OK);
 }
 
-/* Of an alpha that varies beta is a multiple, beta/alpha of the scheme; 2 where it has no alpha. */
+/* Where alpha varies, beta is a multiple of it, the scheme's beta/alpha; 2 where the scheme has no
+ * alpha. */
 TEST(test_beta)
 {
     static const double numbers[][2] = {{1, 2}, {0, 5}, {2, 4}, {0.5, 1.5}};

@@ -13,7 +13,7 @@
 
 static double guess[N];
 
-/* The displaced lattice, with masses that differ. */
+/* The displaced lattice with unequal masses. */
 static struct setup setup_of(int dim, size_t side, const struct scheme *scheme)
 {
     const struct setup setup = lattice_of(dim, side, 0.2, scheme);
@@ -21,7 +21,7 @@ static struct setup setup_of(int dim, size_t side, const struct scheme *scheme)
     return setup;
 }
 
-/* The search for a root goes on 63 times, each 1.5 times as far, and no further. */
+/* The search for a root widens its reach by 1.5 at most 63 times. */
 TEST(test_far_roots)
 {
     struct error error;
@@ -61,12 +61,12 @@ static bool ten_steps(void *context, double time, uint64_t steps)
     return steps < *from + 10;
 }
 
-/* A state that is kept and comes back goes on to the last bit, with those who sleep, and is sorted
- * at the same steps. */
+/* A state that is saved and restored continues to the last bit, inactive particles included, and is
+ * sorted at the same steps. */
 TEST(test_carried)
 {
     static struct made_bytes kept;
-    for (int kind = 0; kind < 3; kind++) { /* asleep, with predicted widths; all moving */
+    for (int kind = 0; kind < 3; kind++) { /* inactive particles; predicted widths; all moving */
         struct scheme scheme = made_scheme();
         const bool moving = kind == 2;
         if (kind == 1) {
@@ -78,7 +78,7 @@ TEST(test_carried)
         u[0] = 3;
         for (size_t i = 0; moving && i < setup.n; i++) v[0][i] = 1.5, v[1][i] = 0.7;
         struct simulation *first = made_of(&setup), *second = made_of(&setup);
-        uint64_t from = moving ? 30 : 0; /* sorted once more */
+        uint64_t from = moving ? 30 : 0; /* after one more sort */
         assert_int_equal(simulation_run(first, 1, ten_steps, &from, NULL), STATUS_OK);
         struct serialiser out = {.bytes = made_put, .context = &kept},
                           back = {.bytes = made_take, .context = &kept, .back = true};
@@ -118,7 +118,7 @@ static void count_neighbours(void *context, size_t particle, const struct descri
     assert_true(of->condition >= 1 && of->condition < 5);
 }
 
-/* What is described of those who sleep, in a box whose far end has heard nothing. */
+/* The description of inactive particles, in a box whose far end no signal has reached. */
 TEST(test_described_asleep)
 {
     struct scheme scheme = made_scheme();
@@ -148,7 +148,7 @@ TEST(test_described_asleep)
     }
 }
 
-/* Too wide for the box: bad input at the start. */
+/* Smoothing lengths too wide for the box are bad input at the start. */
 TEST(test_too_wide)
 {
     struct simulation *simulation = NULL;
@@ -162,7 +162,7 @@ TEST(test_too_wide)
         assert_non_null(strstr(error.message, " reaches as far as 0.75, beyond half the box (0.5): "
                                               "more particles or a smaller eta are needed"));
         assert_null(simulation);
-        /* the narrowest of all periodic sides counts, and only those */
+        /* only periodic sides count, and of these the narrowest */
         setup.hi[1] = 4;
         for (size_t i = 0; i < setup.n; i++) x[1][i] *= 4;
         setup.boundary[0] = setup.boundary[2] = BOUNDARY_REFLECTING;
@@ -172,7 +172,8 @@ TEST(test_too_wide)
     }
 }
 
-/* In the open one particle is so heavy that all the others are not mass enough around it. */
+/* In an open box one particle is so heavy that all others together have too little mass around
+ * it. */
 TEST(test_too_heavy)
 {
     for (int dim = 2; dim <= 3; dim++) {
@@ -193,7 +194,8 @@ TEST(test_too_heavy)
     }
 }
 
-/* Later a breakdown, of the particle that reaches furthest. */
+/* Widths that grow too wide later are a breakdown, which names the particle that reaches
+ * furthest. */
 TEST(test_grown_too_wide)
 {
     for (int predicted = 0; predicted < 2; predicted++) {
@@ -236,7 +238,7 @@ TEST(test_grown_too_wide)
     }
 }
 
-/* A position that is no number is told with its particle and its value. */
+/* The message about a position that is not a number names the particle and the value. */
 TEST(test_no_position)
 {
     for (int dim = 2; dim <= 3; dim++)
@@ -259,13 +261,13 @@ TEST(test_no_position)
             }
 }
 
-/* Numbers of a particle: the room's own arrays, and a record of its longest pass in whole fours;
- * where pairs are many or cost much, what it gets from pairs that others work out, twice, and a
- * flag. */
+/* Doubles per particle: the workspace's own arrays, and the record of its longest pass, rounded up
+ * to whole fours; where pairs are many or expensive, also twice the reactions of pairs that other
+ * particles compute, and a flag. */
 static void expect_bytes(int dim, const struct scheme *scheme, int arrays, int record)
 {
     for (int sleep = 0; sleep < 2;
-         sleep++) { /* a particle that may sleep has 1/h, two disturbances, a flag */
+         sleep++) { /* a particle that may be inactive has 1/h, two disturbances and a flag */
         const struct setup setup = {
             .dim = dim, .scheme = *scheme, .n = 1000, .threads = 1, .skip = sleep};
         struct simulation simulation = {.scheme = *scheme, .plan = plan_of_setup(&setup)};
@@ -277,8 +279,8 @@ static void expect_bytes(int dim, const struct scheme *scheme, int arrays, int r
     }
 }
 
-/* The room's: radius, two sums; two of U; condition, matrix, slope, switch,
- * share, factor. Records: place, v, 1/h, V, P, c; and more. */
+/* The workspace's: radius, two sums; two of U; condition, matrix, slope, switch, share, factor.
+ * Records: position, v, 1/h, V, P, c; and more. */
 TEST(test_bytes)
 {
     for (int dim = 2; dim <= 3; dim++) {

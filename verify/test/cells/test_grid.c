@@ -64,7 +64,7 @@ static double distance2(const struct points *p, size_t i, size_t j)
     return r2;
 }
 
-/* A reader that comes from anywhere finds what a new one does. */
+/* A reader that was elsewhere before finds what a new reader does. */
 static void read_again(const struct grid *grid, struct grid_reader *reader, size_t s)
 {
     const struct grid_list *lists = grid_lists(grid);
@@ -77,7 +77,7 @@ static void read_again(const struct grid *grid, struct grid_reader *reader, size
     grid_reader_free(&other);
 }
 
-/* Pairs that are within the wider radius, and in the list or not. */
+/* Compares pairs within the wider of two radii with those of the list. */
 static void compare(const struct points *p, const struct grid *grid, size_t active,
                     size_t *compared)
 {
@@ -140,7 +140,7 @@ TEST(lists_hold_every_pair)
 }
 
 /* Points so close together, or so much closer than others, that cells are 10 to 1e9 times as large
- * as their radii: single precision knows their places no better than that. */
+ * as their radii: in single precision positions are no more precise than that. */
 TEST(clumps_hold_every_pair)
 {
     struct points *p = calloc(1, sizeof *p);
@@ -159,7 +159,7 @@ TEST(clumps_hold_every_pair)
             for (size_t i = 0; i < p->n; i++) p->x[a][i] = middle + scale * gsl_rng_uniform(rng);
             p->x[a][0] = 0, p->x[a][1] = 1 - 1e-9;
         }
-        /* by turns all radii are small, and most are large */
+        /* alternately all radii are small, and most are large */
         for (size_t i = 0; i < p->n; i++)
             p->radius[i] = k % 4 == 3 && i % 2 ? 0.3 : scale * (0.2 + 0.1 * gsl_rng_uniform(rng));
         struct grid *grid = grid_create(&p->box, p->n, 1);
@@ -191,7 +191,7 @@ TEST(clumps_hold_every_pair)
     free(p);
 }
 
-/* What cannot be searched is refused with the point's number. */
+/* A point that cannot be searched is refused with its number. */
 TEST(refuses)
 {
     const struct grid_box box = {2, {0, 0}, {1, 1}, {true, true}};
@@ -216,7 +216,7 @@ TEST(refuses)
     grid_destroy(grid);
 }
 
-/* Records of every size that has a loop of its own, and of one that has none. */
+/* Records of every size that has a specialised loop, and of one that has none. */
 TEST(gathers)
 {
     enum { RECORDS = 37, LARGEST = 56, COUNT = 24, STRIDE = 40 };
@@ -234,7 +234,7 @@ TEST(gathers)
     }
 }
 
-/* Of every size that a density may have in some units. */
+/* For densities of every magnitude that units may give. */
 TEST(cube_roots)
 {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
@@ -246,7 +246,7 @@ TEST(cube_roots)
     gsl_rng_free(rng);
 }
 
-/* Bytes of a point and of its list, by what is allocated for them. */
+/* The estimate of bytes per point and list agrees with the memory allocated. */
 TEST(bytes_a_point)
 {
     const double point = 4 + 4 + 24 + 4 + 12 + 16;

@@ -18,8 +18,8 @@ static double draw(double low, double high)
     return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
 }
 
-/* The default scheme with these keys; in 3D narrow, so that so few particles may be on many levels.
- */
+/* The default scheme with these keys; in 3D with a narrow kernel, so that few particles may have
+ * many levels. */
 static struct scheme scheme_with(int dim, const char *keys)
 {
     char words[200];
@@ -27,7 +27,7 @@ static struct scheme scheme_with(int dim, const char *keys)
     return keyed_scheme(dim, words);
 }
 
-/* A lattice of side^dim particles in a periodic box, each off its place by so much of a spacing,
+/* A lattice of side^dim particles in a periodic box, each displaced by up to `jitter` spacings,
  * with a hot ball in the middle: u rises by `heat`, within a spacing or (smooth) over the box. */
 static struct setup setup_of(int dim, size_t side, double jitter, double heat, bool smooth,
                              const struct scheme *scheme)
@@ -46,7 +46,7 @@ static struct setup setup_of(int dim, size_t side, double jitter, double heat, b
     return setup;
 }
 
-/* Of so few particles blocks leave too little work out to pay: taken all the same. */
+/* With so few particles, blocks of local steps save too little work; they are enforced. */
 static struct simulation *blocks_of(const struct setup *setup)
 {
     struct simulation *simulation = made_of(setup);
@@ -184,7 +184,7 @@ static double difference(const struct simulation *a, const struct simulation *b)
     return sqrt(sum / (double)a->particles.n);
 }
 
-/* A smooth hot spot, whose particles have steps of three levels. */
+/* A smooth hot spot, whose particles have time steps of three levels. */
 static struct simulation *smooth_run(int dim, double cfl, enum time_steps steps)
 {
     struct scheme scheme = scheme_with(dim, "steps=local");
@@ -213,7 +213,7 @@ TEST(second_order_in_time)
 
 /* --- levels ----------------------------------------------------------------------------------- */
 
-/* At every evaluation: active particles have no neighbours that are further apart than allowed. */
+/* At every evaluation, neighbours of active particles differ by no more levels than allowed. */
 static int too_coarse, looked;
 static const struct sums *real;
 
@@ -236,7 +236,7 @@ static enum status look_at_levels(struct simulation *simulation, double *rate, s
     return real->forces(simulation, rate, error);
 }
 
-/* Cold gas beside blasts 10^4 times as hot wakes before anything arrives. */
+/* Cold gas beside blasts 10^4 times as hot becomes active before the blast arrives. */
 TEST(neighbours_are_no_further_apart)
 {
     uint64_t woken = 0;
@@ -261,7 +261,7 @@ TEST(neighbours_are_no_further_apart)
     assert_true(woken > 0);
 }
 
-/* What pairs that change levels have been given, against the evaluations of all levels in turn. */
+/* What pairs that change levels have received, against the evaluations of all levels in turn. */
 TEST(pairs_are_given_what_is_missing)
 {
     enum { FINEST = 6 };

@@ -11,7 +11,7 @@
 #include "cells/moments.h"
 #include "kernel.h"
 
-/* With twice the digits of double, and some. */
+/* At least twice the digits of double. */
 #ifdef __SIZEOF_FLOAT128__
 __extension__ typedef __float128 real;
 #else
@@ -20,7 +20,7 @@ typedef long double real;
 
 static uint64_t state_of_draws = 1;
 
-/* Evenly in [-1, 1). */
+/* Uniform in [-1, 1). */
 static double draw(void)
 {
     state_of_draws = state_of_draws * 6364136223846793005u + 1442695040888963407u;
@@ -54,8 +54,8 @@ static real size_of(real x)
     return x < 0 ? -x : x;
 }
 
-/* Elements of the inverse against the exact ones, in units of what rounding the elements of a may
- * change them by, sum |inverse| |a| |inverse| epsilon. */
+/* Error of the inverse's elements in units of the error that rounding the elements of a may cause,
+ * sum |inverse| |a| |inverse| epsilon. */
 static double inverse_error(int dim, const double *a, const double *inverse)
 {
     real exact[9];
@@ -74,8 +74,8 @@ static double inverse_error(int dim, const double *a, const double *inverse)
     return worst;
 }
 
-/* A product of two rotations by drawn angles and what stands between them: singular values 1, s, t;
- * in 1D and 2D the first of them. */
+/* The product of a rotation, a diagonal matrix and a rotation, both by random angles: singular
+ * values 1, s, t; in 1D and 2D the first of them. */
 static void with_singular_values(int dim, double s, double t, double *a)
 {
     const double values[] = {1, s, t};
@@ -96,8 +96,8 @@ static void with_singular_values(int dim, double s, double t, double *a)
     for (int k = 0; k < dim * dim; k++) a[k] = (double)m[k];
 }
 
-/* Drawn matrices, plain ones and nearly singular ones; then with lengths in units along each axis
- * that powers of 2 lie between, which the inverse of a moment matrix must not notice. */
+/* Random matrices, ordinary and nearly singular; then with a unit of length along each axis that
+ * differs by powers of 2, which must not matter to the inverse of a moment matrix. */
 TEST(test_inverse)
 {
     double worst[4] = {0}, in_units[4] = {0};
@@ -134,7 +134,7 @@ TEST(test_inverse)
     }
 }
 
-/* With columns that differ in size, however much, the condition number is as good as any. */
+/* The condition number is as accurate for columns of very different size. */
 TEST(test_condition)
 {
     double worst[2] = {0};
@@ -166,8 +166,8 @@ TEST(test_condition)
     assert_true(matrix_condition(3, (double[9]){0}) == HUGE_VAL);
 }
 
-/* No number among four, at each place: no inverse and no condition number. What overflows has none
- * either, and neither has what is singular; the caller's array is left alone. */
+/* A NaN or infinity in any element, an overflow, or a singular matrix: no inverse and no condition
+ * number; the caller's array is not written. */
 TEST(test_none)
 {
     for (int dim = 1; dim <= 3; dim++)
@@ -206,7 +206,7 @@ TEST(test_none)
 }
 
 /* Like matrix_invert's elimination of a matrix whose rows and columns have largest elements of 1
- * and whose determinant is small, but exchanged before, not during it. */
+ * and whose determinant is small, but with rows exchanged before, not during it. */
 static void eliminated(int dim, const double *a, double *inverse)
 {
     int row[3] = {0, 1, 2}, column[3] = {0, 1, 2};
@@ -249,7 +249,7 @@ static double norm_of(int n, const double *a)
     return sqrt(sum);
 }
 
-/* Singular is what has a scaled condition number of 1/(16 epsilon) or more in Frobenius' norm: that
+/* A matrix is singular from a scaled condition number of 1/(16 epsilon) in Frobenius' norm on; that
  * of (1 1; 1 1 + e) is a little less than 4/e. */
 TEST(test_singular_from)
 {
@@ -274,8 +274,8 @@ TEST(test_singular_from)
     assert_true(at_limit > 0);
 }
 
-/* Which way is taken shows in the last bits: in 1D 1/a by elimination, which is right to the last
- * one, by cofactors 1/(a/|a| |a|); of diag(1, d) by elimination 1 and 1/d, by cofactors d (1/d). */
+/* The last bits show which method is used: in 1D elimination gives 1/a, correctly rounded, and
+ * cofactors give 1/(a/|a| |a|); for diag(1, d) elimination gives 1 and 1/d, cofactors d (1/d). */
 TEST(test_way)
 {
     int plain[2] = {0};
@@ -293,7 +293,7 @@ TEST(test_way)
     }
     assert_true(plain[0] > 100 && plain[1] > 50);
     const double d =
-        0.027000000000000007; /* where the ways differ at either limit, which is beyond */
+        0.027000000000000007; /* where the methods differ at either limit, and which is beyond it */
     for (int sign = -1; sign <= 1; sign += 2) {
         const double scale = sign < 0 ? 1e-100 : 1e100;
         double inverse[4];
@@ -308,15 +308,14 @@ TEST(test_way)
     assert_true(inverse[4] == 1 / p);
     assert_true(matrix_invert(2, (double[]){DBL_MAX, 0, 0, 1}, inverse));
     assert_true(inverse[0] == 1 / DBL_MAX && inverse[3] == 1);
-    const double small =
-        0x1p-24; /* what is left after the first pivot stands beside the diagonal */
+    const double small = 0x1p-24; /* after the first pivot the rest is off the diagonal */
     const double beside[] = {1, 1, 1, 1, 1, 1 + small, 1, 1 + small, 1};
     assert_true(matrix_invert(3, beside, inverse));
     near_below(inverse_error(3, beside, inverse), 3);
 }
 
-/* Neither what stands behind the last element is read, nor what stands behind the inverse written.
- */
+/* Nothing behind the last element of the matrix is read, and nothing behind the inverse is
+ * written. */
 TEST(test_room)
 {
     const size_t page = (size_t)sysconf(_SC_PAGESIZE);
@@ -335,7 +334,7 @@ TEST(test_room)
     munmap(pages, 2 * page);
 }
 
-/* The same bits, also where pivots are alike: the first of them is taken. */
+/* Equal pivots give the same bits: the first of them is taken. */
 TEST(test_pivots)
 {
     static const double elements[] = {1, -1, 0.999, -0.999, 0.3, 0};
@@ -387,7 +386,7 @@ static void draw_neighbours(int dim, double flat, struct drawn *drawn)
     }
 }
 
-/* w(q) and V w(q) of either kind of kernel loop. */
+/* w(q) and V w(q) of both kinds of kernel loop. */
 TEST(test_weights)
 {
     for (int trial = 0; trial < 40; trial++) {

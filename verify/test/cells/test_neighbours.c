@@ -56,7 +56,7 @@ TEST(test_refused)
     neighbours_destroy(nb);
     place[0][0] = -HUGE_VAL;
     refused(&points, "point 0: x = -inf is not finite");
-    points.n = (size_t)1 << 31; /* as many as are allowed: it is the first one that is refused */
+    points.n = (size_t)1 << 31; /* the largest number allowed: the first point is refused */
     refused(&points, "point 0: x = -inf is not finite");
     points.n++;
     refused(&points, "2147483649 points: at most 2^31 are allowed");
@@ -76,7 +76,7 @@ TEST(test_refused)
         neighbours_destroy(made(&points));
         points.periodic = true;
     }
-    points.lo[1] = -1e300, points.hi[1] = 1e300; /* wide, and allowed */
+    points.lo[1] = -1e300, points.hi[1] = 1e300; /* wide, but allowed */
     neighbours_destroy(made(&points));
     points.hi[1] = 1e300 * (1 + 1e-7);
     refused(&points, "periodic box from -1e+300 to 1e+300 in y is empty");

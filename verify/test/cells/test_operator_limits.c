@@ -12,7 +12,7 @@ enum { POINTS_MAX = 200, FIELDS = 2 };
 
 static struct kernel kernel;
 
-/* A cloud with fields and what was made of them; behind the last point of each array a mark. */
+/* A cloud with fields and its results; a sentinel follows the last point of each array. */
 struct made {
     struct cloud cloud;
     double x[3][POINTS_MAX], V[POINTS_MAX], h[POINTS_MAX], f[FIELDS][POINTS_MAX];
@@ -70,7 +70,7 @@ static void apply_well(struct made *made, const struct operator_form *form)
 
 static struct made one, other;
 
-/* The cloud in units of 2^length, its volumes in units of 2^volume, each field in its own. */
+/* The cloud in units of 2^length, its volumes in units of 2^volume, each field in its own unit. */
 static void in_units(const struct made *from, int length, int volume, const int *field,
                      struct made *to)
 {
@@ -85,7 +85,7 @@ static void in_units(const struct made *from, int length, int volume, const int 
     }
 }
 
-/* The state after gradients have left the range: that of the first one that does. */
+/* The state once gradients overflow: that of the first gradient that does. */
 static enum operator_state state_in(const struct made *made, int dim, size_t i, const int *e)
 {
     if (made->point[i].state != OPERATOR_OK) return made->point[i].state;
@@ -98,7 +98,7 @@ static enum operator_state state_in(const struct made *made, int dim, size_t i, 
     return OPERATOR_OK;
 }
 
-/* Compares every digit. Returns how many states are not OK. */
+/* Compares every bit. Returns the number of states that are not OK. */
 static size_t same_in(int length, int volume, const int *field, const struct operator_form *form)
 {
     const int dim = one.cloud.points.dim;
@@ -122,7 +122,7 @@ static size_t same_in(int length, int volume, const int *field, const struct ope
     return lost;
 }
 
-/* Whatever is large or small, alone or together, no digit changes. */
+/* Units of length, volume and fields, extreme alone or together, change no bit. */
 TEST(test_units)
 {
     static const struct {
@@ -139,7 +139,7 @@ TEST(test_units)
         for (int periodic = 0; periodic < 2; periodic++)
             for (size_t o = 0; o < operator_family.n; o++) {
                 fill(&one, dim, 70, periodic);
-                if (!periodic) { /* one has no neighbours, and a constant has no gradient */
+                if (!periodic) { /* a point without neighbours, and a constant field */
                     one.x[0][5] = 9;
                     for (size_t i = 0; i < 70; i++) one.f[1][i] = 0.375;
                 }
@@ -149,7 +149,7 @@ TEST(test_units)
             }
 }
 
-/* The smallest normal number is one. */
+/* The smallest normal number counts as normal. */
 TEST(test_least_normal)
 {
     size_t found = 0;
@@ -201,7 +201,7 @@ TEST(test_refused)
     refused("point 19: volume = inf; it must be positive");
     one.V[19] = 1, one.x[1][19] = (double)NAN;
     refused("point 19: y = nan is not finite");
-    one.V[19] = 1e300; /* in other units the same is refused */
+    one.V[19] = 1e300; /* in other units the same value is refused */
     assert_int_equal(apply(&one, form_at(1), &error), STATUS_BAD_INPUT);
     one.x[1][19] = 0.5, one.h[19] = 8.5;
     assert_int_equal(apply(&one, form_at(1), &error), STATUS_BAD_INPUT);

@@ -7,8 +7,8 @@
 
 #include "cells/pairs.h"
 
-/* Where the fields of a record lie, in the order of their names, and as many values of each as in
- * `values`: none beside them, in whole groups. */
+/* The fields of a record follow each other in the order of their names with the number of values in
+ * `values`; the record's size is rounded up to whole groups. */
 static void expect_layout(const struct lanes_layout *layout, const int values[RECORD_FIELDS])
 {
     int used = 0;
@@ -20,7 +20,7 @@ static void expect_layout(const struct lanes_layout *layout, const int values[RE
     assert_int_equal(layout->size, (used + GATHER_GROUP - 1) / GATHER_GROUP * GATHER_GROUP);
 }
 
-/* Records hold what their passes read, and nothing else. */
+/* Records hold the fields that their passes read, and no others. */
 TEST(test_records)
 {
     struct kernel kernel;

@@ -8,7 +8,7 @@
 
 enum { N = 60 };
 
-/* The worst condition number that is allowed is allowed. */
+/* The largest condition number allowed is itself allowed. */
 TEST(test_worst)
 {
     static double x[2][N], V[N], h_inverse[N], radius[N], condition[N], matrix[CELLS_SYMMETRIC][N];
@@ -27,7 +27,7 @@ TEST(test_worst)
         x[0][i] = draw(0, 1), x[1][i] = draw(0, 1), V[i] = draw(0.5, 2);
         h_inverse[i] = 1 / h, radius[i] = 1.2 * h;
     }
-    x[0][0] = x[1][0] = 5; /* alone */
+    x[0][0] = x[1][0] = 5; /* a point without neighbours */
     for (int round = 0; round < 2; round++) {
         struct cells *cells = cells_create(&method, N);
         assert_non_null(cells);

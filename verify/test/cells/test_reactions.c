@@ -22,7 +22,7 @@ static struct scene {
     struct cells_fields fields;
 } scene;
 
-/* Force, energy, signal speed. */
+/* Results: force, energy, signal speed. */
 struct found {
     double of[FOUND][N + 8];
     uint64_t pairs;
@@ -56,7 +56,7 @@ static void draw_method(int trial)
     method->velocity_gradient = viscosity_needs_slope(method->viscosity) || method->balsara;
 }
 
-/* Neighbours as many as in runs; sides of the box differ by a factor of 8. */
+/* As many neighbours as in runs; the sides of the box differ by a factor of 8. */
 static void draw_scene(int trial)
 {
     memset(&scene, 0, sizeof scene);
@@ -95,7 +95,7 @@ static void draw_scene(int trial)
                 ? CELLS_IDLE
                 : CELLS_ACTIVE;
     }
-    for (int a = 0; a < dim; a++) scene.x[a][1] = scene.x[a][0]; /* two in one place */
+    for (int a = 0; a < dim; a++) scene.x[a][1] = scene.x[a][0]; /* two at one position */
 }
 
 static void find(bool halves, int threads, struct found *found)
@@ -130,7 +130,7 @@ static void find(bool halves, int threads, struct found *found)
     if (cells_arrange(cells, f, scene.radius, scene.sleeps ? scene.asleep : NULL, &error))
         fail_msg("%s", error.message);
     cells_matrix(cells, f);
-    for (int k = 0; k < 2; k++) { /* the second time there is something in all arrays */
+    for (int k = 0; k < 2; k++) { /* the second time the arrays are not empty */
         for (int v = 0; v < FOUND; v++)
             for (size_t i = 0; i < N; i++) found->of[v][i] = 1234;
         found->pairs = cells_forces(cells, f);
@@ -139,7 +139,7 @@ static void find(bool halves, int threads, struct found *found)
     cells_destroy(cells);
 }
 
-/* Particles that sleep keep what they had. */
+/* Inactive particles keep their values. */
 static void compare(void)
 {
     const int dim = scene.method.box.dim;
@@ -166,7 +166,7 @@ static bool all_periodic(void)
     return all;
 }
 
-/* What pairs exchange stays, to round-off of the sum. */
+/* What pairs exchange is conserved to the round-off of the sum. */
 static void check_sum(int v)
 {
     double sum = 0, sizes = 0;

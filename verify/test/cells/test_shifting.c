@@ -27,8 +27,8 @@ static enum status scheme_with(int dim, const char *key, struct scheme *scheme, 
     return status ? status : settings_scheme(&settings, dim, scheme, error);
 }
 
-/* A lattice of side^dim particles, each off its place by so much of a spacing; mass, velocity and
- * specific energy differ from particle to particle by as much as the last argument says. */
+/* A lattice of side^dim particles, each displaced by up to `jitter` spacings; mass, velocity and
+ * specific energy differ from particle to particle in proportion to `spread`. */
 static struct setup setup_of(int dim, size_t side, double jitter, double spread)
 {
     struct scheme scheme;
@@ -78,8 +78,8 @@ TEST(keeps_mass_momentum_and_energy)
     }
 }
 
-/* Exchange for itself: of what comes and goes nothing is lost, neither of kinetic nor of internal
- * energy, and gas of uniform velocity and specific energy stays so. */
+/* Exchange alone conserves kinetic and internal energy, and keeps uniform velocity and specific
+ * energy uniform. */
 TEST(exchange_keeps_both_energies)
 {
     for (int k = 0; k < 6; k++) {
@@ -121,7 +121,7 @@ TEST(exchange_keeps_both_energies)
     }
 }
 
-/* Rates for observers that move: dm is the same, dp and dE gain b dm and b . dp + b^2 dm/2. */
+/* Rates seen by a moving observer: dm is the same, dp and dE gain b dm and b . dp + b^2 dm/2. */
 TEST(rates_are_galilean_invariant)
 {
     static double of[5][N];
@@ -154,7 +154,7 @@ TEST(rates_are_galilean_invariant)
     simulation_destroy(moving);
 }
 
-/* rms of the shift over the speed of sound. */
+/* The rms shift over the speed of sound. */
 static double disorder(const struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
@@ -164,7 +164,7 @@ static double disorder(const struct simulation *simulation)
     return sqrt(sum / (double)a->n);
 }
 
-/* Gas at rest: nothing to do on a lattice; off it particles spread, no faster than they may. */
+/* In gas at rest nothing shifts on a lattice; off it particles spread, no faster than allowed. */
 TEST(spreads_particles)
 {
     for (int dim = 2; dim <= 3; dim++) {
@@ -183,7 +183,7 @@ TEST(spreads_particles)
     }
 }
 
-/* A second evaluation of the same state adds its shift to 0.7 of the first one. */
+/* A second evaluation of the same state adds its shift to 0.7 of the first shift. */
 TEST(remembers_its_last_shift)
 {
     for (int dim = 2; dim <= 3; dim++) {
@@ -204,8 +204,8 @@ TEST(remembers_its_last_shift)
     }
 }
 
-/* rms force for each volume of gas at rest at a pressure of 1: what gradients make of a constant.
- * Both kinds of gas have the same volumes, which have to be known for uniform pressure. */
+/* rms force per volume of gas at rest at a pressure of 1, that is, the gradient of a constant. Both
+ * kinds of gas have the same volumes, which uniform pressure needs. */
 static double of_constant(int dim, const char *kind)
 {
     double sum = 0;
@@ -282,7 +282,7 @@ TEST(is_refused_with)
         assert_int_equal(simulation_create(&setup, &simulation, &error), STATUS_BAD_INPUT);
         if (!strstr(error.message, "shifting=closed and ")) fail_msg("%s", error.message);
         setup.scheme.shifting = SHIFTING_NONE;
-        if (k == 2) { /* and what is off keeps no arrays */
+        if (k == 2) { /* a scheme without shifting has no arrays for it */
             simulation = made_of(&setup);
             struct rates rates;
             simulation_rates(simulation, &rates);

@@ -27,8 +27,9 @@ static struct summation cloud_of(int dim, size_t n, bool periodic, double eta, d
     return sum;
 }
 
-/* As far as the roots of eight points in a box, evenly spread, may lie; where they are in one place
- * as if all points were evenly spread in their box, or in the periodic one. */
+/* The first reach of a block: the width that its eight points would have if they were evenly spread
+ * in their bounding box; if they coincide, if all points were evenly spread in theirs or in the
+ * periodic box. */
 static double first_reach(const struct summation *sum, const struct neighbours *nb, size_t block)
 {
     const int dim = sum->points.dim;
@@ -47,7 +48,7 @@ static double first_reach(const struct summation *sum, const struct neighbours *
     return 1.3 * sum->eta * spacing;
 }
 
-/* Sums of all points and images within reach, at this width. */
+/* Sums at this width over all points and images within reach. */
 static struct density_sums sums_at(const struct summation *sum, size_t i, double reach,
                                    double width)
 {
@@ -77,8 +78,8 @@ static struct density_sums sums_at(const struct summation *sum, size_t i, double
     return (struct density_sums){.m = {(double)of_m}, .m_dh = {(double)slope}};
 }
 
-/* The width of point i, whose block's search begins at this reach. Returns how many times the reach
- * had to grow. */
+/* The width of point i, where the search of its block begins at this reach. Returns how often the
+ * reach had to grow. */
 static int width_from(const struct summation *sum, size_t i, double reach, double *width)
 {
     const int dim = sum->points.dim;
@@ -86,7 +87,7 @@ static int width_from(const struct summation *sum, size_t i, double reach, doubl
     int grown = 0;
     for (; sums_at(sum, i, reach, reach).m[0] < m[i] * pow(sum->eta, dim) / kernel.constant[dim];
          grown++)
-        reach *= grown < 7 ? 1.5 : 4; /* seven times */
+        reach *= grown < 7 ? 1.5 : 4; /* the first seven times */
     struct width_bracket bracket;
     struct density_sums sums;
     double inverse = 1 / (0.7 * reach);
@@ -97,7 +98,7 @@ static int width_from(const struct summation *sum, size_t i, double reach, doubl
     return grown;
 }
 
-/* Returns the largest number of times that a reach grew. */
+/* Returns the largest number of times that a reach had to grow. */
 static int check(const struct summation *sum)
 {
     struct neighbours *nb;
@@ -132,7 +133,7 @@ TEST(test_anywhere)
     assert_true(grown > 0);
 }
 
-/* Stretched along each axis in turn, so that it alone tells how far apart points are. */
+/* A cloud stretched along each axis in turn, so that this axis alone sets the distances. */
 TEST(test_stretched)
 {
     for (int dim = 2; dim <= 3; dim++)
@@ -145,8 +146,8 @@ TEST(test_stretched)
             }
 }
 
-/* Eight points and more in one place, or close together, and the others far away; all of them in
- * one place of a periodic box. */
+/* Eight or more points at one position or close together, and the others far away; all at one
+ * position of a periodic box. */
 TEST(test_together)
 {
     int most = 0;
@@ -196,7 +197,7 @@ TEST(test_refused)
         refused(&sum, STATUS_BAD_INPUT, "point 19: mass 0; it must be positive");
         m[0] = HUGE_VAL;
         refused(&sum, STATUS_BAD_INPUT, "point 0: mass inf; it must be positive");
-        /* as much mass as is needed, and a little less */
+        /* just enough mass, and a little less */
         for (size_t i = 0; i < 20; i++) m[i] = 1;
         m[7] = 2;
         sum.eta = least * pow(21 / 2., 1. / dim) * (1 + 1e-7);
@@ -207,7 +208,7 @@ TEST(test_refused)
         refused(&sum, STATUS_BROKE_DOWN, text);
         sum.eta *= 1 - 2e-7;
         assert_int_equal(summation_solve(&sum, h, rho, NULL), STATUS_OK);
-        if (dim == 1) { /* exactly as much is too little */
+        if (dim == 1) { /* a mass equal to the least is not enough */
             const double two[] = {1, 1};
             struct summation pair = sum;
             pair.points.n = 2, pair.m = two, pair.eta = 2 * least;
@@ -218,7 +219,7 @@ TEST(test_refused)
                 pair.eta);
             refused(&pair, STATUS_BROKE_DOWN, text);
         }
-        /* too many in one place, and all */
+        /* too many at one position, and all */
         m[7] = 1;
         sum.eta = least * pow(3, 1. / dim) * (1 - 1e-9);
         for (size_t i = 4; i < 7; i++)
@@ -237,7 +238,7 @@ TEST(test_refused)
     }
 }
 
-/* The smallest masses that are nearly nothing in ordinary units are weighed as any others. */
+/* Masses near the smallest normal number are summed like others. */
 TEST(test_light)
 {
     for (int dim = 1; dim <= 3; dim++) {
@@ -256,7 +257,7 @@ TEST(test_light)
     }
 }
 
-/* A cloud of no points is solved. */
+/* A cloud without points is solved. */
 TEST(test_empty)
 {
     for (int periodic = 0; periodic < 2; periodic++) {
@@ -267,8 +268,7 @@ TEST(test_empty)
     }
 }
 
-/* Far from ordinary sizes: the same widths and densities in other units, as long as they are
- * normal numbers. */
+/* In extreme units widths and densities are the same as long as they are normal numbers. */
 TEST(test_units)
 {
     static const int lengths[] = {-600, -129, 0, 129, 600}, weights[] = {-900, 0, 900};

@@ -27,7 +27,7 @@ TEST(test_ordinary)
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
         for (size_t n = 1; n < 4; n++)
             for (size_t at = 0; at < n; at++) {
-                double values[4] = {1, 1, 1, 0x1p200}; /* those beyond n are nobody's */
+                double values[4] = {1, 1, 1, 0x1p200}; /* values beyond n do not count */
                 for (size_t i = n; i < 4; i++) values[i] = 0x1p200;
                 values[at] = cases[k].value;
                 assert_int_equal(units_ordinary(n, values), cases[k].ordinary);
@@ -72,7 +72,7 @@ TEST(test_copies)
     }
 }
 
-/* A stranger with a kernel's function, or slope, alone has loops of no kernel. */
+/* A plug-in with a kernel's function or derivative alone has no specialised loops. */
 TEST(test_loops)
 {
     for (size_t k = 0; k < kernel_family.n; k++)

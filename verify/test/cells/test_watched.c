@@ -34,7 +34,7 @@ static struct points points_of(int dim, size_t n, bool periodic)
 
 static struct kernel kernel;
 
-/* What works with memory; n points in dim dimensions. */
+/* A function that allocates memory, for n points in dim dimensions. */
 typedef enum status work(int dim, size_t n, struct error *error);
 
 static enum status find(int dim, size_t n, struct error *error)
@@ -68,7 +68,7 @@ static enum status differentiate(int dim, size_t n, struct error *error)
     return status;
 }
 
-/* Few neighbours, then many, then few. */
+/* Points with few neighbours, then with many, then with few. */
 static enum status differentiate_clump(int dim, size_t n, struct error *error)
 {
     for (size_t i = 0; i < n; i++) {
@@ -80,7 +80,7 @@ static enum status differentiate_clump(int dim, size_t n, struct error *error)
     return differentiate(dim, n, error);
 }
 
-/* In other units, of which copies are made. */
+/* In units so extreme that scaled copies are made. */
 static enum status far_away(int dim, size_t n, struct error *error)
 {
     make(n, 0.3, 1e90);
@@ -89,7 +89,7 @@ static enum status far_away(int dim, size_t n, struct error *error)
     return status;
 }
 
-/* All within reach of all. */
+/* All points are within reach of all others. */
 static enum status differentiate_all(int dim, size_t n, struct error *error)
 {
     for (size_t i = 0; i < n; i++) width[i] = 2;
@@ -109,13 +109,13 @@ static enum status list(int dim, size_t n, struct error *error)
     struct grid *grid = grid_create(&box, n / 3, 1);
     if (!grid) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     enum status status = STATUS_OK;
-    for (int more = 3; !status && more > 0; more--) /* room for more each time */
+    for (int more = 3; !status && more > 0; more--) /* more capacity each time */
         status = grid_search(grid, n / (size_t)more, n / (size_t)more, at, width, NULL, error);
     const long calls = watched_calls;
-    for (int again = 0; !status && again < 9; again++) /* and none the next time */
+    for (int again = 0; !status && again < 9; again++) /* no allocation the next time */
         status = grid_search(grid, n, n, at, width, NULL, error);
     if (!status) assert_int_equal(watched_calls, calls);
-    if (status == STATUS_ENVIRONMENT) { /* what was lacking is there the next time */
+    if (status == STATUS_ENVIRONMENT) { /* a call that is repeated with memory succeeds */
         struct error later;
         assert_int_equal(grid_search(grid, n, n, at, width, NULL, &later), STATUS_OK);
     }
@@ -123,7 +123,7 @@ static enum status list(int dim, size_t n, struct error *error)
     return status;
 }
 
-/* Particles and their images in walls, in room for fewer of them. */
+/* Particles and their images in walls, with capacity for fewer of them. */
 static enum status arrange(int dim, size_t n, struct error *error)
 {
     static double h_inverse[POINTS_MAX];
@@ -142,7 +142,7 @@ static enum status arrange(int dim, size_t n, struct error *error)
     if (!cells) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     const enum status status = cells_arrange(cells, &fields, width, NULL, error);
     struct error later;
-    if (status == STATUS_ENVIRONMENT) /* what was lacking is there the next time */
+    if (status == STATUS_ENVIRONMENT) /* a call that is repeated with memory succeeds */
         assert_int_equal(cells_arrange(cells, &fields, width, NULL, &later), STATUS_OK);
     cells_density(cells, &fields);
     for (size_t i = 0; i < n; i++) assert_true(isfinite(out[0][i]) && out[0][i] > 0);
@@ -150,7 +150,7 @@ static enum status arrange(int dim, size_t n, struct error *error)
     return status;
 }
 
-/* A simulation's first steps, by a scheme that needs every array, or few. */
+/* The first steps of a simulation, with a scheme that needs every array, or few. */
 static enum status flow(int dim, const struct scheme *scheme, enum boundary ends,
                         struct error *error)
 {
@@ -178,7 +178,7 @@ static enum status flow_of_all(int dim, size_t n, struct error *error)
     scheme.volume_element = VOLUME_ENERGY;
     scheme.formulation = FORMULATION_LAGRANGIAN;
     scheme.energy = ENERGY_TOTAL;
-    (void)n; /* a lattice is as large as it is */
+    (void)n; /* the lattice decides the number */
     return flow(dim, &scheme, BOUNDARY_FIXED, error);
 }
 
@@ -191,7 +191,7 @@ static enum status flow_of_little(int dim, size_t n, struct error *error)
     return flow(dim, &scheme, BOUNDARY_REFLECTING, error);
 }
 
-/* With every call refused in turn, until all are answered. Returns how many there are. */
+/* Refuses every call for memory in turn. Returns how many calls there are. */
 static long refused_in_turn(work *doing, int dim, size_t n)
 {
     for (long refuse = 1;; refuse++) {
@@ -218,7 +218,7 @@ TEST(test_every_call)
         work *doing;
         int least_dim;
         size_t n;
-        long least, most; /* calls: no more where there is room already */
+        long least, most; /* calls; `least` where there is capacity already */
     } all[] = {{find, 1, 90, 8, 45},
                {differentiate, 1, 60, 105, 130},
                {differentiate_clump, 1, 200, 25, 45},
@@ -238,7 +238,7 @@ TEST(test_every_call)
         }
 }
 
-/* Of every number of points, from none on: the ends of all arrays. */
+/* For any number of points, from zero: no access goes beyond an array. */
 TEST(test_ends)
 {
     static work *const all[] = {find, differentiate, differentiate_all, weigh, list, arrange};
@@ -264,7 +264,8 @@ static struct grid_box open_box(int dim)
     return (struct grid_box){dim, {0}, {1, 1, 1}, {false}};
 }
 
-/* All n points in one place, in each other's reach. Returns the calls that a search takes. */
+/* All n points at one position, within each other's reach. Returns the calls for memory of a
+ * search. */
 static long search_together(struct grid *grid, size_t n)
 {
     const double *const at[] = {place[0], place[1], place[2]};
@@ -275,7 +276,7 @@ static long search_together(struct grid *grid, size_t n)
     return watched_calls - before;
 }
 
-/* The same in so many cells along the last axis. */
+/* The same with points in so many cells along the last axis. */
 static long search_in_cells(struct grid *grid, int dim, int cells)
 {
     const size_t n = 200;
@@ -294,8 +295,8 @@ static long reserve(const struct grid *grid, struct grid_reader *reader)
     return watched_calls - before;
 }
 
-/* What there is room for, to the last entry, takes no call; one more does, of every array that it
- * lacks, and makes room for more. */
+/* Entries up to the capacity need no call for memory; one more needs a call for each array that is
+ * full, and leaves spare capacity. */
 TEST(test_room_of_grids)
 {
     for (int dim = 2; dim <= 3; dim++) {
@@ -356,7 +357,7 @@ TEST(test_room_of_cells)
         for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
             assert_int_equal(arrange_together(cells, steps[k].n), steps[k].calls);
         cells_destroy(cells);
-        method.wall[1] = true; /* images have room of their own */
+        method.wall[1] = true; /* images have capacity of their own */
         cells = cells_create(&method, 400);
         arrange_together(cells, 100);
         assert_int_equal(arrange_together(cells, 150), 0);
@@ -366,7 +367,8 @@ TEST(test_room_of_cells)
     }
 }
 
-/* Who asks for loops that are not specialised gets them: the oracle of those that are. */
+/* A caller that asks for unspecialised loops gets them: they are the reference for the specialised
+ * ones. */
 static bool specialised_asked;
 struct shapes __real_shapes_of(const struct kernel *of, int dim, bool specialised);
 struct shapes __wrap_shapes_of(const struct kernel *of, int dim, bool specialised);

@@ -7,12 +7,12 @@
 #include <stdlib.h>
 
 #include "printed.h"
-/* the command's own text, of which the parts are asked */
+/* the command itself, because its static functions are tested */
 #include "../../command/autopsy.c"
 
 static const struct table_style none = {"", "", "", "", ""};
 
-/* At most six columns of times: five as far apart as can be, and the last. */
+/* At most six columns of times: five as far apart as possible, and the last. */
 TEST(looks)
 {
     static const struct {
@@ -54,7 +54,7 @@ TEST(looks)
     }
 }
 
-/* A part has the letters of the bar of which it has more than the first half. */
+/* A part owns those letters of the bar of which it covers more than the first half. */
 TEST(bars)
 {
     static const struct {

@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "printed.h"
-/* the command's own text, of which the parts are asked */
+/* the command itself, because its static functions are tested */
 #include "../../command/calibrate.c"
 
 static const char *values[8];
@@ -104,7 +104,7 @@ TEST(runs)
 {
     static const struct {
         const char *text;
-        size_t runs; /* 0: refused */
+        size_t runs; /* 0: the file is refused */
     } rows[] = {{"2", 2}, {"16", 16}, {"1", 0}, {"17", 0}, {"2.5", 0}, {"x", 0}, {NULL, RUNS}};
     const char **value = value_called("runs");
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
@@ -117,7 +117,7 @@ TEST(runs)
     }
 }
 
-/* Where the calibrated file goes: beside the code file, under its name without an ending. */
+/* The calibrated file is written beside the code file, under its name without the ending. */
 TEST(files)
 {
     static const struct {

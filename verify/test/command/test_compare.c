@@ -12,7 +12,7 @@
 #include "near.h"
 #include "printed.h"
 
-/* the command's own text, of which the parts are asked; how far it is, it tells this file */
+/* the command itself, because its static functions are tested; progress is reported to this file */
 #define progress_update told_update
 #define progress_end    told_end
 #include "compare.c"
@@ -36,9 +36,9 @@ static const char *values[3];
 static struct options options = {
     .quiet = 1, .threads = 1, .command = &command_compare, .values = values};
 
-/* ---- what is said ---- */
+/* ---- verdicts and tables ---- */
 
-/* Errors of up to two figures and CPU times of the draws of a and b. */
+/* Errors in up to two figures and CPU times of the draws of a and b. */
 static const struct {
     size_t draws, figures;
     bool snapshot[2];
@@ -251,7 +251,7 @@ TEST(what_is_said)
             }
         }
         for (size_t k = 0; k < planted[row].figures; k++) c.sides[0].figures[k] = (char *)names[k];
-        strcpy(c.sides[0].first.asked.file.name, "sod"); /* of both, and so is all that b lacks */
+        strcpy(c.sides[0].first.asked.file.name, "sod"); /* of both; b has nothing else */
         c.sides[0].first.asked.file.dimension = 1;
         c.sides[1].count = 0;
         conclude(&c);
@@ -274,7 +274,7 @@ TEST(what_is_said)
             printed_end(&printed, text, sizeof text);
             if (strncmp(text, expected, strlen(expected)) != 0)
                 fail_msg("row %zu: got:\n%s\nand not:\n%s", row, text, expected);
-            /* table_wrap puts some of its blanks at the ends of lines */
+            /* table_wrap leaves some blanks at the ends of lines */
             for (char *at = text; (at = strchr(at, '\n'));) *at = ' ';
             char *said = text + strlen(expected);
             assert_true(strncmp(said, c.verdict, strlen(c.verdict)) == 0);
@@ -284,7 +284,7 @@ TEST(what_is_said)
     }
 }
 
-/* ---- what is drawn ---- */
+/* ---- draws ---- */
 
 static void take(struct comparison *c, const char *a, const char *b)
 {
@@ -297,8 +297,8 @@ static void take(struct comparison *c, const char *a, const char *b)
     }
 }
 
-/* The draw has the errors of a run of its number of particles, or of this seed, if it is above 0.
- */
+/* The draw has the errors of a run with its number of particles, or with this seed if it is above
+ * 0. */
 static void is_run(const struct comparison *c, int s, size_t r, double seed)
 {
     const struct side *side = &c->sides[s];
@@ -314,7 +314,7 @@ static void is_run(const struct comparison *c, int s, size_t r, double seed)
     assert_int_equal(run_resolve(&run, &asked, &error), STATUS_OK);
     assert_int_equal(run_execute(&run, &result, &error), STATUS_OK);
     assert_int_equal(result.n, side->n[r]);
-    assert_true(side->cpu_s[r] >= 0); /* planted: NaN */
+    assert_true(side->cpu_s[r] >= 0); /* the test had set NaN */
     if (r == 0) assert_int_equal(json_integer_value(json_object_get(side->result, "n")), result.n);
     size_t k = 0;
     for (int f = 0; f < FIELDS; f++)
@@ -333,7 +333,8 @@ static void is_run(const struct comparison *c, int s, size_t r, double seed)
     run_free(&result);
 }
 
-/* Numbers of particles of the draws that stay; each error is that of a run of this number. */
+/* The numbers of particles of the draws that are kept; each error is that of a run with this
+ * number. */
 TEST(draws)
 {
 #define SHORT  " t_end=0.01"
@@ -426,7 +427,7 @@ TEST(seen_before)
     for (size_t r = 0; r < 5; r++) assert_int_equal(seen(&c, r), r > 2);
 }
 
-/* Of a snapshot there is one draw, which stands for any number of them. */
+/* A snapshot is a single draw, which stands for any number of draws. */
 TEST(snapshots)
 {
     static struct comparison c;
@@ -487,7 +488,7 @@ TEST(files)
     rmdir(folder);
 }
 
-/* Draws that are refused: of fewer than 4 particles; by the solver; of a case that is not known. */
+/* Draws that are refused: fewer than 4 particles; refused by the solver; an unknown case. */
 TEST(refused_draws)
 {
     static struct comparison c;
@@ -499,9 +500,10 @@ TEST(refused_draws)
     assert_non_null(strstr(error.message, "beyond half the box"));
 }
 
-/* ---- what may be compared ---- */
+/* ---- comparable sides ---- */
 
-/* Whether a is a snapshot is planted: such has its case's settings, but for gamma and time. */
+/* The test sets whether a is a snapshot: a snapshot has its case's settings, but for gamma and
+ * time. */
 TEST(problems)
 {
     static const struct {
@@ -554,12 +556,12 @@ TEST(dimensions)
     take(&c, "sod", "sod");
     assert_int_equal(take_side(&c.sides[1], 3, &error), STATUS_OK);
     assert_int_equal(c.sides[1].asked.threads, 3);
-    c.sides[1].first.asked.file.dimension = 2; /* of a case file with the same name */
+    c.sides[1].first.asked.file.dimension = 2; /* a case file with the same name */
     assert_int_equal(check_problem(&c, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "a is of the case sod in 1D, b of sod in 2D"));
 }
 
-/* Words of a side, and those that are no words. */
+/* Valid and invalid words of a side. */
 TEST(words)
 {
     static const struct {
@@ -638,7 +640,7 @@ TEST(exit_statuses)
     values[0] = NULL;
 }
 
-/* What cannot be written. */
+/* Output that cannot be written. */
 TEST(unwritable)
 {
     static struct comparison c;

@@ -10,8 +10,8 @@
 
 static const struct {
     enum fate fate;
-    const char *state; /* as it is said; NULL: nothing is submitted again */
-    bool given_up;     /* not submitted again either */
+    const char *state; /* as messages name it; NULL: nothing is submitted again */
+    bool given_up;     /* the share is given up at once */
 } rows[] = {
     {COMPLETES, NULL, false},
     {LATE, NULL, false},
@@ -68,8 +68,8 @@ TEST(once)
     }
 }
 
-/* A share that ends badly three times is given up, and the others go on. The message names what is
- * missing, and where its logs are. */
+/* A share that ends badly three times is given up, and the others continue. The message names what
+ * is missing, and where its logs are. */
 TEST(thrice)
 {
     for (int r = 0; r < ROWS; r++) {
@@ -128,7 +128,8 @@ static void submit_share_2(void)
     if (made.tries[2] == 1) add_tasks("2", 90);
 }
 
-/* Two tasks compute one share: the one that is alive counts, in whichever order they are listed. */
+/* Two tasks compute one share: the one that is still alive counts, in whichever order they are
+ * listed. */
 TEST(two_tasks_of_a_share)
 {
     for (int backwards = 0; backwards < 2; backwards++)
@@ -176,7 +177,7 @@ TEST(only_what_is_missing)
     }
     again();
     for (int s = 1; s <= SHARES; s++) store_share(s, SHARES);
-    made.no_sbatch = true, made.away_to = 1e9; /* nobody is asked */
+    made.no_sbatch = true, made.away_to = 1e9; /* sbatch is not asked */
     assert_int_equal(compute_all(), STATUS_OK);
     assert_int_equal(made.questions, 0);
 }
@@ -205,7 +206,7 @@ TEST(how_many_shares)
     }
 }
 
-/* A share has this command line, without the options that are the caller's business, quoted so that
+/* A share has this command line: without the options that only the caller needs, and quoted so that
  * a shell reads the same words. */
 TEST(the_line_of_a_share)
 {
@@ -236,10 +237,10 @@ TEST(the_line_of_a_share)
         assert_string_equal(made.words[i], words[i]);
     snprintf(text, sizeof text, "/slurm/%s-%%A_%%a.log", made.name);
     assert_non_null(strstr(made.output, text));
-    assert_true(made.output[0] == '/'); /* from wherever the task starts */
+    assert_true(made.output[0] == '/'); /* an absolute path, because tasks may start elsewhere */
 }
 
-/* A command without the option --jobs is not given it. */
+/* A command without the option --jobs does not get it. */
 TEST(a_command_without_jobs)
 {
     static const struct command bench = {.name = "bench", .options = list + 1};
@@ -271,7 +272,7 @@ TEST(too_many_words)
     assert_int_equal(made.submissions, 0);
 }
 
-/* The same study in the same folder has the same name, another one another. */
+/* The same study in the same folder has the same name; another study or folder has another name. */
 TEST(its_name)
 {
     char name[64];

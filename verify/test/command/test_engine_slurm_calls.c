@@ -6,12 +6,12 @@
 
 #include "made_slurm_call.h"
 
-/* ---- who does not answer ---- */
+/* ---- commands that do not answer ---- */
 
 TEST(what_sbatch_says)
 {
     again();
-    made.answers = ";elsewhere"; /* of several clusters */
+    made.answers = ";elsewhere"; /* as on several clusters */
     assert_int_equal(compute_all(), STATUS_OK);
     again();
     made.no_sbatch = true;
@@ -22,7 +22,7 @@ TEST(what_sbatch_says)
     made.refuses = "sbatch: error: invalid partition specified: none";
     assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
     says_error("--engine slurm: sbatch failed (exit status 1): sbatch: error: invalid partition");
-    /* what was not submitted does not count as a try */
+    /* a refused submission does not count as a try */
     made.refuses = NULL;
     for (int t = 0; t < 3; t++) made.fates[2][t] = t < 2 ? ENDS_BADLY : COMPLETES;
     assert_int_equal(compute_all(), STATUS_OK);
@@ -35,7 +35,7 @@ TEST(a_controller_that_is_away)
         double from, to;
         enum status status;
     } times[] = {
-        {0, 100.1, STATUS_ENVIRONMENT}, /* was never there */
+        {0, 100.1, STATUS_ENVIRONMENT}, /* never there */
         {101, 102, STATUS_OK},          {101, 200, STATUS_OK},
         {102, 219, STATUS_OK},          {102, 250, STATUS_ENVIRONMENT},
     };
@@ -47,7 +47,7 @@ TEST(a_controller_that_is_away)
             assert_int_equal(compute_all(), times[i].status);
             const char *note = strstr(call.said, "; trying again\n");
             assert_int_equal(note != NULL, !quiet);
-            if (note) assert_null(strstr(note + 14, "trying again")); /* once */
+            if (note) assert_null(strstr(note + 14, "trying again")); /* printed once */
             if (times[i].status) {
                 says_error("squeue failed (exit status 1): slurm_load_jobs error: Unable to "
                            "contact slurm controller");
@@ -55,7 +55,7 @@ TEST(a_controller_that_is_away)
             }
             assert_int_equal(made.submissions, times[i].from > 0);
         }
-    /* twice, each time not for long */
+    /* absent twice, each time not for long */
     again();
     made.fates[2][0] = STAYS;
     made.away_from = 101, made.away_to = 211;
@@ -84,14 +84,15 @@ TEST(away_twice)
     assert_non_null(strstr(first + 1, "trying again"));
 }
 
-/* ---- who watches ---- */
+/* ---- watching and interrupting ---- */
 
 static void results_appear(void)
 {
     if (made.now > 110) store_share(2, SHARES);
 }
 
-/* What a task that goes on was for is there already: it is cancelled, if Slurm lets us. */
+/* If the results of a running task are there already, the task is cancelled, if Slurm permits
+ * that. */
 TEST(nothing_is_left_to_do)
 {
     for (int refused = 0; refused < 2; refused++) {
@@ -107,7 +108,7 @@ TEST(nothing_is_left_to_do)
     }
 }
 
-/* A task that Slurm holds, and does not let us cancel, is waited for. */
+/* A task that Slurm holds, and that may not be cancelled, is waited for. */
 TEST(held_for_ever)
 {
     again();
@@ -119,7 +120,8 @@ TEST(held_for_ever)
     assert_string_equal(made.arrays, "1-3 ");
 }
 
-/* Ctrl-C: without a terminal, or without a yes, the tasks go on, and who calls again attaches. */
+/* After Ctrl-C without a terminal or without a yes, the tasks continue, and the next call attaches
+ * to them. */
 TEST(interrupted)
 {
     static const struct {
@@ -158,7 +160,8 @@ TEST(interrupted)
                 says_error("interrupted; its tasks are cancelled, what is done is kept in");
                 assert_int_equal(files("*.json"), 0);
             }
-            /* once more: what goes on is not submitted a second time, what was cancelled is */
+            /* the next call does not submit running tasks a second time, but submits cancelled
+             * ones */
             made.meanwhile = NULL;
             for (size_t k = 0; k < made.count; k++)
                 if (made.tasks[k].fate == STAYS) made.tasks[k].fate = COMPLETES;
@@ -169,10 +172,10 @@ TEST(interrupted)
         }
 }
 
-/* The signal's usual meaning is there again afterwards. */
+/* The signal's former handler is installed again afterwards. */
 TEST(the_signal_is_given_back)
 {
-    struct sigaction before, now; /* a background job of a shell ignores it */
+    struct sigaction before, now; /* a background job of a shell ignores the signal */
     again();
     assert_int_equal(sigaction(SIGINT, NULL, &before), 0);
     assert_int_equal(compute_all(), STATUS_OK);
@@ -180,7 +183,7 @@ TEST(the_signal_is_given_back)
     assert_true(now.sa_handler == before.sa_handler);
 }
 
-/* Tasks that were submitted before, by somebody who has died since: their tries count. */
+/* The caller that submitted these tasks has died since; their tries count. */
 TEST(attached)
 {
     for (int i = 0; i < 2 * SHARES; i++) {
@@ -201,7 +204,7 @@ TEST(attached)
     }
 }
 
-static const char *planted; /* what somebody else writes into the state */
+static const char *planted; /* what another process writes into the state file */
 
 static void write_state(void)
 {
@@ -214,7 +217,7 @@ static void write_state(void)
     planted = NULL;
 }
 
-/* What is remembered between calls, as another one may have left it. */
+/* The state kept between calls, as another program may have left it. */
 TEST(the_state)
 {
     static const struct {
@@ -247,7 +250,7 @@ TEST(the_state)
         assert_int_equal(compute_all(), states[i].status);
         assert_string_equal(made.arrays, states[i].arrays);
     }
-    /* one that is none: the study is divided anew */
+    /* invalid states: the study is divided again */
     static const char *const none[] = {"",
                                        "{",
                                        "[]",
@@ -273,7 +276,7 @@ TEST(the_state)
     }
 }
 
-/* How many shares there are is remembered, whatever the next call asks for. */
+/* The number of shares is kept, whatever the next call asks for. */
 TEST(shares_stay)
 {
     again();
@@ -288,7 +291,8 @@ TEST(shares_stay)
     assert_non_null(strstr(made.wrap, "TASK_ID/3 "));
 }
 
-/* Of a share that is given up the last line of its log that says something; the log stays. */
+/* If a share is given up, the message has the last nonempty line of its log, and the log is
+ * kept. */
 TEST(the_last_line)
 {
     static const struct {
@@ -319,7 +323,7 @@ TEST(the_last_line)
     }
 }
 
-/* Logs of what is done are not kept. */
+/* Logs of completed shares are removed. */
 TEST(logs_go)
 {
     again();
@@ -338,14 +342,14 @@ TEST(logs_go)
     all_is_left_behind_in_order();
 }
 
-/* Looks become rarer, from half a second to a quarter of a minute. */
+/* The engine polls ever less often, from every half second to every quarter of a minute. */
 TEST(how_often_it_looks)
 {
     again();
     made.fates[2][0] = STAYS;
     made.interrupt = 1100;
     assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
-    size_t looks = 0; /* a twentieth of what has passed */
+    size_t looks = 0; /* the interval is a twentieth of the time passed */
     for (double passed = 0; passed < 1000; looks++)
         passed += passed < 10.1 ? 0.505 : passed < 300 ? passed / 20 : 15;
     assert_int_equal(made.questions, looks);

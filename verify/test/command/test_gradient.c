@@ -23,8 +23,8 @@ static void write_text(const char *text, size_t length)
     fclose(stream);
 }
 
-/* sphproof gradient FILE ARGUMENTS: the exit status; the document goes to *document, NULL if none.
- */
+/* Runs sphproof gradient FILE ARGUMENTS and returns its exit status; *document is its document or
+ * NULL. */
 static int gradient(const char *arguments, json_t **document)
 {
     char text[512], *argv[32] = {(char[]){"sphproof"}, (char[]){"gradient"}, file,
@@ -42,7 +42,8 @@ static int gradient(const char *arguments, json_t **document)
     return status;
 }
 
-/* No gradient is null, an infinite condition number is "inf", and both leave exit status 0. */
+/* A missing gradient is null, an infinite condition number is "inf", and both leave exit status
+ * 0. */
 TEST(test_flagged)
 {
     static const char text[] = "x,y,volume,f\n0,0,1,3\n0.5,0.5,1,2\n1,1,1,1\n9,9,1,0\n";

@@ -16,7 +16,7 @@ static const struct command_option list[] = {
     {"jobs", "J", ""}, SHARING_OPTIONS, {NULL, NULL, NULL}};
 static const struct command command = {.name = "converge", .synopsis = "CASE", .options = list};
 
-/* How a computation is to end. */
+/* How a computation shall end. */
 struct planned {
     enum status status;
     enum { ENDS, IS_KILLED, LEAVES } how;
@@ -30,7 +30,7 @@ static struct call {
     struct sharing sharing;
     struct pool pool;
     struct error error;
-    char said[4000]; /* on standard output, then on standard error */
+    char said[4000]; /* standard output, then standard error */
     bool whole;
 } call;
 
@@ -232,7 +232,7 @@ TEST(what_is_remarkable)
     assert_non_null(strstr(call.said, "7 of them found in "));
     assert_null(strstr(call.said, "note"));
     pool_free(&call.pool);
-    /* no room: a file where the folder of an entry would be */
+    /* a file stands where the folder of an entry should be */
     unlink(path);
     *strrchr(path, '/') = '\0';
     assert_int_equal(rmdir(path), 0);
@@ -245,7 +245,7 @@ TEST(what_is_remarkable)
         assert_true(strlen(call.error.message) > 10);
         assert_string_equal(call.said, "");
         pool_free(&call.pool);
-        assert_int_equal(run_share(NULL), STATUS_OK); /* it has the result itself */
+        assert_int_equal(run_share(NULL), STATUS_OK); /* it computes the result */
         assert_int_equal(strncmp(call.said, "sphproof: note: ", 16) == 0, !quiet);
         pool_free(&call.pool);
     }
@@ -295,7 +295,7 @@ TEST(listing)
             assert_string_equal(call.said, expected);
             pool_free(&call.pool);
         }
-    assert_int_equal(access("nowhere", F_OK), -1); /* no folder is made to list */
+    assert_int_equal(access("nowhere", F_OK), -1); /* listing makes no folder */
 }
 
 /* ---- options ---- */
@@ -305,7 +305,7 @@ TEST(wrong_options)
     static const struct {
         const char *names[3], *values[3];
         bool force;
-        const char *message; /* NULL: it is right */
+        const char *message; /* NULL: valid */
     } rows[] = {
         {{"jobs"}, {"1"}, false, NULL},
         {{"jobs"}, {"1024"}, false, NULL},
@@ -391,7 +391,7 @@ TEST(wrong_options)
     }
 }
 
-/* What right options are read as. */
+/* The values that valid options give. */
 TEST(right_options)
 {
     struct sharing sharing;
@@ -408,7 +408,7 @@ TEST(right_options)
     set("only-build", build);
     assert_int_equal(
         sharing_take(&sharing, &call.options, 5, call.place.cache_folder, false, &call.error),
-        STATUS_OK); /* the command's own folder counts */
+        STATUS_OK); /* the folder of the command itself counts */
     assert_int_equal(sharing.pool.jobs, 3);
     assert_true(sharing.pool.share.number == 2 && sharing.pool.share.of == 7);
     assert_true(sharing.pool.cache == &sharing.cache && !sharing.cache.force);

@@ -12,7 +12,8 @@
 #include "made_place.h"
 #include "slurm.h"
 
-/* The command prints this, complains and ends with the code; what it was told is kept. */
+/* Makes a command that prints `output` and `complaint`, exits with the code and saves its
+ * arguments. */
 static void command_says(const char *name, const char *output, const char *complaint, int code)
 {
     char text[64];
@@ -28,7 +29,7 @@ static void command_says(const char *name, const char *output, const char *compl
             place, name, place, name, complaint, complaint, code);
     fclose(file);
     assert_int_equal(chmod(path_of(name), 0700), 0);
-    assert_int_equal(setenv("PATH", place, 1), 0); /* there is no other command */
+    assert_int_equal(setenv("PATH", place, 1), 0); /* no other command is found */
 }
 
 static const char *told(const char *name)
@@ -72,7 +73,7 @@ static void queue_is(const char *output, const struct expected *tasks, size_t n)
     free(found);
 }
 
-/* Each with what squeue said of a task after what became of it. */
+/* Lines of squeue about a task, one for each state. */
 TEST(recorded_answers)
 {
     static const struct {
@@ -94,7 +95,7 @@ TEST(recorded_answers)
         {"9 2 PENDING JobHeldUser\n", {9, 2, true, "PENDING", "JobHeldUser"}},
         {"8 2 PENDING DependencyNeverSatisfied\n",
          {8, 2, true, "PENDING", "DependencyNeverSatisfied"}},
-        /* longer than there is room for */
+        /* longer than the field */
         {"13 1 PENDING Nodes required for job are DOWN, DRAINED or reserved for jobs in higher "
          "priority partitions\n",
          {13, 1, true, "PENDING",
@@ -119,7 +120,7 @@ TEST(recorded_answers)
         all[i] = rows[i].task;
     }
     queue_is(text, all, sizeof rows / sizeof *rows);
-    queue_is("", NULL, 0); /* nothing of this name */
+    queue_is("", NULL, 0); /* no task of this name */
 }
 
 /* ---- submitting ---- */

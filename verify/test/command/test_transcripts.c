@@ -59,7 +59,8 @@ static void write_all(const char *path, const char *text)
     fclose(file);
 }
 
-/* A row of numbers, separated by blanks or commas; their count, 0: it is none. */
+/* A row of numbers, separated by blanks or commas. Returns how many there are, 0 if the line is
+ * none. */
 static size_t numbers_of(const char *line, double values[COLUMNS])
 {
     size_t n = 0;
@@ -83,7 +84,8 @@ static void show_folder(struct buffer *to, const char *path)
     free(entries);
 }
 
-/* Sums of the columns, and of the columns times the row's number, so that order matters. */
+/* Sums of the columns, and of the columns times the row's number, so that the order of rows
+ * matters. */
 static void show(struct buffer *to, const char *path)
 {
     double sum[2 * COLUMNS] = {0}, values[COLUMNS];
@@ -124,7 +126,7 @@ static void show(struct buffer *to, const char *path)
 
 /* ---- commands ---- */
 
-/* "a 'b c' d": words, quotes taken away. */
+/* Splits "a 'b c' d" into words and takes quotes away. */
 static int split(char *line, char *words[WORDS])
 {
     int n = 0;
@@ -144,8 +146,8 @@ static int split(char *line, char *words[WORDS])
     return n;
 }
 
-/* What depends on the machine, the day, the build: what follows these words on a line is left out.
- */
+/* The rest of a line after these words depends on the machine, the day or the build and is left
+ * out. */
 static const char *const left_out[] = {"\"version\": ",
                                        "\"git\": ",
                                        "\"compiler\": ",
@@ -180,7 +182,7 @@ static const char *const left_out[] = {"\"version\": ",
                                        " time=\"",
                                        "\n\033[1mcost"};
 
-/* Where the blanks before the last word begin. */
+/* Start of the blanks before the last word. */
 static char *last_column(char *line)
 {
     char *at = strrchr(line, ' ');
@@ -191,14 +193,14 @@ static char *last_column(char *line)
 static void add_filtered(struct buffer *to, const char *text)
 {
     bool cpu_column = false;
-    int closed = -1; /* what was asked for, and what grows with every new key: its indentation */
+    int closed = -1; /* indentation of "asked" and of other objects that grow with every new key */
     char line[LINE_MAX];
     for (const char *next; *text; text = next) {
         size_t length = strcspn(text, "\n");
         next = text + length + (text[length] == '\n');
         assert_true(length + 2 < sizeof line);
         snprintf(line, sizeof line, "\n%.*s", (int)length, text);
-        /* progress, where the machine is slow */
+        /* progress reports of a slow machine */
         if (strstr(line, " s left") || strstr(line, " (0 %), ")) continue;
         const int indentation = (int)strspn(line + 1, " ");
         if (closed >= 0) {
@@ -213,13 +215,13 @@ static void add_filtered(struct buffer *to, const char *text)
             const bool by_hand = at[0] == '"' && at[1] && at[2] == '"'; /* a word of one letter */
             if (!by_hand) strcpy(at, "~");
         }
-        /* round-off, and seconds of a processor */
+        /* round-off errors and CPU times */
         for (size_t k = 0; k < 2; k++) {
             const char *ok = k ? "\n  \033[32mok  \033[0m " : "\n  ok   ";
             const size_t name = strlen(ok) + 18;
             if (!strncmp(line, ok, strlen(ok)) && strlen(line) > name) strcpy(line + name, "~");
         }
-        /* what follows, a verdict, has times as well */
+        /* the rest is a verdict with times */
         if (strncmp(line, "\nCPU time ", 10) == 0) strcpy(line + 10, "~"), next = "";
         const size_t end = strlen(line);
         if (cpu_column && isdigit((unsigned char)line[end - 1]) && line[1] == ' ')
@@ -231,9 +233,9 @@ static void add_filtered(struct buffer *to, const char *text)
     }
 }
 
-/* Without what differs from one machine to the next: numbers to seven digits, what is below 1e-11
- * is 0, one blank before a number that has many. Long lists of what is allowed are cut: they grow.
- */
+/* The text without what differs between machines: numbers have seven digits, those below 1e-11 are
+ * 0, and one blank precedes a number of many digits. Long lists of allowed values, which grow, are
+ * cut. */
 static char *plain(const char *text)
 {
     enum { LONGEST = 200 };
@@ -266,8 +268,8 @@ static char *plain(const char *text)
     return buffer_take(&to);
 }
 
-/* What is added to a transcript: a short output as it is, of a long one the number of its lines and
- * a digest of it. The whole of it goes to the file, if there is one. */
+/* Adds a short output to a transcript as it is; of a long one the number of its lines and a digest.
+ * All of it goes to the file `whole` unless that is NULL. */
 static void add_output(struct buffer *to, FILE *whole, const char *text)
 {
     size_t lines = 0;
@@ -353,7 +355,8 @@ static void damage(char **words, int n)
     free(text);
 }
 
-/* In this process; both streams go to one file, but for standard output that is sent elsewhere. */
+/* Runs a command in this process; both streams go to one file, except a redirected standard
+ * output. */
 static void run(struct buffer *result, FILE *whole, char *line)
 {
     struct buffer output = {0}, shown = {0}, *to = &output;
@@ -458,7 +461,7 @@ static void transcript(void **state)
     if (whole) fclose(whole);
 }
 
-/* In a folder of its own, with a gnuplot that draws nothing and an ffmpeg that only copies. */
+/* Makes a folder with a gnuplot that draws nothing and an ffmpeg that only copies. */
 static int begin(void **state)
 {
     (void)state;

@@ -17,7 +17,8 @@ static void count(void)
     if (stepping) calls++;
 }
 
-/* WRAP(type, name, parameters, arguments): the name that the linker gives to calls of name. */
+/* WRAP(type, name, parameters, arguments) defines the function that the linker calls in place of
+ * name. */
 #define WRAP(type, name, parameters, arguments)                                                    \
     type __real_##name parameters;                                                                 \
     type __wrap_##name parameters;                                                                 \
@@ -54,7 +55,7 @@ enum status __wrap_simulation_run(struct simulation *simulation, double t_end,
     return status;
 }
 
-/* Calls while a case with these keys (words, separated by spaces) steps. */
+/* Calls for memory while a case with these keys (words, separated by spaces) steps. */
 static int calls_in(const char *case_name, const char *keys, int threads,
                     simulation_progress *progress)
 {
@@ -65,7 +66,7 @@ static int calls_in(const char *case_name, const char *keys, int threads,
     run.asked.progress = progress;
     calls = 0;
     const enum status status = run_execute(&run, &result, &error);
-    /* cold gas that collides: not every scheme gets far */
+    /* cold gas that collides: some schemes break down early */
     if (status && status != STATUS_BROKE_DOWN)
         fail_msg("%s %s: %s", case_name, keys, error.message);
     assert_true(result.cost.steps > 0);
@@ -73,7 +74,7 @@ static int calls_in(const char *case_name, const char *keys, int threads,
     return calls;
 }
 
-/* A report of progress, which a simulation asks for while it steps, that takes memory. */
+/* A progress report that allocates memory. */
 static bool waste(void *context, double time, uint64_t steps)
 {
     (void)context, (void)time, (void)steps;
@@ -106,7 +107,7 @@ TEST(test_no_calls)
             struct case_file of;
             struct error error;
             if (case_load(&of, file->name, &error)) fail_msg("%s", error.message);
-            if (of.dimension > 1) continue; /* lists of neighbours are as long as they come to be */
+            if (of.dimension > 1) continue; /* lists of neighbours may grow */
             strcat(keys, schemes[s]);
             if (calls_in(file->name, keys, 1, NULL))
                 fail_msg("%s %s: %d calls of malloc, calloc, realloc, aligned_alloc or free",
@@ -115,15 +116,15 @@ TEST(test_no_calls)
     assert_int_equal(calls_in("sod", "n=3000 t_end=0.01 skip=none", 2, NULL), 0);
 }
 
-/* Widths of half the box, whose neighbours are images of images: room is made now and then. */
+/* Widths of half the box, whose neighbours are images of images: memory is extended rarely. */
 TEST(test_room_is_made_rarely)
 {
     const int found = calls_in("two_rarefactions", "n=100 kernel=cubic_spline eta=40", 1, NULL);
     assert_in_range(found, 0, 8);
 }
 
-/* In 2D and 3D lists of neighbours are as long as they come to be: there is room for half as many
- * again as at the start. */
+/* In 2D and 3D lists of neighbours may grow by half of their first length without a call for
+ * memory. */
 TEST(test_clouds)
 {
     static const char *const flows[][2] = {
@@ -136,7 +137,7 @@ TEST(test_clouds)
     for (size_t k = 0; k < sizeof flows / sizeof *flows; k++)
         for (int threads = 1; threads <= 2; threads++) {
             const int found = calls_in(flows[k][0], flows[k][1], threads, NULL);
-            /* a second thread's first share of a pass may come late */
+            /* a second thread may compute its first share of a pass late */
             if (found > (threads == 1 ? 0 : 12))
                 fail_msg("%s %s, %d threads: %d calls", flows[k][0], flows[k][1], threads, found);
         }

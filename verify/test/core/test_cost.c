@@ -33,7 +33,7 @@ static struct simulation *lattice(int dim, int threads, bool sleep)
     return simulation;
 }
 
-/* Points of the lattice within 2.4 spacings of one, but itself. */
+/* Points of the lattice within 2.4 spacings of a point, without the point itself. */
 static uint64_t neighbours(int dim)
 {
     uint64_t count = 0;
@@ -44,8 +44,8 @@ static uint64_t neighbours(int dim)
     return count - 1;
 }
 
-/* Each pair once an evaluation, whatever the number of threads; where all sleep, none but those of
- * the start. */
+/* Each pair is counted once per evaluation, whatever the number of threads; if all particles are
+ * inactive, only the pairs of the start are counted. */
 TEST(pairs_and_updates)
 {
     for (int dim = 2; dim <= 3; dim++)

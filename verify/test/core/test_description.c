@@ -6,7 +6,7 @@
 #include "run_output.h"
 #include "solver.h"
 
-static const struct description *described; /* until a condition is < 0 */
+static const struct description *described; /* the list ends at a condition below 0 */
 static int made;
 
 static void describe(const struct simulation *simulation, description_visit *visit, void *context)
@@ -24,8 +24,8 @@ static void make(struct simulation *simulation)
 
 static const struct sums known = {.describe = describe, .matrix = make};
 
-/* Of matrices that are used: their largest values and means, which some have no angle of; the rest
- * is counted. */
+/* Largest values and means over the matrices that are used, some of which have no angle; the others
+ * are counted. */
 TEST(sums_over_particles)
 {
     static const struct description mixed[] = {{5, 3, 20},
@@ -56,7 +56,8 @@ TEST(sums_over_particles)
     assert_int_equal(made, 0);
 }
 
-/* Made anew where a step has ended with another evaluation than one of rates, and at no cost. */
+/* Matrices are computed again if a step has ended with an evaluation of another kind than of rates;
+ * that is not counted as cost. */
 TEST(matrices_of_the_state)
 {
     static const struct description one[] = {{5, 3, 20}, {5, -1, 0}};

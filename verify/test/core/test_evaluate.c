@@ -7,7 +7,7 @@
 
 enum { N = 9 };
 
-/* A letter for each call; what forces find. */
+/* A letter for each call; the results of forces. */
 static struct {
     char calls[16];
     double rate, F[3][N + 1], de[N + 1];
@@ -51,7 +51,7 @@ static double signal_speed(struct simulation *simulation)
 static const struct sums known = {
     .arrange = arrange, .widths = widths, .forces = forces, .signal = signal_speed};
 
-/* N particles that are all different, and one more that is nobody's. */
+/* N particles that are all different, and one more that must not count. */
 static void begin(struct simulation *s, int dim, bool total)
 {
     struct error error;
@@ -103,7 +103,7 @@ TEST(gas_falls)
             }
 }
 
-/* cfl over the largest signal speed / h, of those who sleep, too. */
+/* The limit is cfl over the largest signal speed / h; inactive particles count. */
 TEST(time_is_limited)
 {
     for (int dim = 1; dim <= 3; dim++)

@@ -9,8 +9,8 @@
 
 enum { N = 16 };
 
-/* Particle i, whose number in the setup is N - 1 - i, at i/N of the box along each direction; h =
- * 1/8 of its length 2, and everything else is another number. */
+/* Particle i, whose number in the setup is N - 1 - i, is at i/N of the box along each direction; h
+ * = 1/8 of its length 2, and every other value is distinct. */
 static void made(struct simulation *s, int dim, enum volume_element element, enum energy energy)
 {
     struct error error;
@@ -44,7 +44,7 @@ static void unmade(struct simulation *s)
     particles_destroy(&s->particles);
 }
 
-/* Smoothing lengths from the nearest end. */
+/* Distance from the nearest end in smoothing lengths. */
 static double depth_of(int i)
 {
     return fmin(2. * i / N, 2 - 2. * i / N) / 0.25;
@@ -69,7 +69,7 @@ TEST(nothing_where_no_end_is_fixed)
     }
 }
 
-/* Of every dimension, element and energy, with the fixed ends of each direction alone. */
+/* For every dimension, element and energy, with fixed ends along one direction. */
 TEST(layers_are_kept)
 {
     int outermost = 0, inner = 0, moving = 0;
@@ -130,8 +130,8 @@ TEST(layers_are_kept)
     assert_true(outermost > 100 && inner > 100 && moving > 100);
 }
 
-/* Where half of the energy has come or gone a run has broken down, but not beside layers that are
- * kept, which give it and take it. */
+/* A run that has gained or lost half of its energy has broken down, except beside fixed layers,
+ * which exchange energy with the gas. */
 TEST(energy_of_layers)
 {
     enum { SIDE = 32, ALL = SIDE * SIDE };

@@ -65,7 +65,7 @@ static struct setup disordered(int dim, const char *keys)
     return setup;
 }
 
-/* Gas at rest on a lattice in 1D, but for a few particles: most of it sleeps. */
+/* Gas at rest on a lattice in 1D, except for a few particles: most of it is inactive. */
 static void lie_still(struct setup *setup)
 {
     static double x[N], v[N], u[N];
@@ -81,7 +81,7 @@ static struct simulation *created(const struct setup *setup)
     return simulation;
 }
 
-/* Arrays of these uses. */
+/* The arrays of these uses. */
 static size_t list(const struct particles *a, unsigned uses, double *arrays[ARRAYS_MOST])
 {
     size_t count = 0;
@@ -95,7 +95,7 @@ static size_t list(const struct particles *a, unsigned uses, double *arrays[ARRA
     return count;
 }
 
-/* A particle that loses its last energy in a step is named with what is left of it. */
+/* A particle that loses all internal energy in a step is named with its remaining energy. */
 TEST(test_without_energy)
 {
     static const char *const energies[] = {
@@ -109,7 +109,7 @@ TEST(test_without_energy)
             struct error error;
             char said[80];
             a->e[100] = a->e[77] = -0.5;
-            a->p[0][77] = 0.03; /* a share of its energy that can be told */
+            a->p[0][77] = 0.03; /* a share of its energy that can be distinguished */
             assert_int_equal(simulation_run(simulation, 1, NULL, NULL, &error), STATUS_BROKE_DOWN);
             double U = a->e[77];
             for (int d = 0; d < dim && total; d++) U -= 0.5 * a->p[d][77] * a->p[d][77] / a->m[77];
@@ -121,7 +121,8 @@ TEST(test_without_energy)
         }
 }
 
-/* The estimate counts the arrays that are written to, the snapshot's and three more; no others. */
+/* The estimate counts the arrays that are written, those of the snapshot and three more; no
+ * others. */
 TEST(test_arrays_that_are_counted)
 {
     static const char *const schemes[] = {

@@ -31,7 +31,7 @@ TEST(test_sinc_constants)
         assert_int_equal(kernel_select(&kernel, "sinc", table[i].n, NULL), STATUS_OK);
         assert_int_equal(kernel.order, table[i].n);
         assert_int_equal(kernel.smoothness[0], 0);
-        for (int g = 0; g < GRADIENTS; g++) /* limits are known of n = 5, in 1D */
+        for (int g = 0; g < GRADIENTS; g++) /* limits are known for n = 5 in 1D only */
             assert_int_equal(kernel.stable_eta[g] != 0, table[i].n == 5 && g <= GRADIENT_IA);
         for (int dim = 1; dim <= 3; dim++) {
             assert_int_equal(kernel.smoothness[dim], table[i].n - 1);
@@ -89,8 +89,8 @@ TEST(test_select)
     assert_non_null(strstr(error.message, "3 to 12"));
 }
 
-/* What each kernel is: the B-spline M_n, whose knots lie at 1 - 2k/n, or Wendland's of a class C^k.
- */
+/* Each kernel's kind: the B-spline M_n, whose knots lie at 1 - 2k/n, or Wendland's of a class
+ * C^k. */
 static const struct {
     const char *name;
     int n, class;
@@ -101,8 +101,8 @@ static const struct {
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
-/* What a kernel says of itself: its knots and its class are those of its kind; lattice sums of a
- * spline are exact from n/2 on, those of the others never. */
+/* The descriptor's knots and class are those of the kernel's kind; lattice sums of a spline are
+ * exact from n/2 on, those of other kernels never. */
 TEST(test_descriptors)
 {
     assert_int_equal(kernel_family.n, KINDS);
@@ -122,7 +122,7 @@ TEST(test_descriptors)
                 sum += kernel_value(&kernel, fabs(j + 0.2 * shift), n / 2., 1);
             near_relative(sum, 1, 1e-14);
         }
-        for (int g = 0; g < GRADIENTS; g++) /* declared to three digits behind the point */
+        for (int g = 0; g < GRADIENTS; g++) /* declared to three decimals */
             near_below(fabs(1000 * kernel.stable_eta[g] - round(1000 * kernel.stable_eta[g])),
                        1e-11);
     }
@@ -160,9 +160,9 @@ static double plugin_dh(double r, double h, int dim)
     return 100 * r + 10 * h + dim;
 }
 
-/* As many plug-ins as there is room for are found by name behind the built-in kernels, unchanged;
- * constants are the plug-in's, even if it has none. This test must be the last one, because
- * plug-ins that were added stay. */
+/* The largest number of plug-ins is found by name after the built-in kernels, unchanged; their
+ * constants are used even if they are 0. This test must be the last one, because plug-ins cannot be
+ * removed. */
 TEST(test_plugins)
 {
     static struct kernel plugins[KERNEL_PLUGINS_MAX + 1];
@@ -177,7 +177,7 @@ TEST(test_plugins)
                                      .plugin_w = one,
                                      .plugin_dw_dh = k ? plugin_dh : NULL,
                                      .constant = {0, 0, 1 / M_PI}};
-        if (k == 5) /* one without a plug-in: normalised from knot to knot */
+        if (k == 5) /* not a plug-in: normalised between its knots */
             plugins[k] = (struct kernel){
                 .member = {names[k], "", ""}, .w = cubic.w, .knot_count = 2, .knots = knots};
         assert_int_equal(kernel_add(&plugins[k]), k < KERNEL_PLUGINS_MAX ? KINDS + k : -1);

@@ -8,7 +8,7 @@
 #include "plan.h"
 #include "value.h"
 
-/* Words that the reason of each pass must have, if it runs and if it is skipped. */
+/* Words that the reason of each pass must contain, if it runs and if it is skipped. */
 static void speaks_of_its_pass(const struct run *run, const struct plan_line *line)
 {
     const struct scheme *s = &run->scheme;
@@ -153,7 +153,7 @@ static void every_choice(const char *name, int dim, const char *size)
         SETTING_integrator, SETTING_balsara,     SETTING_skip,      SETTING_h_method};
     for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
         const struct family *family = setting_keys[keys[k]].family;
-        if (dim == 1 && keys[k] == SETTING_balsara) continue; /* has no such key */
+        if (dim == 1 && keys[k] == SETTING_balsara) continue; /* 1D has no such key */
         for (size_t i = 0; i < scheme_members(family, dim); i++) {
             char words[128];
             snprintf(words, sizeof words, "%s %s=%s", size, setting_keys[keys[k]].name,
@@ -189,8 +189,8 @@ static void warns(const char *name, const char *words, const char *what)
     json_decref(document);
 }
 
-/* Warnings: widths more than 3 % off those with exact sums, widths that are unstable, and boxes in
- * which positions lose digits. */
+/* Warnings: widths more than 3 % off those with exact sums, unstable widths, and boxes in which
+ * positions lose digits. */
 TEST(warnings)
 {
     warns("sod", "n=40", "");
@@ -230,8 +230,7 @@ static size_t explained(const struct setup *setup, char *warnings, size_t size)
     return plan_explain(setup, lines, PASSES, warnings, size);
 }
 
-/* A text that is too long is cut to the room that it has; the number of lines is that of the whole
- * text. */
+/* A text that is too long is cut at its capacity; the number of lines is that of the whole text. */
 TEST(room)
 {
     const struct setup setup = setup_of(5, GRADIENT_IA);
@@ -302,8 +301,8 @@ TEST(limits)
     }
 }
 
-/* Which passes each choice needs; loops are specialised unless the unspecialised ones are asked
- * for. */
+/* The passes that each choice needs; loops are specialised unless unspecialised ones are
+ * requested. */
 TEST(needs)
 {
     for (int choice = 0; choice < GRADIENTS * FORMULATIONS * PAIR_WIDTHS; choice++)
@@ -325,7 +324,7 @@ TEST(needs)
         }
 }
 
-/* Gravity counts in whichever direction it points, and no particle may then sleep. */
+/* Gravity along any axis counts, and no particle may then be inactive. */
 TEST(gravity)
 {
     for (int axis = 0; axis < 4; axis++)

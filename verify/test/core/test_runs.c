@@ -11,7 +11,7 @@
 
 enum { MOST = 4096 };
 
-/* Particles in a box; of a run's end by their numbers in the setup. */
+/* Particles in a box; at the end of a run, by their numbers in the setup. */
 struct gas {
     int dim;
     size_t n;
@@ -70,8 +70,8 @@ static struct scheme draw_scheme(int dim)
     return scheme;
 }
 
-/* A lattice at rest: `side` points each way in a box of sides 1, but `longer` times that along x.
- */
+/* A lattice at rest in a box of sides 1, but `longer` along x, with `side` points per unit
+ * length. */
 static void lattice(struct gas *gas, int dim, size_t side, size_t longer)
 {
     *gas = (struct gas){.dim = dim, .n = longer};
@@ -90,8 +90,8 @@ static void lattice(struct gas *gas, int dim, size_t side, size_t longer)
     }
 }
 
-/* Moves particles by up to half of this, gives them velocities up to half of that, and makes some
- * heavier by a part of up to `uneven`. */
+/* Moves particles by up to moved/2, gives them velocities up to speed/2, and makes some heavier by
+ * up to `uneven` of their mass. */
 static void shake(struct gas *gas, double moved, double speed, double uneven)
 {
     for (size_t i = 0; i < gas->n; i++) {
@@ -141,7 +141,7 @@ static void run(const struct setup *setup, double t_end, struct gas *end)
     simulation_destroy(simulation);
 }
 
-/* The first n particles of two ends, after as many steps. */
+/* The first n particles of two runs agree, and so does the number of steps. */
 static void same(const struct gas *a, const struct gas *b, size_t n, double tolerance)
 {
     assert_int_equal(a->cost.steps, b->cost.steps);
@@ -198,10 +198,10 @@ static void complete(struct gas *all, const bool walls[3])
     }
 }
 
-/* Gas in 1D without viscosity, whose outermost particles run at the walls and past them. */
+/* Gas in 1D without viscosity, whose outermost particles move against the walls and past them. */
 static void run_at_the_walls(struct gas *gas, struct scheme *scheme)
 {
-    set_kernel(scheme, "wendland_c2", 3.4); /* two particles at one place have a root h */
+    set_kernel(scheme, "wendland_c2", 3.4); /* two particles at one position have a root h */
     scheme->viscosity = VISCOSITY_NONE, scheme->formulation = FORMULATION_VANILLA_ICE;
     scheme->integrator = integrator_of("leapfrog");
     for (size_t i = 0; i < gas->n; i++) gas->u[i] = 0.3;
@@ -229,7 +229,7 @@ TEST(walls_are_mirrors)
             if (walls[a]) walled.boundary[a] = BOUNDARY_REFLECTING;
         run(&walled, 0.05, &plain);
         run(&mirrored, 0.05, &other);
-        for (size_t i = 0; i < p.n && hit; i++) { /* the two may have changed places */
+        for (size_t i = 0; i < p.n && hit; i++) { /* the two may have exchanged positions */
             if (other.x[0][i] < p.hi[0]) continue;
             const bool round_the_end = other.x[0][i] > whole.hi[0] - 1e-9;
             other.x[0][i] = round_the_end ? other.x[0][i] - 2 : other.x[0][p.n + i];
@@ -242,7 +242,7 @@ TEST(walls_are_mirrors)
     }
 }
 
-/* Gas in an open box runs as it does in the middle of a periodic one that is much too wide. */
+/* Gas in an open box moves as in the middle of a periodic box that is much too wide. */
 TEST(nothing_beyond_open_ends)
 {
     draw_state = 4;
@@ -262,7 +262,8 @@ TEST(nothing_beyond_open_ends)
     }
 }
 
-/* In a periodic box everything falls alike: g t^2/2 and g t apart from the run without. */
+/* In a periodic box all gas falls alike: it differs from the run without gravity by g t^2/2 and g
+ * t. */
 TEST(gravity_is_a_fall)
 {
     draw_state = 5;
@@ -287,7 +288,7 @@ TEST(gravity_is_a_fall)
     }
 }
 
-/* Where nothing but gravity acts, what is lost in height is won in speed, and no heat is made. */
+/* Where only gravity acts, potential energy becomes kinetic energy, and no heat. */
 TEST(gravity_keeps_energy)
 {
     draw_state = 6;
@@ -306,14 +307,15 @@ TEST(gravity_keeps_energy)
         struct setup setup = setup_of(&p, &scheme);
         setup.gravity[1] = g;
         run(&setup, 0.5, &plain);
-        /* symplectic Euler falls a whole last step ahead, to first order */
+        /* symplectic Euler's velocity is half a step ahead, an error of first order */
         const double order = scheme.integrator->order == 1 ? 1e-2 : 1e-11;
         near_relative(plain.sums.energy, before, order);
         for (size_t i = 0; i < p.n; i++) near_relative(plain.u[i], 1, order);
     }
 }
 
-/* Gas at rest between fixed layers stays at rest; where it moves the layers do not. */
+/* Gas at rest between fixed layers stays at rest; fixed layers stay where they are if the gas
+ * moves. */
 TEST(layers_stay)
 {
     draw_state = 7;
@@ -330,7 +332,7 @@ TEST(layers_stay)
         run(&setup, 0.1, &plain);
         for (size_t i = 0; i < p.n; i++) {
             near_below(fabs(plain.v[across][i]), 1e-10);
-            /* the outermost do not see the emptiness outside */
+            /* the density of the outermost does not fall towards the empty space outside */
             near_relative(plain.rho[i], 1, 0.02);
         }
         for (size_t i = 0; i < p.n; i++)
@@ -349,8 +351,8 @@ TEST(layers_stay)
     }
 }
 
-/* Where h changes by less than 0.05 over its own length, blended forces are those of ia to the last
- * bit, and only there. */
+/* Where h changes by less than 0.05 over its own length, and only there, blended forces are those
+ * of ia to the last bit. */
 TEST(blended_is_ia_at_even_widths)
 {
     draw_state = 8;

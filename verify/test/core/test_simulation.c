@@ -15,10 +15,10 @@ typedef long double real;
 
 enum { SIDE = 8, N = SIDE * SIDE };
 
-/* and one more that is nobody's */
+/* and one more that must not count */
 static double x[3][N + 1], v[3][N + 1], m[N + 1], u[N + 1], rho[N + 1];
 
-/* Of N particles on an uneven lattice of the box [-1, 3] x [0.5, 2.5]; or along its first side. */
+/* N particles on an uneven lattice of the box [-1, 3] x [0.5, 2.5], or along its first side. */
 static struct setup plain(int dim, const char *keys)
 {
     struct setup setup = {.dim = dim,
@@ -64,7 +64,7 @@ static void refused(const struct setup *setup, const char *message)
     assert_null(simulation);
 }
 
-/* A place of the setup with another value, for one attempt. */
+/* Sets a value of the setup for one attempt, which must be refused with this message. */
 static void refused_with(const struct setup *setup, double *place, double value, const char *said)
 {
     const double kept = *place;
@@ -114,7 +114,7 @@ TEST(setups_that_are_refused)
     refused_with(&plane, &x[1][9], INFINITY, "particle 9: y = inf is outside the box");
     refused_with(&plane, &x[0][9], 3.5, "particle 9: x = 3.5 is outside the box");
     x[1][9] = 2.75;
-    simulation_destroy(created(&plane)); /* where it is open there is no outside */
+    simulation_destroy(created(&plane)); /* no position is outside of an open box */
 }
 
 /* The ends of a box belong to it; two particles are enough. */
@@ -131,7 +131,7 @@ TEST(setups_that_are_taken)
     simulation_destroy(created(&two));
 }
 
-/* The state that a simulation begins with, and its threads. */
+/* The initial state of a simulation, and its threads. */
 TEST(the_state_of_a_setup)
 {
     static const char *const schemes[] = {
@@ -179,8 +179,8 @@ TEST(the_state_of_a_setup)
         }
 }
 
-/* Three particles at one place are laid a thousandth of their spacing apart: as the setup's density
- * says, or the mean one where it says none. */
+/* Widths of three coincident particles are guessed as if they were a thousandth of their spacing
+ * apart; the spacing is that of the setup's density or, without one, of the mean density. */
 TEST(the_first_guess_of_widths)
 {
     for (int known = 0; known < 3; known++) {
@@ -202,7 +202,7 @@ TEST(the_first_guess_of_widths)
 
 /* --- sums over the particles ------------------------------------------------------------------ */
 
-/* A simulation of n particles that are anywhere, with all that the sums read. */
+/* A simulation of n particles at arbitrary positions, with all values that the sums read. */
 static void scattered(struct simulation *s, int dim, ptrdiff_t n)
 {
     struct error error;
@@ -314,7 +314,7 @@ TEST(snapshots_are_wrapped)
             }
         }
         for (int i = 0; i < 3; i++) assert_true(snapshot.x[0][i] == 0);
-        assert_true(a->spare[40] == 77); /* nobody's */
+        assert_true(a->spare[40] == 77); /* beyond the particles */
         for (int k = 0; k < dim; k++) assert_true(s.wrapped[k][40] == 77);
         for (int i = 0; i < 40; i++) assert_true(snapshot.u[i] == a->U[i] * a->m_inverse[i]);
         for (int evolves = 0; evolves < 2; evolves++) {
@@ -366,8 +366,8 @@ TEST(steps_meet_the_end)
     gone(&s);
 }
 
-/* The first step: no longer than cfl sqrt(h/a), and a part of the limit where the integrator wants
- * that. */
+/* The first step is no longer than cfl sqrt(h/a), and than a part of the limit if the integrator
+ * asks for that. */
 TEST(the_first_step)
 {
     for (int way = 0; way < 9; way++) {
@@ -377,7 +377,7 @@ TEST(the_first_step)
         const struct particles *a = &s.particles;
         struct integrator integrator = {0};
         a->F[0][strong] = 50;
-        a->F[0][40] = 1e9, a->m_inverse[40] = a->h_inverse[40] = 1; /* nobody's */
+        a->F[0][40] = 1e9, a->m_inverse[40] = a->h_inverse[40] = 1; /* beyond the particles */
         real pull = 0;
         for (int i = 0; i < 40; i++) {
             real square = 0;
@@ -394,7 +394,7 @@ TEST(the_first_step)
             s.time_step = 0.999 * most / of;
             near_relative(simulation_next_step(&s, 0), 0.999 * most, 1e-14);
         }
-        for (int i = 0; i < 40; i++) /* where nothing pulls */
+        for (int i = 0; i < 40; i++) /* without forces */
             for (int k = 0; k < dim; k++) a->F[k][i] = 0;
         s.time_step = 4e8, s.t_end = 1e12;
         assert_true(simulation_next_step(&s, 0) == 1e8);

@@ -18,7 +18,7 @@ static unsigned random_next(unsigned *state)
 static double x[N];
 static size_t order[N], other[N];
 
-/* Sorts x[0..n-1] and holds the result against what it must be; returns the comparisons. */
+/* Sorts x[0..n-1] and verifies the result; returns the number of comparisons. */
 static size_t sorted(size_t n)
 {
     for (size_t i = 0; i < n; i++) order[i] = i;
@@ -35,7 +35,8 @@ static size_t sorted(size_t n)
     return compared;
 }
 
-/* Each pass looks at every index at most twice and halves the number of stretches. */
+/* The largest number of comparisons: each pass looks at every index at most twice and halves the
+ * number of sorted stretches. */
 static size_t most(size_t n)
 {
     return 2 * n * ((size_t)ceil(log2((double)n)) + 1);
@@ -63,20 +64,20 @@ TEST(test_nearly_in_order)
 {
     for (size_t i = 0; i < N; i++) x[i] = (double)i;
     assert_true(sorted(N) <= N);
-    for (size_t i = N / 2; i + 1 < N / 2 + 10; i += 2) /* five neighbours have crossed */
+    for (size_t i = N / 2; i + 1 < N / 2 + 10; i += 2) /* five pairs of neighbours have crossed */
         x[i] = (double)(i + 1), x[i + 1] = (double)i;
     assert_true(sorted(N) <= 8 * (size_t)N);
 }
 
-/* A rotation: particles have left the box at one end. Two stretches, whatever their lengths. */
+/* A rotation: particles have left the box at one end. There are two sorted stretches. */
 TEST(test_across_the_ends)
 {
     for (size_t i = 0; i < N; i++) x[i] = (double)((i + 77) % N);
     assert_true(sorted(N) <= 4 * (size_t)N);
 }
 
-/* The same particles in another order are the same simulation, but for the round-off of where the
- * box is taken to begin. */
+/* The same particles in another order give the same simulation, except for the round-off of where
+ * the box begins. */
 TEST(test_shuffled_particles)
 {
     static struct hydro_state plain, shuffled;

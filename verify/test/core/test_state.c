@@ -27,8 +27,8 @@ static struct particles gas(int dim)
     return a;
 }
 
-/* v and U, and how many particles have no internal energy left: exactly 0, a negative one and NaN
- * all count. */
+/* v, U and the number of particles without internal energy: exactly 0, a negative one and NaN all
+ * count. */
 TEST(primitives)
 {
     for (int dim = 1; dim <= 3; dim++)
@@ -52,8 +52,8 @@ TEST(primitives)
         }
 }
 
-/* Errors of the widths, and what the Newton step then does: small ones, a slope that does not help,
- * and errors so large that the step is limited to a factor of 2, up or down. */
+/* Errors of the widths, and the Newton step that follows: small errors, a derivative that makes the
+ * step useless, and errors so large that the step is limited to a factor of 2, up or down. */
 enum { LITTLE, STEEP, MUCH_LESS, MUCH_MORE, CASES };
 
 static void draw_sums(struct density_sums *sums, const struct gas *gas, const struct particles *a,
@@ -139,7 +139,7 @@ TEST(closed)
             }
 }
 
-/* The largest value is found wherever it stands, and no other one. */
+/* The largest value is found at any index. */
 TEST(largest_rates)
 {
     struct particles a = gas(1);

@@ -18,8 +18,8 @@ static size_t encode(unsigned long code, char *text)
     return length;
 }
 
-/* Characters that are not control characters stay; each byte of the others is a question mark, the
- * end of a line a blank. */
+/* Characters that are not control characters stay; each byte of the others becomes a question mark,
+ * and a line's end a blank. */
 TEST(every_character)
 {
     for (unsigned long code = 1; code < 0x140000; code++) {
@@ -34,7 +34,7 @@ TEST(every_character)
     }
 }
 
-/* Two bytes and a letter: a character of two, one of one, or none. */
+/* Two bytes and a letter: a character of two bytes, of one byte, or invalid. */
 TEST(every_pair)
 {
     for (int first = 1; first < 256; first++)
@@ -52,16 +52,17 @@ TEST(every_pair)
         }
 }
 
-/* Cut off, too long for what they mean, with a byte that does not follow. */
+/* Invalid UTF-8: truncated, longer than necessary, or with a byte that does not continue the
+ * character. */
 TEST(no_characters)
 {
     static const char *const texts[][2] = {
-        {"\xe2\x82\xac", "\xe2\x82\xac"}, /* a euro */
+        {"\xe2\x82\xac", "\xe2\x82\xac"}, /* the euro sign */
         {"\xe2\x82", "??"},
         {"\xe2", "?"},
         {"\xe2\x82x", "??x"},
         {"\xe2x\xac", "?x?"},
-        {"\xe0\x9f\xbf", "???"}, /* longer than need be */
+        {"\xe0\x9f\xbf", "???"}, /* longer than necessary */
         {"\xf0\x8f\xbf\xbf", "????"},
         {"\xc1\xbf", "??"},
         {"\xf0\x9f\x98\x80", "\xf0\x9f\x98\x80"},

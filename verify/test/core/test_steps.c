@@ -38,7 +38,7 @@ static double still_signal(struct simulation *simulation)
     seen.signals++;
     for (ptrdiff_t i = 0; i < simulation->particles.n; i++)
         simulation->particles.signal[i] = i == 7 ? 1e6 : 1;
-    /* nobody's */
+    /* beyond the particles */
     simulation->particles.signal[simulation->particles.n] = 1e30;
     return simulation->scheme.cfl / 0.125;
 }
@@ -78,7 +78,7 @@ static const struct integrator still = {
     .step = still_step, .synchronise = still_synchronise, .ends_evaluated = true};
 static struct sums still_sums;
 
-/* A simulation whose steps do nothing: eighths of a time unit, to 1. */
+/* A simulation whose particles stay: steps of an eighth of a time unit up to 1. */
 static struct simulation *standing(void)
 {
     struct simulation *s = made_simulation(40);
@@ -145,8 +145,7 @@ static double now(void)
     return (double)time.tv_sec + (double)time.tv_nsec / 1e9;
 }
 
-/* Eight steps of two milliseconds each take as long as this clock says, in the fractions of a
- * second, too. */
+/* Eight steps take two milliseconds each by this clock; fractions of a second count. */
 TEST(clocks_show_seconds)
 {
     const struct integrator slow = {.step = slow_step, .ends_evaluated = true};
@@ -159,7 +158,7 @@ TEST(clocks_show_seconds)
     simulation_destroy(s);
 }
 
-/* Stopped from outside, or by a step that fails: synchronised, and no further. */
+/* A run that is stopped, or whose step fails, is synchronised and goes no further. */
 TEST(a_run_that_stops)
 {
     struct error error;
@@ -172,7 +171,7 @@ TEST(a_run_that_stops)
         s->team.begun = 5;
         assert_int_equal(simulation_run(s, 1, look, s, &error),
                          fail ? STATUS_BROKE_DOWN : STATUS_OK);
-        assert_true(s->team.begun == 0); /* no pause counts for a team */
+        assert_true(s->team.begun == 0); /* team measures no time while the run is stopped */
         assert_true(s->time == (fail ? 0 : 0.125) && s->dt_before == 0.125 && s->dt == 0.125);
         assert_int_equal(seen.steps, 1);
         assert_int_equal(seen.looked, !fail);
@@ -185,7 +184,8 @@ TEST(a_run_that_stops)
 
 /* --- breaking down ---------------------------------------------------------------------------- */
 
-/* A billionth of the longest step is too short, and one that time does not notice; not the last. */
+/* A step below 1e-9 of the longest one is too short, and so is one that does not change the time,
+ * except for the last step. */
 TEST(steps_that_collapse)
 {
     static const struct {
@@ -222,7 +222,7 @@ TEST(steps_that_collapse)
     }
 }
 
-/* The particle that limits a step has the least h/signal. */
+/* The particle that limits a step has the smallest h/signal. */
 TEST(who_limits)
 {
     for (int last = 0; last < 40; last++) {
@@ -241,7 +241,8 @@ TEST(who_limits)
     }
 }
 
-/* More pairs than 1e5 + 100 n a particle for each of the longest steps to the end. */
+/* Too much work: more than 1e5 + 100 n pairs per particle for each of the longest steps to the
+ * end. */
 TEST(too_much_work)
 {
     for (int beyond = 0; beyond < 2; beyond++) {
@@ -260,8 +261,8 @@ TEST(too_much_work)
     }
 }
 
-/* Half of the energy has come or gone: seen at the end, and after every 128 steps where energy is
- * not what is integrated. */
+/* A gain or loss of half of the energy is detected at the end, and after every 128 steps if the
+ * scheme does not integrate the energy. */
 TEST(runaway_energy)
 {
     for (int total = 0; total < 2; total++)
@@ -291,7 +292,7 @@ TEST(runaway_energy)
         }
 }
 
-/* Exactly half may come or go. */
+/* A gain or loss of exactly half is allowed. */
 TEST(half_of_the_energy)
 {
     for (int k = 0; k < 4; k++) {
@@ -307,9 +308,9 @@ TEST(half_of_the_energy)
     }
 }
 
-/* --- kept and restored ------------------------------------------------------------------------ */
+/* --- saved and restored ----------------------------------------------------------------------- */
 
-/* The clocks of a simulation that is restored go on from where the other's stood. */
+/* The clocks of a restored simulation continue from those of the saved one. */
 TEST(clocks_go_on)
 {
     static struct made_bytes bag;
@@ -342,7 +343,7 @@ TEST(clocks_go_on)
     simulation_destroy(NULL);
 }
 
-/* What the integrator, the sums and those who sleep keep, too. */
+/* Saved state of the integrator, the sums and inactive particles. */
 TEST(all_is_carried)
 {
     static struct made_bytes bag;

@@ -12,7 +12,7 @@
 
 enum { ARRAYS_MOST = 80, LINE = 8 };
 
-/* Arrays that are of use. */
+/* The arrays in use. */
 static size_t list(const struct particles *a, double *arrays[ARRAYS_MOST])
 {
     size_t count = 0;
@@ -50,7 +50,7 @@ static void fill(const struct particles *a, ptrdiff_t ghosts)
         for (ptrdiff_t i = -ghosts; i < a->n + ghosts; i++) arrays[k][i] = value(k, i);
 }
 
-/* Filled to the given number of ghosts, and zero beyond. */
+/* Arrays are filled up to the given number of ghosts, and zero beyond. */
 static void filled(const struct particles *a, ptrdiff_t ghosts)
 {
     double *arrays[ARRAYS_MOST];
@@ -101,9 +101,9 @@ TEST(room_for_more_ghosts)
     }
 }
 
-/* --- carried ---------------------------------------------------------------------------------- */
+/* --- serialised ------------------------------------------------------------------------------- */
 
-/* Only those arrays that are in use are carried; the others stay as they are. */
+/* Only the arrays in use are serialised; the others stay as they are. */
 TEST(carried_with_ghosts)
 {
     static struct made_bytes bag;
@@ -147,7 +147,7 @@ static bool nothing(void *context, void *bytes, size_t n)
     return --*(int *)context > 0;
 }
 
-/* If reading back fails, the particles stay as they are. */
+/* If reading a saved state fails, the particles stay as they are. */
 TEST(failed_to_carry)
 {
     struct particles a = made(1, 9, 8);
@@ -206,7 +206,7 @@ TEST(sizes_of_vectors)
 
 /* --- pages ------------------------------------------------------------------------------------ */
 
-/* 1 if the system's list of mappings says that large pages were asked for at this address, 0 if
+/* 1 if the system's list of mappings says that large pages were requested at this address, 0 if
  * not, -1 if there is no such list. */
 static int asked_for(uintptr_t address)
 {
@@ -230,7 +230,7 @@ static void expect_pages(int dim, ptrdiff_t n, const char *array, bool asked)
 {
     struct particles a = made(dim, n, 64);
     const double *first = strcmp(array, "x") == 0 ? a.x[0] : a.signal;
-    /* blocks as long as that: a large page further on, as the first one may begin after the
+    /* in longer blocks ask one large page further on, because the first one may begin after the
      * array */
     const int found = asked_for((uintptr_t)first + (n < (1 << 17) ? 0 : 1 << 21));
     particles_destroy(&a);

@@ -5,8 +5,8 @@
 
 #include "team.h"
 
-/* A second of steps of `pace` seconds each; more threads take `ratio` times as long as one. Returns
- * the seconds that steps took over those of the better choice. */
+/* Simulates a second of steps of `pace` seconds each; with several threads a step takes `ratio`
+ * times as long as with one. Returns the time taken over that of the better choice. */
 static double loss(struct team *team, double *now, double pace, double ratio)
 {
     double taken = 0, best = 0;
@@ -33,8 +33,8 @@ TEST(stay_near_the_better_choice)
             assert_int_equal(team.size, t);
             assert_true(loss(&team, &now, paces[k], 1. / t) <= 1.1);
             assert_int_equal(team.size == 1 || team.size == t, 1);
-            /* another program starts: the present stretch of steps is lost, the next ones are not;
-             * short steps suffer most from waiting for a slice of time */
+            /* another program starts: the present stretch of steps is slow, the next ones are not;
+             * short steps suffer most from waiting for a time slice */
             const double ratio = paces[k] < 1e-2 ? 8 : 1.5;
             loss(&team, &now, paces[k], ratio);
             for (int again = 0; again < 3; again++)
@@ -69,7 +69,7 @@ TEST(pauses_count_for_nobody)
     assert_true(together > 3600);
 }
 
-/* Steps of a stretch, of one pace each, until the size or the purpose changes. */
+/* Steps of this pace until the number of threads or the purpose changes. Returns how many. */
 static int stretch(struct team *team, double *now, double step)
 {
     const struct team before = *team;
@@ -86,8 +86,8 @@ static int stretch(struct team *team, double *now, double step)
     return steps;
 }
 
-/* Trials of 4 ms; stretches between them of 16 to 256 times that, in time and in steps, twice as
- * long each time that nothing has changed; a change only where it saves 5 %. */
+/* Trials last 4 ms; between them there are stretches of 16 to 256 times that, in time and in steps,
+ * twice as long each time that nothing has changed; the choice changes only if that saves 5 %. */
 TEST(stretches_are_as_long_as_said)
 {
     static const double exact[] = {0x1p-20, 0x1p-14, 0x1p-10, 0x1p-8, 0x1p-7, 0.25};
@@ -99,7 +99,7 @@ TEST(stretches_are_as_long_as_said)
         team_begin(&team, 4);
         assert_true(team.most == 4 && team.size == 4 && team.trying && team.stretch == 16);
         assert_true(team.begun == 0 && team.steps == 0 && team.pace[0] == 0 && team.pace[1] == 0);
-        team_step(&team, now); /* the first one is nobody's */
+        team_step(&team, now); /* the first step is not measured */
         assert_true(team.begun == now && team.steps == 0 && team.size == 4 && team.trying);
         assert_int_equal(stretch(&team, &now, pace), trial);
         assert_true(team.size == 1 && team.trying);
@@ -111,7 +111,7 @@ TEST(stretches_are_as_long_as_said)
             assert_int_equal(stretch(&team, &now, pace), (int)fmax(expected, least));
             assert_true(team.size == 1 && team.trying);
         }
-        /* not enough; enough, and from the start again; and back */
+        /* too little is saved; enough, and the stretches start again; and back */
         assert_int_equal(stretch(&team, &now, pace * 0.9500001),
                          (int)ceil(4e-3 / (pace * 0.9500001)));
         assert_true(team.size == 4 && !team.trying && team.stretch == 256);
@@ -125,8 +125,7 @@ TEST(stretches_are_as_long_as_said)
         stretch(&team, &now, pace);
         stretch(&team, &now, 0.9 * pace);
         assert_true(team.size == 4 && !team.trying && team.stretch == 16);
-        /* slower than before, but by less than half; then by more, so that it is tried again at
-         * once */
+        /* slower than before by less than half; then by more, so that a trial follows at once */
         const double least = ceil(16 * 4e-3 / (1.3 * pace));
         assert_int_equal(stretch(&team, &now, 1.3 * pace), (int)fmax(16, least));
         assert_true(team.size == 1 && team.trying);
@@ -159,7 +158,7 @@ TEST(four_milliseconds)
     assert_int_equal(team.size, 1);
 }
 
-/* Every piece of work is done once, also by more threads than have ranges of their own. */
+/* Every piece of work is done once, also if there are more threads than ranges. */
 TEST(every_part_is_taken_once)
 {
     static const int teams[] = {1, 2, 3, 5, TEAM_SHARES, TEAM_SHARES + 6};
@@ -176,8 +175,8 @@ TEST(every_part_is_taken_once)
         }
 }
 
-/* Each thread begins with its own range, the same one every time; what others have not begun comes
- * after it. */
+/* Each thread begins with its own range, the same one every time; then it takes pieces that other
+ * threads have not begun. */
 TEST(own_parts_first)
 {
     enum { TEAM = 3, PARTS = 11 };

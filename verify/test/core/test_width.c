@@ -33,7 +33,7 @@ TEST(widths_of_even_gas)
     }
 }
 
-/* The scheme's tolerance, and at the start one of at most 1e-10. */
+/* The tolerance is the scheme's, and at most 1e-10 at the start. */
 TEST(rules_of_simulations)
 {
     for (int dim = 1; dim <= 3; dim++)
@@ -57,8 +57,7 @@ struct batch {
     struct width_bracket bracket;
 };
 
-/* Widths up to a third off those that their sums ask for, and one more behind them that must not be
- * changed. */
+/* Widths up to a third off their roots, and one more behind them that must not change. */
 static struct batch drawn_batch(const struct width_rule *rule, double high)
 {
     struct batch b;
@@ -75,7 +74,7 @@ static struct batch drawn_batch(const struct width_rule *rule, double high)
     return b;
 }
 
-/* A step is Newton's; the bracket closes in from the side of the old width. */
+/* A step is Newton's; the side of the bracket where the old width lies becomes the old width. */
 TEST(steps_are_newtons)
 {
     for (int dim = 1; dim <= 3; dim++)
@@ -100,7 +99,7 @@ TEST(steps_are_newtons)
         }
 }
 
-/* Within the tolerance a width stays as it is, and so does its bracket. */
+/* A width within the tolerance stays as it is, and so does its bracket. */
 TEST(converged_ones_stay)
 {
     for (int dim = 1; dim <= 3; dim++)
@@ -108,7 +107,7 @@ TEST(converged_ones_stay)
             const struct width_rule rule = rule_of(dim, 1e-3);
             struct batch b = drawn_batch(&rule, INFINITY);
             const double off = (k % 2 ? 1 : -1) * (k < 2 ? 0.999e-3 : 1.001e-3);
-            for (int i = 0; i < LEN; i++) { /* h (1 + off) is what is asked for */
+            for (int i = 0; i < LEN; i++) { /* the root is h (1 + off) */
                 b.sums.m[i] = b.m[i] * pow(rule.eta / (1 + off), dim) / rule.constant;
                 b.sums.m_dh[i] = 0;
             }
@@ -123,19 +122,19 @@ TEST(converged_ones_stay)
         }
 }
 
-/* Where Newton's step leaves the bracket, or goes the wrong way: half of the bracket, or twice the
- * width while there is no end; a bracket of two neighbouring numbers closes. */
+/* Where Newton's step leaves the bracket or has the wrong direction: bisection, or twice the width
+ * while the bracket has no upper end; a bracket of two neighbouring numbers closes. */
 TEST(brackets_hold)
 {
     const struct width_rule rule = rule_of(1, 1e-12);
-    const double even = rule.eta / rule.constant;  /* of m = 1: the sum that asks for h itself */
+    const double even = rule.eta / rule.constant;  /* for m = 1, the sum whose root is h itself */
     static const double end = 0x1.0000000000001p0; /* the number after 1 */
     const struct {
         double sum, dh, h, low, high, next;
     } rows[] = {
-        {0.1, 0, 1, 0, INFINITY, 2},               /* asked for 10 h, which is beyond 2 h */
-        {0.1, 0, 1, 0, 1.5, 1.25},                 /* beyond the end */
-        {0.9, 2, 1, 0, INFINITY, 2},               /* a slope below 0 */
+        {0.1, 0, 1, 0, INFINITY, 2},               /* the root is 10 h, beyond 2 h */
+        {0.1, 0, 1, 0, 1.5, 1.25},                 /* beyond the upper end */
+        {0.9, 2, 1, 0, INFINITY, 2},               /* a derivative below 0 */
         {0.9, 2, 1, 0, 3, 2},                      /* the middle of 1 and 3 */
         {0.9, 2, 1, 0, 5, 2},                      /* the middle is 3, more than twice h */
         {10, 0, 1, 0.5, INFINITY, 0.75},           /* below the bracket */
@@ -160,7 +159,7 @@ TEST(brackets_hold)
     }
 }
 
-/* The first that is off by more than a millionth. */
+/* The first particle that is off by more than a millionth. */
 TEST(who_has_no_root)
 {
     for (int dim = 1; dim <= 3; dim++)
@@ -180,8 +179,7 @@ TEST(who_has_no_root)
             }
 }
 
-/* 1/h is extrapolated as it has changed, but grows by no more than a quarter and falls by no more
- * than a fifth. */
+/* 1/h is extrapolated linearly, but grows by at most a quarter and falls by at most a fifth. */
 TEST(predicted_widths)
 {
     for (int len = BATCH_MAX - 1; len <= BATCH_MAX; len++) {
