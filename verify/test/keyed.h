@@ -12,7 +12,7 @@ struct keyed_words {
     int n;
 };
 
-/* The words of a line, between these characters. */
+/* The words of a line, separated by any of these characters. */
 static inline void keyed_words(struct keyed_words *words, const char *line, const char *between)
 {
     char *rest = words->text;
@@ -46,7 +46,7 @@ static inline struct scheme keyed_scheme(int dim, const char *line)
     return scheme;
 }
 
-/* A case with these keys. */
+/* The settings of a case with these keys. */
 static inline struct run_settings keyed_case(const char *name, const char *line)
 {
     struct keyed_words words;
@@ -67,7 +67,7 @@ static inline struct run keyed_run(const char *name, const char *line)
     return run;
 }
 
-/* run_free it. */
+/* The caller frees it with run_free. */
 static inline struct run_result keyed_result(const struct run *run)
 {
     struct run_result result = {0};

@@ -7,7 +7,7 @@
 
 static const double values[] = {0.5, 1, 2, (double)NAN};
 
-/* The figure is the subject's number; bound 1. */
+/* The figure is the number that the subject points to; the bound is 1. */
 static inline void measure(struct check_run *run, const void *subject)
 {
     const double *value = subject ? subject : &values[0];

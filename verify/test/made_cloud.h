@@ -5,7 +5,7 @@
 
 #include "prepared.h"
 
-enum { N = 300 }; /* and one behind them, which nobody may count */
+enum { N = 300 }; /* and one more, which must not count */
 
 /* Particles anywhere in a box, the first of them in its middle. */
 struct cloud {
@@ -33,7 +33,7 @@ static inline void scatter(struct cloud *cloud, const struct prepared *p, double
                                         .time = time};
 }
 
-/* Of the same bits, or both unknown. */
+/* The values are equal, or both are NaN. */
 static inline void same(double a, double b)
 {
     if (!(a == b || (isnan(a) && isnan(b)))) fail_msg("%.17g is not %.17g", a, b);
@@ -49,8 +49,8 @@ static inline double exactly(const struct prepared *p, const char *name, double 
     return prepared_functional(p, name)->exact(p, t);
 }
 
-/* Of a place that lies a distance r from the middle, in the direction "2 -1 2" of so many
- * dimensions, n; nothing of what was in the state is left. */
+/* The state at a distance r from the middle in the direction "2 -1 2", cut to the number of
+ * dimensions; *n is the unit vector. The sample must set every value. */
 static inline struct problem_state sampled(const struct prepared *p, double r, double t,
                                            double n[3])
 {
@@ -65,7 +65,7 @@ static inline struct problem_state sampled(const struct prepared *p, double r, d
     return state;
 }
 
-/* The last time at which the problem holds, to the last bit. */
+/* The last time at which the solution holds, to the last bit. */
 static inline double last_time(const struct prepared *p)
 {
     double lo = 0, hi = 100;

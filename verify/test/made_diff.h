@@ -10,7 +10,7 @@ static inline json_t *run_with(double l1, double cpu_s)
                      "l1", l1, "cost", "cpu_s", cpu_s, "wall_s", cpu_s);
 }
 
-/* Both documents are given away. */
+/* Takes over both documents. */
 static inline enum status differ(json_t *old, json_t *new, struct diff *diff)
 {
     struct error error = {0};
@@ -28,7 +28,7 @@ static inline const struct difference *find(const struct diff *diff, const char 
     return NULL;
 }
 
-/* Text that makes member `name` of `inside` (NULL: of the document itself) what text says. */
+/* Sets member `name` of `inside` (NULL: of the document itself) to the value in the JSON text. */
 static inline void put(json_t *document, const char *inside, const char *name, const char *text)
 {
     json_t *object = document;

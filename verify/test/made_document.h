@@ -17,7 +17,7 @@ struct made_draw {
     const json_t *template;
 };
 
-/* SplitMix64 (Steele, Lea & Flood 2014), a number below n. */
+/* A random number below n by SplitMix64 (Steele, Lea & Flood 2014). */
 static inline size_t made_below(struct made_draw *draw, size_t n)
 {
     uint64_t z = draw->state += 0x9e3779b97f4a7c15;
@@ -26,7 +26,7 @@ static inline size_t made_below(struct made_draw *draw, size_t n)
     return (size_t)((z ^ (z >> 31)) >> 16) % n;
 }
 
-/* A binary fraction, so that sums of two are exact; one of five is odd. */
+/* A binary fraction, so that sums of two are exact; one in five is a special value. */
 static inline double made_real(struct made_draw *draw)
 {
     static const double odd[] = {0,      0,      1,     1,    -1,      -0.5, 2,
@@ -84,7 +84,7 @@ static inline json_t *made_document(struct made_draw *draw, const json_t *of)
     return made;
 }
 
-/* FNV-1a of a text, after what came before. */
+/* FNV-1a of a text, continuing from the digest before. */
 static inline uint64_t made_digest(uint64_t before, const char *text)
 {
     uint64_t hash = before ? before : 0xcbf29ce484222325;
@@ -92,13 +92,13 @@ static inline uint64_t made_digest(uint64_t before, const char *text)
     return hash;
 }
 
-/* Digests as they are kept in data/drawn: "NAME-DRAW NUMBER", those of a draw in one line. With
- * SPHPROOF_KEEP=FOLDER in the environment what is found is written there instead: the texts, to be
- * compared with those of another build, and the lists that belong into data/drawn. */
+/* Digests as kept in data/drawn: "NAME-DRAW NUMBER", those of a draw in one line. With
+ * SPHPROOF_KEEP=FOLDER in the environment the texts are written there instead, to be compared with
+ * those of another build, and so are the new lists for data/drawn. */
 struct made_kept {
     FILE *file;
     const char *folder;
-    char draw[16]; /* of the last one written */
+    char draw[16]; /* the last one written */
 };
 
 static inline void made_open(struct made_kept *kept, const char *data, const char *list)
@@ -110,7 +110,7 @@ static inline void made_open(struct made_kept *kept, const char *data, const cha
     assert_non_null(kept->file);
 }
 
-/* Is this text the one that was kept under this name? The order is that of the list. */
+/* Compares a text with the digest kept under this name. Calls follow the order of the list. */
 static inline void made_compare(struct made_kept *kept, const char *name, const char *text)
 {
     char path[4096], there[64] = "";

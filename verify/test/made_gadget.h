@@ -35,7 +35,7 @@ struct binary {
     bool there[BLOCKS];
     int width[BLOCKS];
     double value[BLOCKS][3 * MOST];
-    size_t extra; /* records of the code's own between ID and MASS */
+    size_t extra; /* the code's own records between ID and MASS */
     size_t rows[BLOCKS];
 };
 
@@ -44,8 +44,8 @@ static bool is_vector(int block)
     return block == POS || block == VEL || block == ACCE;
 }
 
-/* Gas of density 1 to 2 in a box of 64 along each direction; particles of other types with it.
- * Widths are so much larger than densities that they cannot be taken for them. */
+/* Gas of density 1 to 2 in a box of 64 along each direction, and particles of other types. Widths
+ * are so much larger than densities that they cannot be mistaken for them. */
 enum { SIDE = 64 };
 
 static inline struct binary made(int dim)
@@ -58,7 +58,7 @@ static inline struct binary made(int dim)
         all += b.count[t];
         massive += b.table[t] > 0 ? 0 : b.count[t];
     }
-    const double share = pow(SIDE, dim) / b.count[0]; /* volume of each */
+    const double share = pow(SIDE, dim) / b.count[0]; /* the volume per particle */
     if (b.table[0] > 0) b.table[0] = (double)(float)(1.5 * share);
     for (int k = 0; k < BLOCKS; k++) {
         b.there[k] = true, b.width[k] = k == ID ? 4 : drawn(2) ? 4 : 8;
@@ -138,7 +138,7 @@ static inline size_t put_all(const struct binary *b)
 {
     size_t at = put_header(b);
     for (int k = 0; k < BLOCKS; k++) {
-        if (k == MASS) /* of another length than any block has */
+        if (k == MASS) /* a length that no block has */
             for (size_t e = 0; e < b->extra; e++) {
                 at = put_count(put_tag(at, b, "MINE", 4), b, 4);
                 at = put_count(put_count(at, b, 77), b, 4);

@@ -8,17 +8,17 @@
 
 enum { ITEM_NUMBERS = 64 };
 
-/* How numbers are stored, and texts. */
+/* Types in which numbers and texts are stored. */
 enum stored { F64, F32, F32_BIG, I64, I32_BIG, I8, TEXT, TEXT_VARIABLE, OPAQUE, TYPE, GROUP };
 
-/* A dataset or, of the group that stands before the last '/', an attribute. */
+/* A dataset, or an attribute of the group before the last '/'. */
 struct item {
     char path[64]; /* "": the item is left out */
     bool attribute;
     enum stored stored;
     int rank; /* 0: a scalar */
     hsize_t shape[3];
-    bool packed; /* in pieces, compressed */
+    bool packed; /* chunked and compressed */
     double values[ITEM_NUMBERS];
     char text[48];
 };
@@ -34,7 +34,8 @@ static hid_t item_type(const struct item *item)
     return type;
 }
 
-/* Groups on the way are made, also those in which there is nothing else. */
+/* Opens or creates the group of a path, with all groups above it, even if nothing else is in
+ * them. */
 static hid_t group_of(hid_t file, const char *path, size_t length)
 {
     char part[64];
@@ -79,7 +80,7 @@ static void write_item(hid_t file, const struct item *item)
             H5Pset_deflate(how, 4);
         }
         const hid_t self = H5Dcreate2(group, name, type, space, H5P_DEFAULT, how, H5P_DEFAULT);
-        if (item->stored < TEXT || !item->rank) /* a table of texts is left empty */
+        if (item->stored < TEXT || !item->rank) /* an array of texts is left empty */
             status = H5Dwrite(self, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
         H5Dclose(self);
     }

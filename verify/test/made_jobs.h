@@ -13,7 +13,7 @@
 
 enum { JOBS = 7 };
 
-/* One test's folder: the cache, and a file that grows by a byte with each computation. */
+/* The folder of one test: the cache, and a file that grows by a byte with each computation. */
 struct place {
     char folder[64], count[80], cache_folder[80];
     struct cache cache;
@@ -35,7 +35,7 @@ static inline enum status compute(const void *context, json_t **document, struct
     if (task->kind == SLOW) sleep(60);
     *document = json_pack("{s:i, s:o, s:o}", "number", task->number, "third",
                           result_number(task->number / 3.), "nan", result_number(0 / 0.));
-    if (task->number == 1) { /* larger than any pipe's buffer */
+    if (task->number == 1) { /* larger than any pipe's capacity */
         char *long_text = malloc(300001);
         memset(long_text, 'a', 300000);
         long_text[300000] = '\0';

@@ -26,7 +26,7 @@ static inline struct scheme made_scheme(void)
     return scheme;
 }
 
-/* simulation_destroy it. */
+/* The caller frees it with simulation_destroy. */
 static inline struct simulation *made_of(const struct setup *setup)
 {
     struct simulation *simulation = NULL;
@@ -66,7 +66,7 @@ static inline struct setup lattice_of(int dim, size_t side, double displaced,
     return setup;
 }
 
-/* In 2D, 8 particles wide and 128 long; whoever is at rest may sleep. */
+/* In 2D, 8 particles wide and 128 long; particles at rest may be inactive. */
 static inline struct setup long_box_of(const struct scheme *scheme)
 {
     struct setup setup = lattice_of(2, 8, 0, scheme);

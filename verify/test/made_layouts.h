@@ -10,7 +10,7 @@
 
 enum { N = 12, ITEMS_MAX = 40 };
 
-/* What an item of a list is to its reader. */
+/* What an item of a layout means to its reader. */
 enum meaning { COLUMN, TIME, GAMMA, BOX, BOX_ENDS, MASS, MASSES_OF_TYPES, COUNT, DIMENSION, PARTS };
 enum more_meanings { RATIO = PARTS + 1, KERNEL, HFACT, TYPES, IGNORED };
 
@@ -18,9 +18,9 @@ struct field {
     const char *path;
     int meaning;
     enum snapshot_column column;
-    bool needed;  /* by the reader, or by what every snapshot must have */
-    int width;    /* of a column; of a list of numbers */
-    double value; /* the first of a column, which then rises by 1; of a list */
+    bool needed;  /* required by the reader or by every snapshot */
+    int width;    /* of a column or a list of numbers */
+    double value; /* of a list; of a column the first value, which rises by 1 */
     const char *text;
 };
 
@@ -115,10 +115,10 @@ static const struct layout layouts[] = {
 };
 enum { LAYOUTS = sizeof layouts / sizeof *layouts };
 
-/* ---- what is planted ---- */
+/* ---- contents of the file ---- */
 
 static const int types[N] = {1, -1, 2,  1, 3, 1,
-                             1, -2, -1, 1, 1, 1}; /* Phantom's; negative: asleep */
+                             1, -2, -1, 1, 1, 1}; /* Phantom's; negative: inactive */
 
 static bool is_column(const struct field *f)
 {
@@ -126,7 +126,7 @@ static bool is_column(const struct field *f)
            (f->meaning == IGNORED && !strstr(f->path, "time"));
 }
 
-/* Of particle i along direction c. Positions along the three directions are apart. */
+/* The value of particle i along direction c. Positions along the three directions are distinct. */
 static double planted(const struct field *f, int i, int c)
 {
     static const int step[3] = {1, 5, 7};
@@ -173,7 +173,7 @@ static const struct field *field_of(const struct layout *l, const struct item *i
     return NULL;
 }
 
-/* Row of the file that comes k-th: gas first. */
+/* The file's row of particle k: gas comes first. */
 static int row_of(const struct layout *l, const struct item *items, int k)
 {
     int order[N], n = 0;
@@ -199,7 +199,7 @@ static void is_number(const char *what, bool known, double got, const struct fie
     if (want && got != want->value) fail_msg("%s: %g, not %g", what, got, want->value);
 }
 
-/* What the items say: those that are left out, with an empty path, are missed. */
+/* Compares a snapshot with the items; items with an empty path are missing. */
 static void is_read(const struct layout *l, const struct item *items,
                     const struct snapshot_file *file)
 {
@@ -246,7 +246,7 @@ static void is_read(const struct layout *l, const struct item *items,
     assert_string_equal(file->code, l->code);
 }
 
-/* What is said about them. */
+/* Compares the snapshot's notes with the items. */
 static void is_noted(const struct layout *l, const struct item *items,
                      const struct snapshot_file *file)
 {

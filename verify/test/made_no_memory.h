@@ -9,18 +9,18 @@
 
 #include "status.h"
 
-static atomic_int left = -1; /* calls until one fails; < 0: none does */
-static atomic_long held;     /* pieces that nobody has given back */
+static atomic_int left = -1; /* calls until one fails; < 0: none fails */
+static atomic_long held;     /* blocks that are not freed */
 
-static int spared; /* so many of the calls may fail and nothing is said */
+static int spared; /* number of calls that may fail without an error */
 
 static bool fails(void)
 {
     return left >= 0 && left-- == 0;
 }
 
-/* WRAP(name, parameters, arguments, new): the name that the linker gives to calls of name; is it
- * one piece more? */
+/* WRAP(name, parameters, arguments, new) defines the function that the linker calls in place of
+ * name; new: does a call add a block? */
 #define WRAP(name, parameters, arguments, new)                                                     \
     void *__real_##name parameters;                                                                \
     void *__wrap_##name parameters;                                                                \
@@ -45,8 +45,8 @@ void __wrap_free(void *memory)
     __real_free(memory);
 }
 
-/* Each call for memory of `work` fails once: it says so, and of all it asked for nothing is left.
- * There are at least so many calls; where what comes after those can do without, not all. */
+/* Lets each call for memory of `work` fail once: `work` must return the error, and free all blocks.
+ * There must be at least `least` calls; if not `all`, later calls need not be errors. */
 static void without_memory(enum status work(struct error *error), int least, bool all)
 {
     for (int k = 0;; k++) {

@@ -4,8 +4,8 @@
 
 #include "snapshot_file.h"
 
-/* There is one such note, and it has this value and evidence that holds these words; value NULL:
- * there is none. */
+/* The file has one such note, with this value and with evidence that contains these words; value
+ * NULL: it has none. */
 static inline void noted(const struct snapshot_file *file, const char *what, const char *value,
                          const char *words)
 {

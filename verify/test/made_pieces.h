@@ -21,7 +21,7 @@ static inline const json_t *template_of(const json_t *template, const char *job)
     return json_object_get(template, "run");
 }
 
-/* The number of particles of a run as its name says, or its piece. */
+/* Sets the number of particles of a run to that of its name, or to that of its piece's settings. */
 static inline void set_size(struct pool_job *job)
 {
     const char *named = strstr(job->name, ", n = ");

@@ -12,7 +12,7 @@ static char place[] = "sphproof_place_XXXXXX";
 static inline int make_place(void **state)
 {
     (void)state;
-    output_prepare_process(); /* as the program does: no file gets the number of a closed stream */
+    output_prepare_process(); /* no file gets the descriptor of a standard stream */
     return !mkdtemp(place);
 }
 
@@ -26,7 +26,7 @@ static inline int remove_place(void **state)
 
 TEST_BETWEEN(make_place, remove_place);
 
-/* A file there; the next call overwrites it. */
+/* The path of a file in the folder; the next call overwrites it. */
 static inline char *path_of(const char *name)
 {
     static char path[256];
@@ -34,7 +34,7 @@ static inline char *path_of(const char *name)
     return path;
 }
 
-/* The same from the top, for variables that must not depend on the working folder. */
+/* The absolute path, for variables that must not depend on the working folder. */
 static inline char *whole_path_of(const char *name)
 {
     static char path[4500];

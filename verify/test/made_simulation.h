@@ -5,7 +5,7 @@
 
 #include "keyed.h"
 
-/* Of n particles on [0, 1]; simulation_destroy it. */
+/* n particles on [0, 1]. The caller frees it with simulation_destroy. */
 static inline struct simulation *made_simulation(size_t n)
 {
     double *storage = malloc(4 * n * sizeof *storage);
@@ -35,7 +35,7 @@ static inline struct simulation *made_simulation(size_t n)
     return simulation;
 }
 
-/* progress: NULL, or called with the simulation itself. */
+/* progress: NULL, or a function that is called with the simulation as its context. */
 static inline void made_run(struct simulation *simulation, double t_end,
                             simulation_progress *progress)
 {
@@ -44,7 +44,7 @@ static inline void made_run(struct simulation *simulation, double t_end,
         fail_msg("%s", error.message);
 }
 
-/* Are both in the same state, to the last bit? */
+/* True if both have the same state, to the last bit. */
 static inline bool made_alike(const struct simulation *a, const struct simulation *b)
 {
     struct snapshot s, t;

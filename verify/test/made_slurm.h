@@ -17,11 +17,11 @@
 
 enum { MADE_TASKS = 40, MADE_TRIES = 4, MADE_SHARES = 8 };
 
-/* What becomes of a task. */
+/* How a task ends. */
 enum fate {
     COMPLETES, /* its results are in the cache */
-    LATE,      /* as well, but the folder shows them 12 s later */
-    USELESS,   /* it ends well, and has written nothing */
+    LATE,      /* likewise, but the folder shows them 12 s later */
+    USELESS,   /* it ends well without results */
     ENDS_BADLY,
     TIMES_OUT,
     LOSES_NODE,
@@ -31,13 +31,13 @@ enum fate {
     MISSES_DEADLINE,
     REVOKED,
     CANCELLED_RUNNING,
-    CANCELLED_WAITING, /* its array's record says N/A where its number was */
-    CANCELLED_AT_ONCE, /* likewise, before anybody has asked */
-    FORGOTTEN,         /* the controller does not know it any more */
-    NEVER_SEEN,        /* nor has it ever */
-    REQUEUED,          /* it waits again for some seconds, then COMPLETES */
+    CANCELLED_WAITING, /* the array's record has N/A in place of its task number */
+    CANCELLED_AT_ONCE, /* likewise, before the first squeue */
+    FORGOTTEN,         /* the controller no longer knows it */
+    NEVER_SEEN,        /* the controller has never known it */
+    REQUEUED,          /* pending again for some seconds, then COMPLETES */
     SUSPENDED,         /* for some seconds, then COMPLETES */
-    HELD,              /* Slurm could not start it, and waits for ever */
+    HELD,              /* Slurm cannot start it, and holds it for ever */
     STAYS,             /* it runs for ever */
     FATES
 };
@@ -54,22 +54,22 @@ static struct made_slurm {
     double now;
     const struct pool *pool;
     const struct cache *cache;
-    enum fate fates[MADE_SHARES + 1][MADE_TRIES]; /* by share, and how often it was submitted */
+    enum fate fates[MADE_SHARES + 1][MADE_TRIES]; /* by share, and by submission */
     int tries[MADE_SHARES + 1];
     struct made_task tasks[MADE_TASKS];
     size_t count, submissions, questions;
-    char arrays[200];    /* what --array said, each submission's with a space behind it */
-    char cancelled[200]; /* what scancel was told, likewise */
+    char arrays[200];    /* the argument of --array of each submission, with a space after it */
+    char cancelled[200]; /* the arguments of scancel, likewise */
     char name[64], output[CACHE_PATH_MAX], wrap[4000], words[80][100]; /* of the last sbatch */
-    double away_from, away_to; /* the controller does not answer */
-    bool backwards;            /* squeue has the newest tasks first */
-    bool no_sbatch;            /* there is no such program */
+    double away_from, away_to; /* the controller does not answer between these times */
+    bool backwards;            /* squeue lists the newest tasks first */
+    bool no_sbatch;            /* the program does not exist */
     bool refuses_cancel;
-    const char *refuses; /* what sbatch says instead of a number */
-    const char *answers; /* what it prints behind the number */
-    double interrupt;    /* when somebody presses Ctrl-C; 0: never */
+    const char *refuses; /* the error message of sbatch in place of a number */
+    const char *answers; /* what sbatch prints after the number */
+    double interrupt;    /* time of Ctrl-C; 0: never */
     bool terminal;
-    void (*meanwhile)(void); /* is called with every question */
+    void (*meanwhile)(void); /* called at every squeue */
 } made;
 
 double __wrap_clock_wall(void);
@@ -85,7 +85,7 @@ int __wrap_nanosleep(const struct timespec *time, struct timespec *left)
     const double before = made.now;
     made.now += (double)time->tv_sec + 1e-9 * (double)time->tv_nsec;
     assert_true(time->tv_sec >= 0 && time->tv_nsec >= 0 && time->tv_nsec < 1000000000);
-    assert_true(made.now > before && made.now < 5000); /* it ends, and does not ask incessantly */
+    assert_true(made.now > before && made.now < 5000); /* polls end, and are rare */
     if (made.interrupt > 0 && made.now >= made.interrupt) {
         made.interrupt = 0;
         raise(SIGINT);
@@ -112,7 +112,7 @@ static inline enum status answer(struct child_said *said, int code, const char *
     return STATUS_OK;
 }
 
-/* Its computations' results. */
+/* Stores the results of the share's computations. */
 static inline void store_share(int share, int of)
 {
     int *shares = calloc(made.pool->count + 1, sizeof *shares);
@@ -129,7 +129,7 @@ static inline void store_share(int share, int of)
     free(shares);
 }
 
-/* A task that waits for a second, runs for two, and then meets its fate. */
+/* A task is pending for a second, runs for two, and then ends as planned. */
 static inline void task_state(const struct made_task *task, const char **state, const char **reason)
 {
     static const struct {
@@ -186,7 +186,7 @@ static inline void pass_time(int of)
     }
 }
 
-static int made_of; /* the number of shares that the last command line named */
+static int made_of; /* number of shares in the last command line */
 
 static inline enum status fake_squeue(const char *const *words, struct child_said *said)
 {
@@ -203,7 +203,7 @@ static inline enum status fake_squeue(const char *const *words, struct child_sai
                       "slurm_load_jobs error: Unable to contact slurm controller (connect "
                       "failure)");
     pass_time(made_of);
-    long nameless = 0; /* the array whose waiting tasks are one record that was cancelled */
+    long nameless = 0; /* the array whose pending tasks are one record that was cancelled */
     for (size_t i = 0; i < made.count; i++) {
         const struct made_task *task = &made.tasks[made.backwards ? made.count - 1 - i : i];
         const char *state, *reason;
@@ -223,7 +223,7 @@ static inline enum status fake_squeue(const char *const *words, struct child_sai
     return answer(said, 0, text, "");
 }
 
-/* Its array as sbatch reads it: 1,3-5. */
+/* Adds the tasks of an array in sbatch's notation: 1,3-5. */
 static inline void add_tasks(const char *text, long job)
 {
     while (*text) {

@@ -29,7 +29,7 @@ static struct call {
     struct progress progress;
     struct engine_work work;
     struct error error;
-    char said[8000]; /* on standard error */
+    char said[8000]; /* standard error */
 } call;
 
 static inline void set(const char *name, const char *value)
@@ -38,7 +38,7 @@ static inline void set(const char *name, const char *value)
         if (strcmp(list[i].name, name) == 0) call.values[i] = value;
 }
 
-/* A study of 8 computations in 3 shares; nothing is there, nobody knows of it. */
+/* A study of 8 computations in 3 shares, without results or tasks. */
 static inline int begin(void **state)
 {
     (void)state;
@@ -100,7 +100,7 @@ static inline size_t lacking(void)
     return n;
 }
 
-/* Files in the folder of the engine: what it remembers, and logs. */
+/* Counts files in the engine's folder: its state, and logs. */
 static inline size_t files(const char *pattern)
 {
     char path[200];

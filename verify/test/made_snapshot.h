@@ -15,7 +15,7 @@ static inline double uniform(double lo, double hi)
     return lo + (hi - lo) * (double)(seed >> 11) / 9007199254740992.;
 }
 
-/* A snapshot as text: only those columns that are set. */
+/* A snapshot as text, with only those columns that are set. */
 struct planted {
     int dim;
     char head[200];
@@ -25,7 +25,7 @@ struct planted {
 
 static struct planted gas;
 
-/* Gas at random places in [lo, lo + (2, 1, 1)], at rest and in equilibrium. */
+/* Gas at random positions in [lo, lo + (2, 1, 1)], at rest and in equilibrium. */
 static inline void plant(int dim, double lo, const char *head)
 {
     gas = (struct planted){.dim = dim, .has_u = true};
@@ -59,7 +59,7 @@ static inline char *put(const char *name)
     return path;
 }
 
-/* Two gases that are the same. */
+/* A request for a tube whose two gases are the same. */
 static inline struct judge_request uniform_gas(void)
 {
     return (struct judge_request){.case_name = "sod",

@@ -10,13 +10,13 @@
 enum { LEVELS = 4 };
 static size_t ladder[CASE_LADDER_MAX] = {40, 80, 160, 320}, level_count = LEVELS;
 
-/* What a run of a level and replicate says. */
+/* Spacing and error of the run at a level and replicate. */
 static inline double spacing_of(size_t l, size_t r)
 {
     return 2. / (double)ladder[l] * (1 + 0.02 * (double)r);
 }
 
-/* Of order 1 + f/10 + m/100, and scattered by replicates. */
+/* Errors of order 1 + f/10 + m/100, with a factor for each replicate. */
 static inline double error_at(int f, int m, size_t l, size_t r)
 {
     static const double scatter[] = {1, 1.1, 0.95, 1.02};
@@ -75,7 +75,7 @@ static inline json_t *run_document(const struct study *study, size_t l, size_t r
 
 typedef void tamper(json_t *run, size_t c, size_t l, size_t r);
 
-/* A study of a case whose runs say what is written above. */
+/* A study of a case whose runs have these spacings and errors. */
 static inline enum status make(struct study *study, struct pool *pool, const char *name,
                                const char *vary, size_t replicates, tamper *tampering,
                                struct error *error)

@@ -31,7 +31,7 @@ struct table {
     char head[1400];
 };
 
-/* What people write, by the names of the columns. */
+/* Spellings of the columns' names in use. */
 __attribute__((unused)) static const char *const spelt[SNAPSHOT_COLUMNS][7] = {
     {"x", "X", "pos_x", "Position x", "coordinates", "Pos", "position-x"},
     {"y", "Y", "pos_y", "PositionY", "Coordinates y", "posy", "Y"},
@@ -104,7 +104,7 @@ static size_t put_number(char *text, const struct table *t, double value)
     return (size_t)sprintf(text, "%s", number);
 }
 
-/* Writes row by row; the number at (row, column) is word, where there is one. */
+/* Writes the table row by row; `word`, if given, replaces the number at (row, column). */
 static size_t text_of(const struct table *t, char *text, int row, int column, const char *word)
 {
     const char *end = t->returns ? "\r\n" : "\n", *gap = t->wide ? " \t " : "";

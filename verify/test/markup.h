@@ -21,7 +21,8 @@ static int markup_order(const void *a, const void *b)
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* Attributes from c to the end of the tag; NULL and a reason in fault if they are wrong. */
+/* Parses attributes from c to the end of the tag; returns NULL and the reason in `fault` if they
+ * are wrong. */
 static const char *markup_attributes(const char *c, char **ids, size_t *id_count, char *fault,
                                      size_t size)
 {
@@ -92,7 +93,7 @@ static bool markup_walk(const char *c, char **ids, size_t *id_count, char *fault
     return !depth;
 }
 
-/* True: well-formed; else fault says what is wrong and where. */
+/* True if well-formed; else `fault` says what is wrong and where. */
 static bool markup_well_formed(const char *document, char *fault, size_t size)
 {
     char **ids = malloc(MARKUP_IDS * sizeof *ids);
@@ -130,8 +131,8 @@ static inline size_t markup_base64(const char *text, size_t n, unsigned char *by
 }
 #endif
 
-/* The page with everything in it that is folded, as its script would inflate it; malloced. *sealed:
- * how many parts. NULL: one of them cannot be inflated. */
+/* The page with all its compressed parts, as its script would inflate them; the caller frees it.
+ * *sealed: number of parts. NULL: one of them cannot be inflated. */
 static inline char *markup_unsealed(const char *document, size_t *sealed)
 {
     static const char head[] = "<div class=\"sealed\" data-z=\"";
@@ -162,8 +163,8 @@ static inline char *markup_unsealed(const char *document, size_t *sealed)
     return whole;
 }
 
-/* The first thing that would make a browser ask the network, NULL if nothing does. Names of XML
- * namespaces are not addresses. */
+/* The first text that would make a browser access the network, or NULL. Names of XML namespaces are
+ * not addresses. */
 static inline const char *markup_network(const char *document)
 {
     static const char *const asks[] = {"src=\"http", "href=\"http", "url(http", "@import",

@@ -8,7 +8,7 @@
 #include "problem_list.h"
 #include "problem_prepare.h"
 
-/* More memory than there is: NULL with sanitizers, too. */
+/* So that malloc returns NULL with sanitizers, too, if there is not enough memory. */
 const char *__asan_default_options(void);
 const char *__asan_default_options(void)
 {
@@ -40,7 +40,7 @@ static inline struct prepared prepared_of(struct settings *settings, int dim, co
     return p;
 }
 
-/* Its problem refuses them, and says so. */
+/* The problem must refuse these keys with these words. */
 static inline void prepared_refused(int dim, const char *keys, const char *words)
 {
     struct prepared p;
@@ -51,7 +51,7 @@ static inline void prepared_refused(int dim, const char *keys, const char *words
         fail_msg("%s: '%s' expected, said: %s", keys, words, error.message);
 }
 
-/* Its particles, as the problem lays them. */
+/* The initial particles of a prepared problem. */
 static inline struct initial prepared_filled(const struct prepared *p,
                                              const struct settings *settings)
 {

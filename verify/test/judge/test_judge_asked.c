@@ -33,7 +33,7 @@ TEST(said)
     static const struct {
         const char *head, *name;
         bool x0;
-        double right; /* pressure of the gas there */
+        double right; /* the right gas's pressure */
         bool keys;
     } rows[] = {{"# case = sod\n" TIMED, NULL, false, 0.1, false},
                 {"# case = lax\n" TIMED, NULL, false, 0.571, false},
@@ -61,7 +61,7 @@ TEST(said)
     }
 }
 
-/* Boundaries of a plane are the file's or the user's; those of a line are no key of its run. */
+/* In 2D boundaries are the file's or the user's; in 1D they are no key of the run. */
 TEST(boundaries)
 {
     static const struct {
@@ -124,7 +124,7 @@ TEST(refused)
 
 /* ---- box and window ---- */
 
-/* Of a case of ours whose window is not about the middle of its box, which is not at 0. */
+/* A case file whose window is not centred in its box; the box does not begin at 0. */
 static char *own_case(void)
 {
     static char path[256];
@@ -145,7 +145,7 @@ TEST(windows)
     static const struct {
         const char *head, *asked, *name;
         double lo, hi, want[2];
-        const char *note, *value, *evidence; /* note NULL: none of the window */
+        const char *note, *value, *evidence; /* note NULL: none about the window */
     } rows[] = {
         {"# box = 2\n", NULL, NULL, 0, 2, {0.5, 1.25}, NULL, NULL, NULL},
         {"# box = -2:0\n", NULL, NULL, -2, 0, {-1.5, -0.75}, NULL, NULL, NULL},
@@ -195,7 +195,8 @@ TEST(windows)
     }
 }
 
-/* On a line a radius is half of a window about the middle of the box, whatever its ends are. */
+/* In 1D a radius is half the length of a window about the middle of the box, whatever its ends
+ * are. */
 TEST(radius_of_a_line)
 {
     for (int open = 0; open < 2; open++) {
@@ -211,7 +212,7 @@ TEST(radius_of_a_line)
     }
 }
 
-/* A disc or a ball; the size of the box is said where it is not the case's. */
+/* The window of a disc or a ball; the size of the box is noted if it is not the case's. */
 TEST(sizes)
 {
     for (int k = 0; k < 4; k++) {
@@ -236,7 +237,7 @@ TEST(sizes)
     }
 }
 
-/* Of a flow along x alone, in more dimensions than its case has; also of particles on one line. */
+/* A flow along x in more dimensions than its case has; also particles on one line. */
 TEST(dimensions)
 {
     for (int dim = 1; dim <= 3; dim++) {
@@ -257,7 +258,7 @@ TEST(dimensions)
     }
 }
 
-/* Particles that the box takes back stand in the order of a line. */
+/* Particles that are wrapped back into the box are sorted along the line. */
 TEST(wraps)
 {
     struct judge_request request = uniform_gas();
@@ -297,19 +298,19 @@ static void put_tube(const struct riemann_state sides[2], double x0)
         }                                                                                          \
     }
 
-/* Ends that are open or walls are found where gas beside both is as it was. */
+/* Open ends or walls are recognised if the gas beside both ends has its initial state. */
 TEST(found_ends)
 {
     static const struct {
         struct riemann_state sides[2];
-        double time, at[2]; /* of two particles, from both ends, over the length */
-        double rho, v;      /* one of them is off, over density and sound speed */
+        double time, at[2]; /* distance of two particles from either end, over the length */
+        double rho, v;      /* error of one of them, over density and sound speed */
         bool ended;
     } rows[] = {
         {USUAL, 0.1, {0.0101, 0.0399}, 0, 0, true},
         {USUAL, 0.1, {0.0099, 0.0399}, 0, 0, false},
         {USUAL, 0.1, {0.0101, 0.0401}, 0, 0, false},
-        /* half of what one of the two is off */
+        /* the limit is half of the error of one particle */
         {USUAL, 0.1, {0.02, 0.03}, 0.0599, 0, true},
         {USUAL, 0.1, {0.02, 0.03}, 0.0601, 0, false},
         {USUAL, 0.1, {0.02, 0.03}, -0.0599, 0, true},
@@ -318,10 +319,10 @@ TEST(found_ends)
         {USUAL, 0.1, {0.02, 0.03}, 0, 0.0601, false},
         {USUAL, 0.1, {0.02, 0.03}, 0, -0.0599, true},
         {USUAL, 0.1, {0.02, 0.03}, 0, -0.0601, false},
-        /* the slower sound has to come 0.05 of the length */
+        /* sound in the slower gas must have travelled 0.05 of the length */
         {USUAL, 0.0946, {0.02, 0.03}, 0, 0, true},
         {USUAL, 0.0944, {0.02, 0.03}, 0, 0, false},
-        /* a tenth of density or pressure makes two gases */
+        /* a difference of a tenth in density or pressure makes two gases */
         {{{1, 0.25, 1}, {1, 0.25, 0.89}}, 0.2, {0.02, 0.03}, 0, 0, true},
         {{{1, 0.25, 1}, {1, 0.25, 0.91}}, 0.2, {0.02, 0.03}, 0, 0, false},
         {{{1, 0.25, 0.89}, {1, 0.25, 1}}, 0.2, {0.02, 0.03}, 0, 0, true},
@@ -351,13 +352,13 @@ TEST(found_ends)
             gas.v[0][2 * side + 1] += rows[k].v * sqrt(1.4 * gas_there->P / gas_there->rho);
             judges(&request, &judged);
             if (is_noted(&judged, "ends") != rows[k].ended) fail_msg("row %zu, %d", k, side);
-            /* the box of a tube that has ends reaches beyond them */
+            /* the box of a tube with ends extends beyond them */
             assert_int_equal(judged.run.problem.domain.lo[0] < 1, rows[k].ended);
             if (rows[k].ended)
                 noted(&judged, "ends", "open or walls", "the gas at both is undisturbed");
             judge_free(&judged);
         }
-    /* not where the user or the file says so */
+    /* not if the user or the file names the boundary */
     struct judge_request request = uniform_gas();
     struct judged judged;
     request.right = "0.125 0 0.1", request.boundary = "periodic";
@@ -372,7 +373,7 @@ TEST(found_ends)
     judge_free(&judged);
 }
 
-/* No signal is faster than what moves and sounds, and half of that again. */
+/* The fastest signal is 1.5 times the largest speed or speed plus sound speed. */
 static double fastest(const struct riemann_state sides[2], bool mirrored)
 {
     struct riemann_solution s;
@@ -389,7 +390,7 @@ static double fastest(const struct riemann_state sides[2], bool mirrored)
     return 1.5 * most;
 }
 
-/* The window leaves out what waves from the ends may have reached; the box holds all of them. */
+/* The window leaves out what waves from the ends may have reached; all particles are in the box. */
 TEST(drawn_tubes)
 {
     int clean = 0, cut = 0, spoilt = 0;
@@ -440,7 +441,7 @@ TEST(drawn_tubes)
         }
         struct error error = {0};
         if (judge_snapshot(put("a.csv"), &request, &judged, &error)) {
-            judge_free(&judged); /* a window that holds no particle */
+            judge_free(&judged); /* a window without particles */
             if (!strstr(error.message, "no particle lies in the window"))
                 fail_msg("%s", error.message);
             continue;

@@ -16,7 +16,7 @@ static const struct {
              {"noh_2d", 0.4, 2},        {"sedov_2d", 0.05, 2}, {"rest_2d", 0.1, 2},
              {"sound_wave", 0.1, 1},    {"noh_3d", 0.3, 3},    {"shear", 0.01, 2}};
 
-/* The box of the case, its own gas in it at drawn places, and drawn errors of it. */
+/* The gas of the case at random positions in its box, with random errors. */
 static void draw(size_t k, const struct prepared *p, double noise)
 {
     const struct domain box = p->domain;
@@ -79,7 +79,7 @@ static void is_compared(const struct judged *judged, double ratio)
     }
 }
 
-/* ---- how far it is from the solution ---- */
+/* ---- distance from the solution ---- */
 
 static double size_of(const double v[3], int dim)
 {
@@ -94,15 +94,15 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* A field's value; of velocities beyond 1D their size. */
+/* The value of a field; for velocities beyond 1D their magnitude. */
 static double value_of(const struct problem_state *s, int field, int dim)
 {
     const double values[] = {s->rho, dim > 1 ? size_of(s->v, 3) : s->v[0], s->P, s->u};
     return values[field];
 }
 
-/* Half of the particles that the flow has changed, away from jumps, err by more; where they are
- * fewer than 8 of all those away from jumps, unless the flow is one of jumps. Over the range. */
+/* The median error of particles that the flow has changed, away from jumps, over the range; if
+ * there are fewer than 8, of all particles away from jumps, unless the flow consists of jumps. */
 static double part_of(const struct judged *judged, int field)
 {
     const struct prepared *p = &judged->run.problem;
@@ -175,7 +175,7 @@ static void verdict_is(const struct judged *judged, const char *kernel)
     snprintf(says, sizeof says, "%sL1 of density %.3g, velocity %.3g, pressure %.3g; %s",
              judged->far ? "far from the solution of this case: " : "", r->errors[FIELD_DENSITY].l1,
              r->errors[FIELD_VELOCITY].l1, r->errors[FIELD_PRESSURE].l1, kernel);
-    /* of what is foreign also why, and what other case it may be */
+    /* for a foreign snapshot also the reason, and other cases that may fit */
     if (judged->foreign ? !strstr(judged->verdict, says) : strcmp(judged->verdict, says))
         fail_msg("%s: not: %s", judged->verdict, says);
 }
@@ -231,8 +231,8 @@ TEST(drawn)
     assert_true(far > 4 && far < draws - 4);
 }
 
-/* In gas that is cold and fast, pressures and energies are measured in what its motion could make
- * of them. */
+/* In cold and fast gas, errors of pressure and energy are relative to the values that stopping the
+ * gas would give. */
 TEST(cold_gas)
 {
     struct judge_request request = uniform_gas();
@@ -250,7 +250,7 @@ TEST(cold_gas)
     judge_free(&judged);
 }
 
-/* An autopsy computes with widths as wide as the snapshot's, in spacings of its particles. */
+/* An autopsy takes the snapshot's widths in units of its particle spacings. */
 TEST(widths_of_an_autopsy)
 {
     static const struct {

@@ -5,7 +5,7 @@
 #include "made_snapshot.h"
 #include "near.h"
 
-/* Two gases that are one in 2D, off by so much in density; later by so much, with more mass. */
+/* Uniform gas in 2D with this error of its density, at this time and with this much more mass. */
 static void judged_of(double rho, double time, double mass, struct judged *judged)
 {
     struct judge_request request = uniform_gas();
@@ -106,7 +106,7 @@ TEST(documents)
             const json_t *one = json_array_get(list, k);
             assert_true(real_at(one, "value", NULL) == values[k] &&
                         real_at(one, "bound", NULL) == bounds[k]);
-            /* after those of the snapshots */
+            /* findings of gates follow those of the snapshots */
             const json_t *finding = json_array_get(at(document, "findings", NULL), n + k);
             assert_string_equal(json_string_value(at(finding, "status", NULL)), statuses[k]);
             assert_string_equal(json_string_value(at(finding, "message", NULL)),
@@ -119,7 +119,7 @@ TEST(documents)
         assert_true(!json_object_get(document, "profile") == (n == 1));
         assert_true(!json_object_get(document, "snapshots") == (n == 1));
         const json_t *conservation = at(document, "conservation", NULL);
-        if (n == 1) { /* since the start, a box of 2 by 1 with P = 1 */
+        if (n == 1) { /* since the start, in a box of 2 by 1 with P = 1 */
             assert_string_equal(
                 json_string_value(json_array_get(at(conservation, "between", NULL), 0)),
                 "the case's initial state");
@@ -148,12 +148,12 @@ TEST(documents)
     }
     json_decref(gates);
     gates = json_array();
-    for (size_t silent = 1; silent <= 2; silent++) { /* so many say nothing: then all do */
+    for (size_t silent = 1; silent <= 2; silent++) { /* silent if all snapshots are */
         static const char *const says[] = {"pass", "smoke", "undetermined"},
                                  *const first[] = {"", "0 of 1 gates pass, 1 cannot tell; ",
                                                    "0 of 1 gates pass, 1 cannot tell; "};
         judged[silent - 1].silent = judged[silent - 1].passes = true;
-        for (size_t k = 0; k < 3; k++) { /* of one gate, which counts alone */
+        for (size_t k = 0; k < 3; k++) { /* the result of the only gate */
             json_t *gate =
                 json_pack("[{s:s, s:s, s:f, s:f, s:s, s:s}]", "name", "mass", "relation",
                           "<=", "value", 0., "bound", 1., "status", says[k], "source", "x");
@@ -183,7 +183,7 @@ TEST(documents)
     assert_string_equal(note(&judged[0], "precision")->value, "float64");
     assert_string_equal(note(&judged[0], "precision")->evidence,
                         "as stored; nothing below 1e-16 of a value is meant");
-    /* a kernel that is known, and what the file says of it */
+    /* a known kernel, and what the file says about it */
     judged[0].conventions.known = true;
     judged[0].conventions.candidate[0].sum = DENSITY_NUMBER;
     strcpy(judged[0].file.kernel, "a spline");
@@ -207,7 +207,7 @@ TEST(documents)
     for (int k = 0; k < 2; k++) judge_free(&judged[k]);
 }
 
-/* On a line there is neither noise nor angular momentum. */
+/* In 1D there is neither noise nor angular momentum. */
 TEST(on_a_line)
 {
     const struct judge_request request = uniform_gas();

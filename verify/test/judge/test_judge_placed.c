@@ -11,7 +11,7 @@
 TEST(gammas)
 {
     static const struct {
-        double said, in_file, planted, scatter, want; /* 0: not there */
+        double said, in_file, planted, scatter, want; /* 0: missing */
         const char *evidence;
     } rows[] = {
         {1.3, 1.5, 1.2, 0, 1.3, "--gamma; but the file's own P/(rho u)"},
@@ -39,8 +39,8 @@ TEST(gammas)
             gas.rho[i] = uniform(1, 1.5), gas.u[i] = i == 5 ? 0 : uniform(2, 3);
             gas.P[i] = (rows[k].planted - 1) * gas.rho[i] * gas.u[i];
         }
-        gas.P[11] = 0;                                 /* tells nothing */
-        gas.P[9] *= 1 + rows[k].scatter * 1.25 / 0.25; /* of gamma itself */
+        gas.P[11] = 0;                                 /* gives no gamma */
+        gas.P[9] *= 1 + rows[k].scatter * 1.25 / 0.25; /* scatter of gamma itself */
         request.gamma = (struct snapshot_value){rows[k].said > 0, rows[k].said};
         judges(&request, &judged);
         near_relative(judged.run.problem.gamma, rows[k].want, 1e-15);
@@ -79,14 +79,14 @@ TEST(times)
     refuses(&request, "time = -1; allowed: 0 or above");
 }
 
-/* ---- place ---- */
+/* ---- position ---- */
 
 TEST(places)
 {
     static const struct {
         double lo, hi; /* of the particles */
         const char *head;
-        double x0; /* asked; 9: not */
+        double x0; /* the user's; 9: none */
         double want_lo, want_hi, window[2];
         bool periodic;
         const char *box;
@@ -123,7 +123,7 @@ TEST(places)
         struct judge_request request = uniform_gas();
         struct judged judged;
         plant(1, 0, rows[k].head);
-        for (int i = 0; i < N; i++) gas.m[i] /= 8; /* volumes fill no line */
+        for (int i = 0; i < N; i++) gas.m[i] /= 8; /* the volumes do not fill the line */
         for (int i = 0; i < N; i++)
             gas.x[0][i] = i == 0   ? rows[k].lo
                           : i == 1 ? rows[k].hi
@@ -142,7 +142,7 @@ TEST(places)
         judge_free(&judged);
     }
     struct judge_request request = uniform_gas();
-    for (int more = 0; more < 2; more++) /* ends are allowed, what lies beyond is not */
+    for (int more = 0; more < 2; more++) /* the box includes its ends, and nothing beyond */
         for (int end = 0; end < 2; end++) {
             plant(1, 0, "# box = 2\n");
             request.x0 = (struct snapshot_value){true, end ? 2 + 1e-9 * more : -1e-9 * more};
@@ -162,10 +162,10 @@ TEST(places)
     refuses(&request, "long along y, but positions reach from 0 to 1");
 }
 
-/* ---- what is not there, what is asked for in vain ---- */
+/* ---- missing values, and keys in vain ---- */
 
-/* A line that volumes fill reaches half a volume beyond its outermost particles, also where these
- * are not the first and the last in the file; one that they do not fill ends at its particles. */
+/* If volumes fill a line, it extends half a volume beyond its outermost particles, also where these
+ * are not the first and the last in the file; otherwise it ends at its particles. */
 TEST(ends_of_volumes)
 {
     for (int draw = 0; draw < 40; draw++) {

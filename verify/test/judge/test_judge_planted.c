@@ -8,11 +8,11 @@
 
 /* ---- noise ---- */
 
-/* rms over the volume in the window, of the velocities across the flow alone. */
+/* The rms over the window, by volume, of the velocity components across the flow. */
 TEST(noise)
 {
     for (int dim = 1; dim <= 3; dim++)
-        for (int only = 0; only <= dim; only++) { /* which velocity there is; dim: all */
+        for (int only = 0; only <= dim; only++) { /* the component that is not 0; dim: all */
             struct judged judged;
             const struct judge_request request = uniform_gas();
             double sum = 0, volume = 0;
@@ -37,7 +37,7 @@ TEST(noise)
                 near_relative(judged.transverse, sqrt(sum / volume), 1e-13);
             judge_free(&judged);
         }
-    /* a vortex: the radial one */
+    /* in a vortex the radial component */
     struct judged judged;
     struct judge_request request = {.case_name = "gresho", .time = {true, 0}, .kernel = -1};
     plant(2, 0, "");
@@ -51,8 +51,7 @@ TEST(noise)
     judge_free(&judged);
 }
 
-/* Layers of a plane's gas: particles are as far apart as their part of the slab's volume is wide.
- */
+/* The spacing of particles in a slab of layers follows from its volume divided by its thickness. */
 TEST(spacing_of_a_slab)
 {
     static const struct judge_request request = {
@@ -74,8 +73,8 @@ TEST(spacing_of_a_slab)
 
 /* ---- sums ---- */
 
-/* No momentum where walls or plates or gravity push; what moves with the case's gas is no motion.
- */
+/* Momentum is not reported where walls, plates or gravity act; motion along with the case's gas
+ * does not count. */
 TEST(sums_of_any_box)
 {
     enum { FEW = 5 };
@@ -128,7 +127,7 @@ TEST(sums)
             const struct judge_request request = uniform_gas();
             struct conservation want = {0};
             plant(dim, 0, boxes[dim]);
-            for (int d = 0; d < dim; d++) gas.x[d][1] -= 1e-6; /* the end is the beginning */
+            for (int d = 0; d < dim; d++) gas.x[d][1] -= 1e-6; /* both ends are one position */
             for (int i = 0; i < N; i++) {
                 gas.rho[i] = uniform(1, 1.5), gas.u[i] = uniform(2, 3);
                 for (int d = 0; d < dim; d++) gas.v[d][i] = uniform(-1e-2, 2e-2);
@@ -154,7 +153,7 @@ TEST(sums)
                     want.angular_momentum[d] += L[d], turning = hypot(turning, L[d]);
                 want.angular_scale += turning;
             }
-            /* as seen from elsewhere in the periodic box: wrapped back */
+            /* as from a periodic box with another origin: wrapped back */
             for (int i = 2; i < N && shifted; i++)
                 if (gas.x[0][i] > 1.5) gas.x[0][i] -= 2;
             if (shifted) gas.x[0][0] = 0, gas.x[0][1] = 0;
@@ -177,7 +176,7 @@ TEST(sums)
         }
 }
 
-/* Of a liquid, whose u means nothing, the sound speed is the case's. */
+/* The sound speed of a liquid, whose u has no meaning, is the case's. */
 TEST(sums_of_a_liquid)
 {
     double x[2][1] = {{0.25}, {0.375}}, v[2][1] = {{0.5}, {0}}, m[] = {3}, rho[] = {1}, P[] = {1e9};
@@ -200,7 +199,7 @@ TEST(sums_of_a_liquid)
 
 /* ---- starts ---- */
 
-/* A tenth of the particles may be wrong in a way that nothing explains. */
+/* A tenth of the particles may be wrong without an explanation. */
 TEST(few_that_are_damaged)
 {
     for (int wrong = N / 10 - 1; wrong <= N / 10 + 1; wrong++) {
@@ -219,7 +218,7 @@ TEST(few_that_are_damaged)
     }
 }
 
-/* A mass that more than half of the particles have is the right one. */
+/* A mass that more than half of the particles have counts as right. */
 TEST(mass_of_most)
 {
     for (int alike = N / 2 - 1; alike <= N / 2 + 1; alike++) {
@@ -227,7 +226,7 @@ TEST(mass_of_most)
         struct judged judged;
         request.time.value = 0;
         plant(1, 0, "");
-        for (int i = 0; i < N; i++) gas.x[0][i] *= 1.05; /* not the case's box: no masses known */
+        for (int i = 0; i < N; i++) gas.x[0][i] *= 1.05; /* the case's masses are unknown */
         for (int i = 0; i < N; i++) gas.m[i] = (i % 2 ? uniform(1, 1.9) : uniform(2.1, 4)) / N;
         for (int i = N - alike; i < N; i++) gas.m[i] = 2. / N;
         judges(&request, &judged);
@@ -239,7 +238,7 @@ TEST(mass_of_most)
 
 /* ---- far from the solution ---- */
 
-/* A box may lack, or have too much, 3 % of the case's mass, or one row of particles where that is
+/* A box may lack, or have in excess, 3 % of the case's mass, or one row of particles if that is
  * more. */
 TEST(mass_of_the_box)
 {
@@ -257,14 +256,15 @@ TEST(mass_of_the_box)
         }
 }
 
-/* Uniform gas has nothing to go by but means: of half of its value, of velocities the sound speed,
- * 0.2 are too much. (A fifth called our own gas at rest far, with 2 % of noise in its pressure.) */
+/* For uniform gas the limit is 0.2 of half the mean value, and for velocities of the sound speed.
+ * (A limit of 0.2 of the median called our own gas at rest far, with 2 % of noise in its
+ * pressure.) */
 TEST(uniform_is_far)
 {
     static const struct {
         double rho, v, u;
         enum field field;
-        double wrong; /* in units of what is allowed */
+        double wrong; /* in units of the limit */
     } rows[] = {{0.0975, 0, 0, FIELD_DENSITY, 0.975},
                 {0.1025, 0, 0, FIELD_DENSITY, 1.025},
                 {0, 0.19, 0, FIELD_VELOCITY, 0.95},
@@ -293,7 +293,7 @@ TEST(uniform_is_far)
         }
 }
 
-/* Sod's tube, exact but for one error everywhere: its median is that error. */
+/* Sod's tube, exact except for the same error everywhere: the median is that error. */
 TEST(tube_is_far)
 {
     for (int field = 0; field < FIELDS; field++)

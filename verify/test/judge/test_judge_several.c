@@ -19,7 +19,7 @@ static struct judged made(size_t n, double time, int dim)
     judged.result.n = n;
     judged.result.time = time;
     judged.result.problem.problem = &problem;
-    /* all numbers of a snapshot tell which one it is */
+    /* all values of a snapshot identify it */
     const double mark = 1000. * (double)n + time;
     judged.sums = (struct conservation){.mass = mark,
                                         .momentum = {mark, 2, 3},
@@ -33,7 +33,7 @@ static struct judged made(size_t n, double time, int dim)
     return judged;
 }
 
-/* The k-th order of n things. */
+/* The k-th permutation of n elements. */
 static void permute(int n, int k, int *order)
 {
     for (int i = 0; i < n; i++) order[i] = i;
@@ -49,8 +49,8 @@ static const struct {
         size_t n;
         double time;
     } shot[MOST];
-    int main, start, end; /* which is gated; which two are compared, -1: none */
-    int levels[MOST];     /* of orders; -1: no more */
+    int main, start, end; /* index that is gated; indices that are compared, -1: none */
+    int levels[MOST];     /* indices of the orders; -1: end of list */
 } groups[] = {
     {1, {{50, 0.2}}, 0, -1, -1, {0, -1}},
     {2, {{50, 0.1}, {50, 0.2}}, 1, 0, 1, {1, -1}},
@@ -114,7 +114,7 @@ TEST(every_order)
         }
 }
 
-/* Of the same time, whichever was given first. */
+/* Snapshots of the same time: the one given first counts. */
 TEST(ties)
 {
     struct judged judged[4] = {made(50, 0.1, 2), made(50, 0.2, 2), made(50, 0.2, 2),
@@ -128,12 +128,12 @@ TEST(ties)
     judged[2].result.n = 60;
     for (int f = 0; f < FIELDS; f++) judged[0].result.errors[f].l1 = 1e9;
     json_t *orders = judge_orders(judged, 4), *other = judge_orders(judged + 1, 3);
-    assert_true(json_equal(orders, other)); /* which the earlier one is no part of */
+    assert_true(json_equal(orders, other)); /* the earlier one is not included */
     json_decref(orders);
     json_decref(other);
 }
 
-/* Errors that fall with a power of the spacing have that order, in any dimension. */
+/* Errors proportional to a power of the spacing have that order, in any dimension. */
 TEST(orders)
 {
     for (int dim = 1; dim <= 3; dim++)
@@ -181,7 +181,7 @@ TEST(orders)
 
 /* ---- gates ---- */
 
-/* What is found; NULL: refused, with these words. */
+/* Returns the findings; NULL if refused with this message. */
 static json_t *gate(const char *text, const struct judged *judged, size_t n, const char *says)
 {
     struct error error = {0};
@@ -195,15 +195,15 @@ static json_t *gate(const char *text, const struct judged *judged, size_t n, con
     return NULL;
 }
 
-/* A snapshot of another problem has no orders with others and shows nothing of conservation. */
+/* A snapshot of another problem has no order together with others, and no conservation. */
 static const struct {
     const char *of_case, *left, *seed;
     int dim;
     double gamma, time;
-    const char *says; /* NULL: of the same problem as the first */
+    const char *says; /* NULL: the same problem as the first */
 } problems[] = {
     {"sod", "1 0 1", "1", 1, 1.4, 0.2, NULL},
-    {"sod", "1 0 1", "2", 1, 1.4001, 0.2001, NULL}, /* the seed only lays particles */
+    {"sod", "1 0 1", "2", 1, 1.4001, 0.2001, NULL}, /* the seed only sets positions */
     {"lax", "1 0 1", "1", 1, 1.4, 0.2, "the case is sod in made and lax in other"},
     {"sod", "1 0 1", "1", 2, 1.4, 0.2, "the number of dimensions is 1 in made and 2 in other"},
     {"sod", "1 0 1", "1", 1, 1.6, 0.2, "gamma is 1.4 in made and 1.6 in other"},
@@ -307,7 +307,7 @@ TEST(gates)
     static const struct {
         const char *text, *says;
     } wrong[] = {
-        {"", "NAME=BOUND,..."}, /* an empty variable of a script is no gate that passes */
+        {"", "NAME=BOUND,..."}, /* the empty variable of a script is not a gate that passes */
         {"density_l1", "NAME=BOUND,..."},
         {"density_l1,velocity_l1=1", "NAME=BOUND,..."},
         {"velocity_l1=1,,pressure_l1=1", "NAME=BOUND,..."},
@@ -333,9 +333,9 @@ TEST(gates)
     };
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++)
         gate(wrong[k].text, &judged, 1, wrong[k].says);
-    /* names and bounds as long as there is room for */
+    /* the longest names and bounds */
     char text[200];
-    snprintf(text, sizeof text, "velocity_l1=1.%0*d", 37, 0); /* a bound of 39 letters */
+    snprintf(text, sizeof text, "velocity_l1=1.%0*d", 37, 0); /* a bound of 39 characters */
     json_decref(gate(text, &judged, 1, NULL));
     snprintf(text, sizeof text, "velocity_l1=1.%0*d", 38, 0);
     gate(text, &judged, 1, "NAME=BOUND,...");
@@ -345,7 +345,7 @@ TEST(gates)
     gate(text, &judged, 1, "NAME=BOUND,...");
 }
 
-/* What is no error of a field: values, parts of an error, noise, what is conserved. */
+/* Gates on other figures: values, parts of an error, noise, conserved quantities. */
 TEST(other_gates)
 {
     static const struct regions regions = {.names = {"fan", "shock"}};
@@ -376,13 +376,13 @@ TEST(other_gates)
         assert_string_equal(status_at(found, 1), "fail");
         json_decref(found);
     }
-    judged.start.mass = 0; /* nothing is known of the start */
+    judged.start.mass = 0; /* the start is unknown */
     gate("mass=1", &judged, 1, "nothing here");
     judged.file.dim = 1;
     gate("noise=1", &judged, 1, "nothing here");
 }
 
-/* An order passes where its whole interval does, and fails where none of it does. */
+/* An order passes if its whole interval does, and fails if no part of it does. */
 TEST(gates_of_orders)
 {
     struct judged judged[MOST];
@@ -416,7 +416,7 @@ TEST(gates_of_orders)
         snprintf(text, sizeof text, "order.velocity%s%.17g,order.velocity%s%.17g", sign, low, sign,
                  high);
         found = gate(text, judged, MOST, NULL);
-        assert_string_equal(status_at(found, !least), "pass"); /* at an end */
+        assert_string_equal(status_at(found, !least), "pass"); /* at one end of the interval */
         assert_string_equal(status_at(found, (size_t)least), "undetermined");
         json_decref(found);
     }
@@ -432,14 +432,14 @@ TEST(gates_of_orders)
     json_decref(orders);
 }
 
-/* A case's gates hold near its time and for its own initial state; a weakness that is known without
- * a number reaches half as far again as the bound. */
+/* A case's gates apply near its time and to its own initial state; a known weakness without a
+ * number allows 1.5 times the bound. */
 TEST(gates_of_a_case)
 {
     static const struct {
-        double error, late; /* over the bound; of the time */
+        double error, late; /* error over the bound; difference of time over the time */
         bool altered, plane;
-        const char *says; /* the gate's status, or a refusal */
+        const char *says; /* status of the gate, or a refusal */
     } rows[] = {{0.999, 0, false, false, "pass"},
                 {1.4999999, 0.0099, false, false, "known"},
                 {1.5000001, -0.0099, false, false, "fail"},

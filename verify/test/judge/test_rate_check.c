@@ -15,7 +15,7 @@
 
 enum { MOST = 64, KEYS = 16 };
 
-/* Particles that are not in order, all different. */
+/* Distinct particles in no particular order. */
 struct gas {
     double x[3][MOST], v[3][MOST], m[MOST], u[MOST];
     struct setup setup;
@@ -43,7 +43,7 @@ static void set_scheme(struct setup *setup, const char *words)
     setup->gamma = settings_real(&settings, SETTING_gamma);
 }
 
-/* side^dim particles in the periodic unit box, off a lattice, each step along it another one. */
+/* side^dim particles in the periodic unit box, off a lattice, with another spacing at each step. */
 static void make(struct gas *gas, int dim, size_t side, const char *words)
 {
     unsigned random = 2385;
@@ -51,7 +51,7 @@ static void make(struct gas *gas, int dim, size_t side, const char *words)
     for (int a = 0; a < dim; a++) n *= side;
     assert_true(n <= MOST);
     for (size_t k = 0; k < n; k++) {
-        const size_t i = k * 5 % n; /* in another order than they lie */
+        const size_t i = k * 5 % n; /* another order than that of positions */
         size_t rest = k;
         for (int a = 0; a < 3; a++, rest /= side) {
             gas->x[a][i] =
@@ -93,9 +93,9 @@ static struct rate_table table_of(const struct setup *setup)
     return table;
 }
 
-/* ---- the table ---- */
+/* ---- the table of rates ---- */
 
-/* Values belong to the particles as the setup has them: whoever comes first. */
+/* Rates are in the order of the setup, whatever the order of positions. */
 TEST(in_the_setups_order)
 {
     static struct gas gas, turned;
@@ -144,8 +144,8 @@ TEST(in_the_setups_order)
     }
 }
 
-/* dU/dt is the same whichever energy is integrated; with a force from outside sums do not vanish.
- */
+/* dU/dt does not depend on which energy is integrated; with an external force sums do not
+ * vanish. */
 TEST(whichever_energy)
 {
     static struct gas gas;
@@ -196,7 +196,7 @@ static double value(const struct gas *gas, const struct rate_table *table, int c
     return of[column] / (column > 2 ? gas->m[i] : 1);
 }
 
-/* Columns (a bit each) of a table, as a file has them. */
+/* The columns (a bit each) of a table, as in a file. */
 struct file {
     struct csv csv;
     double values[7][MOST];
@@ -235,8 +235,7 @@ TEST(equal_columns)
         write_file(&file, &gas, &ours, 0x7f);
         struct rate_check check = checked(&file, &gas, &ours, 0);
         assert_true(check.good);
-        assert_int_equal(check.count,
-                         4 + dim); /* what a file has for other directions is no rate */
+        assert_int_equal(check.count, 4 + dim); /* columns of other directions are not compared */
         for (size_t k = 0; k < check.count; k++) {
             const struct rate_comparison *c = &check.columns[k];
             assert_string_equal(c->quantity,
@@ -244,7 +243,7 @@ TEST(equal_columns)
             assert_true(c->good && c->worst == 0 && c->rms == 0 && c->particle == 0 &&
                         !c->cause[0]);
         }
-        write_file(&file, &gas, &ours, dim < 3 ? 0x20 : 0); /* az; nothing */
+        write_file(&file, &gas, &ours, dim < 3 ? 0x20 : 0); /* az, or no rate at all */
         assert_int_equal(
             rate_check_make(&check, "theirs.csv", &file.csv, &gas.setup, &ours, 0, &error),
             STATUS_BAD_INPUT);
@@ -261,8 +260,8 @@ TEST(equal_columns)
     }
 }
 
-/* The largest acceleration, or rate of heat, of all particles; of h, rho and P the particle's own.
- */
+/* The scale of an error: the largest acceleration or heating rate of all particles; for h, rho and
+ * P the particle's own value. */
 static double scale_of(const struct gas *gas, const struct rate_table *t, int column, size_t i)
 {
     double most = 0;
@@ -275,12 +274,12 @@ static double scale_of(const struct gas *gas, const struct rate_table *t, int co
     return most;
 }
 
-/* Rows in another order, or of other particles, are refused where positions show it. */
+/* Rows in another order, or of other particles, are refused if positions show it. */
 TEST(whose_rows)
 {
     static const struct {
         double shift; /* of all rows along the last axis, in boxes */
-        bool swapped; /* rows 3 and 7 */
+        bool swapped; /* exchange rows 3 and 7 */
         enum boundary boundary;
         bool good;
     } rows[] = {{0, false, BOUNDARY_PERIODIC, true},      {1, false, BOUNDARY_PERIODIC, true},
@@ -309,14 +308,14 @@ TEST(whose_rows)
                              rows[k].good ? STATUS_OK : STATUS_BAD_INPUT);
             if (rows[k].swapped)
                 assert_non_null(strstr(error.message, "the row of particle 3 is at x="));
-            theirs.columns = 0; /* no positions */
+            theirs.columns = 0; /* without positions */
             assert_int_equal(rate_check_positions("theirs.csv", &theirs, &gas.setup, &error),
                              STATUS_OK);
         }
 }
 
-/* Two particles are off, the second by more: how far, which one, and what is still good; also of
- * rates that are all tiny, and of which the first particle has by far the largest. */
+/* Two particles are off, the second by more: the check reports the error, the particle and whether
+ * it is good; also if all rates are tiny, and if the first particle has by far the largest. */
 TEST(how_far_off)
 {
     static struct gas gas;
@@ -347,7 +346,7 @@ TEST(how_far_off)
                     near_relative(r->rms, sqrt((0.0625 + 0.25) / (double)gas.setup.n), 1e-12);
                     assert_int_equal(r->particle, second);
                     if (c % 2) continue;
-                    /* good as far as is asked for, and no further */
+                    /* a tolerance equal to the error suffices, and no smaller one */
                     assert_true(checked(&file, &gas, &ours, r->worst).good);
                     assert_false(checked(&file, &gas, &ours, nextafter(r->worst, 0)).good);
                 }
@@ -362,7 +361,7 @@ TEST(how_far_off)
 
 /* ---- causes ---- */
 
-/* What is said of a quantity; "" for nothing. */
+/* The cause that the check names for a quantity; "" for none. */
 static const char *cause_of(const struct rate_check *check, const char *quantity)
 {
     for (size_t k = 0; k < check->count; k++)
@@ -449,7 +448,8 @@ TEST(each_choice_is_named)
     }
 }
 
-/* A change explains what becomes a thousand times better, or as good as is asked for. */
+/* A change of scheme is a cause if it makes the error a thousand times smaller, or as small as the
+ * tolerance. */
 TEST(better_by_a_thousand)
 {
     static struct gas gas;
@@ -471,7 +471,7 @@ TEST(better_by_a_thousand)
         struct rate_check check = checked(&file, &gas, &ours, 1e-9);
         assert_true(check.columns[0].worst == worst);
         assert_string_equal(check.columns[0].cause, side < 0 ? "viscosity: they have none" : "");
-        /* by as much as is asked for, and no more */
+        /* the remaining error may equal the tolerance, and no more */
         check = checked(&file, &gas, &ours, 1e-9);
         struct gas without = gas;
         without.setup = changed;
@@ -482,7 +482,7 @@ TEST(better_by_a_thousand)
             check = checked(&file, &gas, &ours, nextafter(left, 0));
             assert_string_equal(check.columns[0].cause, "");
         }
-        /* asked for less, it is explained, and what is good needs no cause */
+        /* with a larger tolerance the cause is named, and what is good needs none */
         check = checked(&file, &gas, &ours, 2e-3 * worst);
         assert_string_equal(check.columns[0].cause, "viscosity: they have none");
         check = checked(&file, &gas, &ours, worst);
@@ -492,8 +492,8 @@ TEST(better_by_a_thousand)
     rate_table_free(&theirs);
 }
 
-/* Other codes leave their widths a little open: the kernel is named that comes nearest, with the
- * eta that is common to all, unless it is open by more than two parts in a thousand. */
+/* Smoothing lengths of other codes scatter a little: the nearest kernel is named, with the common
+ * eta, unless they scatter by more than two parts in a thousand. */
 TEST(open_widths)
 {
     static struct gas gas;
@@ -504,7 +504,7 @@ TEST(open_widths)
         for (int wide = 0; wide < 2; wide++) {
             const char *name = kernel_family.members[k]->name;
             struct setup changed = gas.setup;
-            char expected[80] = "eta: theirs is 2.6"; /* their kernel is ours */
+            char expected[80] = "eta: theirs is 2.6"; /* the other code's kernel is the same */
             if (kernel_select(&changed.scheme.kernel, name, 5, NULL)) continue;
             changed.scheme.eta = 2.64;
             struct rate_table theirs = table_of(&changed);
@@ -571,7 +571,7 @@ TEST(plain_differences)
         }
 }
 
-/* They explain what they leave a thousand times smaller. */
+/* A cause leaves an error a thousand times smaller. */
 TEST(plainly_enough)
 {
     static struct gas gas;
@@ -594,7 +594,7 @@ TEST(plainly_enough)
             const double worst = check.columns[0].worst;
             const size_t other = check.columns[0].particle == 2 ? 3 : 2;
             assert_ptr_equal(strstr(check.columns[0].cause, causes[c]), check.columns[0].cause);
-            /* the factor is a mean: it takes its share of one particle's difference */
+            /* the factor is a mean: it absorbs part of one particle's difference */
             const double share = c == 0 ? 1 - 1 / n : 1;
             file.values[c][other] +=
                 worst * 1e-3 * (1 + side * 4e-7) / share * scale_of(&gas, &ours, c, other);
@@ -607,7 +607,7 @@ TEST(plainly_enough)
     rate_table_free(&ours);
 }
 
-/* Of a kernel that is not 1 at 0: 66 (7/478 pi) 3^2/h^2 is the quintic spline's W(0) in a plane. */
+/* A kernel that is not 1 at 0: 66 (7/478 pi) 3^2/h^2 is the quintic spline's W(0) in 2D. */
 TEST(self_contribution)
 {
     static struct gas gas;
@@ -622,8 +622,8 @@ TEST(self_contribution)
     rate_table_free(&ours);
 }
 
-/* How well a factor explains an acceleration is relative to the largest one, not to a particle's
- * own, of which the smallest is off here. */
+/* The remaining error of an acceleration is relative to the largest one, not to the particle's own;
+ * here the smallest is off. */
 TEST(factor_of_an_acceleration)
 {
     static struct gas gas;
@@ -643,7 +643,7 @@ TEST(factor_of_an_acceleration)
     rate_table_free(&ours);
 }
 
-/* Beside rates that are all 0 every difference is beyond bounds: no choice explains it. */
+/* If all rates are 0, every difference is infinitely large: nothing explains it. */
 TEST(beside_nothing)
 {
     static struct gas gas;
@@ -661,7 +661,7 @@ TEST(beside_nothing)
     rate_table_free(&ours);
 }
 
-/* What is wrong after the first wrong one follows from it; what comes before it does not. */
+/* Quantities after the first wrong one follow from it; those before it do not. */
 TEST(what_follows)
 {
     static struct gas gas;
@@ -687,8 +687,8 @@ TEST(what_follows)
     rate_table_free(&ours);
 }
 
-/* Rates of the lagrangian formulation without its grad-h factors, in a periodic box without forces
- * from outside: only there the oracle has them. */
+/* Rates of the lagrangian formulation without its grad-h factors, in a periodic box without
+ * external forces: only there the oracle has them. */
 TEST(no_grad_h)
 {
     static const char cause[] = "grad-h: their lagrangian formulation has no grad-h factors";
@@ -715,7 +715,7 @@ TEST(no_grad_h)
         const double *const rates[4] = {ours.force[0], ours.force[1], ours.force[2], ours.dU};
         for (int k = 0; k < 4; k++) memcpy(before[k], rates[k], n * sizeof(double));
         struct rate_check check = checked(&file, &gas, &ours, 1e-9);
-        for (int k = 0; k < 4; k++) /* ours stay as they are */
+        for (int k = 0; k < 4; k++) /* our own rates do not change */
             assert_memory_equal(before[k], rates[k], n * sizeof(double));
         for (int a = 0; a < dim; a++) assert_string_equal(cause_of(&check, names[3 + a]), cause);
         assert_string_equal(cause_of(&check, "du"), cause);

@@ -21,7 +21,7 @@ static struct snapshot snapshot = {.n = N, .m = m, .rho = rho, .u = u, .P = P};
 static struct start_gas gas = {
     .problem = &problem, .snapshot = &snapshot, .exact = exact, .x = x, .wrong = wrong};
 
-/* No two numbers are alike. A state of speed `speed`, and particles that have it. */
+/* Makes distinct states of this speed, and particles that have them. */
 static void plant(int dim, double speed)
 {
     problem.domain.dim = dim;
@@ -60,7 +60,7 @@ TEST(shares)
     }
 }
 
-/* What is wrong along x, a letter each; what y and the radius are is none of a row's words. */
+/* Where particles along x are wrong, a character each; y and the radius are in no row's words. */
 TEST(places)
 {
     static const struct {
@@ -88,14 +88,14 @@ TEST(places)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         plant(rows[k].dim, 1);
         kind.circular = rows[k].circular;
-        for (int i = 0; i < N; i++) /* a second field is wrong everywhere, and not asked for */
+        for (int i = 0; i < N; i++) /* another field is wrong everywhere, and not asked for */
             wrong[i] = (rows[k].map[i] == '#' ? 1u << START_MASS : 0) | 1u << START_ENERGY;
         start_place(&gas, 1u << START_MASS, text, sizeof text);
         if (strcmp(text, rows[k].words) != 0) fail_msg("%s: '%s'", rows[k].map, text);
     }
 }
 
-/* Along y, z, the radius and the rows alone. */
+/* Positions along y, z and the radius, and by row number alone. */
 TEST(ways)
 {
     static const struct {
@@ -115,7 +115,7 @@ TEST(ways)
             const int turn = 7 * i % N;
             x[i][0] = k == 2 ? 0 : turn, x[i][1] = k == 0 || k == 2 ? i : turn;
             x[i][2] = i;
-            if (k == 2) /* in four directions in turn */
+            if (k == 2) /* in four directions alternately */
                 x[i][0] = i % 2 ? 0 : i % 4 ? -i : i, x[i][1] = i % 2 ? i % 4 == 1 ? i : -i : 0;
             wrong[i] = (k == 1 ? i > 7 : k == 3 ? i > 3 && i < 12 : k == 4 ? i > 3 : i < 8) ? 1 : 0;
         }
@@ -139,7 +139,7 @@ TEST(velocities)
 {
     static const struct {
         const char *of;
-        int least;         /* dimension */
+        int least;         /* least dimension */
         const char *words; /* "": no cause is found */
     } rows[] = {{"rest", 1, "it is 0"},
                 {"mirror", 1, "it has the other sign"},
@@ -240,7 +240,8 @@ TEST(scalars)
     }
 }
 
-/* Of 20 that are wrong one may be otherwise, and not two; of one that is wrong no sum is told. */
+/* One of 20 wrong particles may be an exception, and not two; a sum is not proposed for a single
+ * particle. */
 TEST(most_of_them)
 {
     for (int otherwise = 0; otherwise <= 2; otherwise++) {
@@ -261,7 +262,8 @@ TEST(most_of_them)
     }
 }
 
-/* Masses of gas of two densities are those that are said, of any other density times volume. */
+/* In gas of two densities the message gives both masses; in gas of any other density, density times
+ * volume. */
 TEST(masses)
 {
     plant(1, 1);

@@ -10,8 +10,8 @@ struct known {
     const char *name;
     int dim, class;
     double second;          /* sigma^2/h^2 */
-    double first[2], least; /* first negative kappa lies in there, least value; 0: none */
-    double pairs[2];        /* onset of pairing in neighbours, 0: none, -1: not asked */
+    double first[2], least; /* interval of the first negative kappa, least value; 0: none */
+    double pairs[2];        /* onset of pairing in neighbours; 0: none, -1: not measured */
 };
 
 static const struct known list[] = {

@@ -14,9 +14,9 @@
 
 /* ---- kernels ---- */
 
-static double slope = 1; /* 1: the right derivative */
+static double slope = 1; /* 1: the correct derivative */
 
-/* Epanechnikov's parabola with an edge that is smooth: (1 - q^2)^3. */
+/* Epanechnikov's parabola to the third power, which has a smooth edge: (1 - q^2)^3. */
 static double bump(double q, int dim)
 {
     const double a = 1 - q * q;
@@ -41,7 +41,7 @@ static const struct sphproof_shape shape = {.w = bump,
 
 struct seen {
     int figures, failed;
-    char first[32]; /* that fails */
+    char first[32]; /* name of the first that fails */
 };
 
 static void see(void *context, const struct sphproof_figure *figure)
@@ -157,7 +157,7 @@ TEST(an_order_passes_its_gate)
     assert_true(norms.linf == at[0] && fabs(norms.l1 - norms.mean) < 1e-15);
     assert_int_equal(sphproof_convergence_norms(4, spacing, at, exact, &norms, &error),
                      SPHPROOF_OK);
-    assert_true(norms.l1 > norms.mean); /* larger volumes where errors are larger */
+    assert_true(norms.l1 > norms.mean); /* volumes are larger where errors are larger */
     at[2] = (double)NAN;
     assert_int_equal(sphproof_convergence_norms(4, NULL, at, exact, &norms, &error), SPHPROOF_OK);
     assert_true(isnan(norms.l1) && isnan(norms.linf));
@@ -172,7 +172,7 @@ static double x[N], v[N], m[N], u[N], y[N];
 static const char *const keys[] = {"kernel=cubic_spline", "eta=2.4", "integrator=leapfrog",
                                    "energy=internal", NULL};
 
-/* The order of the particles is not that of their positions. */
+/* Particles are not in the order of their positions. */
 static struct sphproof_setup setup_of_a_wave(void)
 {
     for (int k = 0; k < N; k++) {
@@ -212,7 +212,7 @@ TEST(a_simulation_conserves)
     sphproof_simulations_free(NULL);
 }
 
-/* A run up to the present time computes nothing, and one up to an earlier time is refused. */
+/* A run to the present time computes nothing, and a run to an earlier time is refused. */
 TEST(times_of_a_simulation)
 {
     const double refused[] = {-1e-300, 0.01, nextafter(0.02, 0), (double)NAN, HUGE_VAL, -HUGE_VAL};
@@ -238,8 +238,7 @@ TEST(times_of_a_simulation)
     sphproof_simulations_free(simulation);
 }
 
-/* Gas that fills a periodic box falls freely, along each direction as that direction's gravity
- * says. */
+/* Gas that fills a periodic box falls freely along each direction. */
 TEST(gas_falls)
 {
     for (int dim = 2; dim <= 3; dim++) {

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "property.h"
-/* the library's own text, which certifies what this file plants */
+/* the library's own source, with properties of this file */
 #define property_list  planted_list
 #define property_count planted_count
 extern const struct property planted_list[];
@@ -64,7 +64,7 @@ static void see(void *context, const struct sphproof_figure *figure)
     seen[seen_count++] = *figure;
 }
 
-/* The verdict, found independently. */
+/* The verdict, computed independently. */
 static bool holds(const struct figure *figure, bool single)
 {
     const double bound = single && figure->bound > 0 && figure->bound < 1e-6 ? 1e-6 : figure->bound;
@@ -108,7 +108,7 @@ TEST(every_planted_figure)
     sphproof_kernels_free(kernel);
 }
 
-/* Single precision loosens a bound at 1e-6, where there is one, and nothing else. */
+/* Single precision raises bounds below 1e-6 to that, and changes nothing else. */
 TEST(single_precision)
 {
     struct sphproof_kernel *kernel;
@@ -205,7 +205,7 @@ static enum sphproof_status own(const struct sphproof_shape *shape, const char *
 TEST(knots)
 {
     static const struct {
-        int count, wrong; /* wrong: the number of the first one that is; 0: none */
+        int count, wrong; /* number of the first wrong knot; 0: none */
         double knots[3];
     } rows[] = {
         {0, 0, {0}},
@@ -233,7 +233,7 @@ TEST(knots)
         {3, 3, {0.2, 0.5, 0.5}},
         {3, 3, {0.2, 0.9, 0.5}},
         {3, 3, {0.2, 0.5, 1}},
-        {-1, 0, {7}}, /* they are found */
+        {-1, 0, {7}}, /* the knots are found */
     };
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         struct sphproof_shape shape = usual;
@@ -271,8 +271,7 @@ TEST(what_a_shape_needs)
     }
 }
 
-/* Values that are not finite, at the origin, within and at the edge, in each dimension of its own.
- */
+/* Values that are not finite at the origin, inside and at the edge, in each dimension. */
 TEST(values_of_a_shape)
 {
     static const double at[] = {0, 0.25, 0.5, 0.75, 1};
@@ -296,7 +295,7 @@ TEST(values_of_a_shape)
     odd = USUAL;
 }
 
-/* A constant is declared, or else found; it is finite and above 0. */
+/* A constant is declared or computed; it is finite and above 0. */
 TEST(constants)
 {
     static const double wrong[] = {-1, (double)NAN, (double)INFINITY, -(double)INFINITY};
@@ -315,7 +314,7 @@ TEST(constants)
         assert_true(fabs(sphproof_kernels_value(kernel, 0, 1, dim) / usual.constant[dim] - 1) <
                     1e-10);
         sphproof_kernels_free(kernel);
-        shape.constant[dim] = 2 * usual.constant[dim]; /* what is declared is taken */
+        shape.constant[dim] = 2 * usual.constant[dim]; /* the declared constant is used */
         assert_int_equal(sphproof_kernels_own(&shape, &kernel, NULL), SPHPROOF_OK);
         assert_true(sphproof_kernels_value(kernel, 0, 1, dim) == 2 * usual.constant[dim]);
         sphproof_kernels_free(kernel);
@@ -327,7 +326,7 @@ TEST(constants)
     odd = USUAL;
 }
 
-/* What is declared reaches the properties; a class that is not is measured. */
+/* Declared values reach the properties; a class that is not declared is measured. */
 TEST(what_is_declared)
 {
     for (int how = 0; how < 8; how++) {
@@ -346,7 +345,7 @@ TEST(what_is_declared)
     }
 }
 
-/* W, dW/dr and dW/dh of one's own kernel and of a built-in one, from w and dw. */
+/* W, dW/dr and dW/dh of a plug-in and of a built-in kernel, from w and dw. */
 TEST(values_and_slopes)
 {
     static const double r[] = {0, 0.3, 1, 1.9, 2, 2.5}, h = 2;

@@ -54,7 +54,7 @@ static void state_is(int i, double rho, double v, double P)
     assert_true(found[0][i] == rho && found[1][i] == v && found[2][i] == P);
 }
 
-/* Nothing is written behind the n-th. */
+/* Nothing is written after element n - 1. */
 static void ends_at(size_t n)
 {
     for (int k = 0; k < 3; k++) assert_true(found[k][n] == -77);
@@ -179,7 +179,7 @@ TEST(refused_solutions)
 enum { SIDE = 8, MOST = SIDE * SIDE * SIDE };
 static double x[3][MOST], v[3][MOST], m[MOST], u[MOST];
 
-/* Shaken lattices in a box that begins nowhere in particular, in an order of their own. */
+/* A jittered lattice in a box with a random origin, in random order. */
 static struct sphproof_setup drawn_setup(int dim)
 {
     struct sphproof_setup setup = {.dim = dim, .n = 1, .m = m, .u = u, .gamma = 1.5};
@@ -206,7 +206,7 @@ static double away(const struct sphproof_setup *setup, size_t i, size_t j, int a
     return d - length * round(d / length);
 }
 
-/* Sum of mass and number of those within h, images included. */
+/* The mass and the number of particles within h, images included. */
 static double sum_of(const struct sphproof_setup *setup, const struct sphproof_kernel *kernel,
                      size_t i, double h, double *number)
 {
@@ -222,7 +222,7 @@ static double sum_of(const struct sphproof_setup *setup, const struct sphproof_k
     return sum;
 }
 
-/* Both at the start: rates of the setup, and the state of a simulation of it. */
+/* At the start the rates of a setup and the state of its simulation agree with sums. */
 TEST(setups)
 {
     static const char *const keys[] = {"kernel=cubic_spline", "eta=1.7",
@@ -324,9 +324,9 @@ TEST(refused_setups)
         if (row == 7) x[0][63] = nextafter(setup.hi[0], 3), says = "particle 63: x[0] = ";
         if (row == 8) setup.boundary[0] = "fixed", says = "boundary 'fixed': allowed: periodic";
         if (row == 9) setup.boundary[1] = "", says = "boundary '': allowed: periodic";
-        if (row == 10) /* ends belong to the box */
+        if (row == 10) /* the ends belong to the box */
             x[0][0] = setup.lo[0], x[0][7] = setup.hi[0], x[1][7] += 0.01;
-        if (row == 11) /* and beyond those that are open is room */
+        if (row == 11) /* positions beyond open ends are allowed */
             setup.boundary[1] = "open", x[1][0] = setup.lo[1] - 0.05;
         const enum sphproof_status status =
             sphproof_simulations_create(&setup, &simulation, &error);
@@ -422,14 +422,14 @@ TEST(clouds)
 
 enum { POINTS_MAX = 9000, FIGURES_MAX = 40, ETA_TENTHS = 22 };
 
-/* A "gradient" that is none, of all that an operator is given. */
+/* A function of every input of an operator, in place of a gradient. */
 static double planted(const struct sphproof_cloud *cloud, const double *f, size_t i, int a)
 {
     return (1 + a) * f[i] * (1.5 + cloud->x[0][i]) + f[i] * f[i] - 0.25 * a + cloud->h[i] -
            9 * cloud->volume[i];
 }
 
-static int calls, refuse_at; /* the call that says that it could not; 0: none */
+static int calls, refuse_at; /* the call that reports failure; 0: none */
 
 static bool plant(void *context, const struct sphproof_cloud *cloud, const double *f,
                   double *const gradient[])
@@ -555,7 +555,7 @@ static void exactness_is(int dim, int degrees)
         }
 }
 
-/* The cloud is turned by R, or made larger, and shifted; the gradient goes along. */
+/* The cloud is rotated by R, or scaled, and shifted; the gradient transforms with it. */
 static void move_is(int dim, const char *property, const char *formula, const double R[9],
                     double unit, const double shift[3])
 {
@@ -655,7 +655,7 @@ TEST(figures_of_an_operator)
         }
 }
 
-/* The exact gradients of clouds that are known, until a call refuses. */
+/* The exact gradients of constants, until one call reports failure. */
 static bool zero(void *context, const struct sphproof_cloud *cloud, const double *f,
                  double *const gradient[])
 {
@@ -671,7 +671,7 @@ TEST(promises)
     static const struct {
         int dim, exact;
         double order, eta;
-        const char *says; /* NULL: all is well */
+        const char *says; /* NULL: accepted */
     } rows[] = {{1, 0, -9, 2.4, NULL},
                 {3, 0, -9, 1, NULL},
                 {1, 1, -9, 6, NULL},
@@ -695,7 +695,7 @@ TEST(promises)
             fail_msg("row %zu: %s", k, error.message);
     }
     refused(sphproof_gradients_check(NULL, NULL, 1, &none, NULL, NULL, &error), "an operator and");
-    for (refuse_at = 1; refuse_at <= 20; refuse_at++) { /* whichever call refuses */
+    for (refuse_at = 1; refuse_at <= 20; refuse_at++) { /* any of the calls fails */
         calls = 0;
         const enum sphproof_status status =
             sphproof_gradients_check(zero, NULL, 1, &none, NULL, NULL, &error);

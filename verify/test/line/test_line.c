@@ -11,7 +11,7 @@
 
 enum { GHOSTS = 256, SETUPS = 40 };
 
-/* A simulation that nobody steps: n particles in order on a period of 2, nothing else. */
+/* A simulation that makes no steps: n sorted particles in a period of 2. */
 static void made(struct simulation *simulation, int n)
 {
     struct error error;
@@ -74,8 +74,9 @@ TEST(no_order_of_what_is_no_position)
         }
 }
 
-/* A kernel's own term alone exceeds what `count` particles at one place allow: they are laid around
- * it, a thousandth of a spacing apart, or evenly in half of the room to the nearer neighbour. */
+/* If the kernel's self-contribution exceeds what `count` coincident particles allow, their guessed
+ * widths are those of particles a thousandth of a spacing apart, or evenly spread over half of the
+ * distance to the nearer neighbour. */
 TEST(coincident_ones_are_moved_apart)
 {
     enum { MEMBERS = 12 };
@@ -89,14 +90,14 @@ TEST(coincident_ones_are_moved_apart)
                 struct simulation s;
                 made(&s, MEMBERS);
                 struct particles *a = &s.particles;
-                if (wide == 6) /* the nearer neighbour may stand beyond an end of the box */
+                if (wide == 6) /* the nearer neighbour may lie beyond an end of the box */
                     for (int i = 1; i < MEMBERS; i++)
                         a->x[0][i] = first ? a->x[0][0] + 1.99 - 0.1 * (MEMBERS - 1 - i)
                                            : a->x[0][0] + 1.999 - 0.1 * (MEMBERS - 1 - i);
                 for (int i = first; wide == 6 && first + count == MEMBERS && i < MEMBERS; i++)
                     a->x[0][i] = a->x[0][0] + 1.999;
                 s.scheme.eta = wide == 3   ? 0.5 * least
-                               : wide == 4 ? count * least /* as many as is too many */
+                               : wide == 4 ? count * least /* exactly the limit */
                                : wide == 5 ? nextafter(count * least, 9)
                                            : 2;
                 s.scheme.kernel = *kernel;
@@ -130,8 +131,8 @@ TEST(coincident_ones_are_moved_apart)
     assert_true(binding > 20);
 }
 
-/* While some sleep: who is at rest is not looked at, who drifts is; where the order has changed all
- * wake. */
+/* While some particles are inactive, the order of those at rest is not checked, and that of moving
+ * ones is; if the order has changed all become active. */
 TEST(sleepers_in_order)
 {
     struct error error;
@@ -163,7 +164,7 @@ TEST(sleepers_in_order)
 
 /* --- images and reach ------------------------------------------------------------------------- */
 
-/* A room is divided into ranges that are full but for the last one. */
+/* Particles are divided into ranges that are full except for the last one. */
 TEST(a_room_is_divided)
 {
     for (size_t n = 20; n<330; n += n % 64> 61 || n % 64 < 3 ? 1 : 7) {
@@ -190,7 +191,7 @@ TEST(a_room_is_divided)
         unmade(&bare);
     }
     struct simulation none = {0};
-    line_sums.free(&none); /* of a room that there is not */
+    line_sums.free(&none); /* a line that was not created */
 }
 
 /* The largest offset within the particles' own widths. */
@@ -223,7 +224,7 @@ TEST(reach_is_what_widths_ask_for)
                              (a->x[0][i] - a->x[0][i - d]) * a->h_inverse[i] < 1;
                 assert_int_equal((int)reach_inside(a, range->first, range->len, d), count);
             }
-            /* raised as far as is needed, where images suffice for one more to be looked at */
+            /* raised as far as necessary, if there are images for one more offset */
             const int needed = most < 1 ? 1 : most;
             range->reach = 1;
             line->ghosts_filled = needed + 1;
@@ -240,8 +241,8 @@ TEST(reach_is_what_widths_ask_for)
     }
 }
 
-/* The widest reach among ranges that lie closer than it, on either side: as close as the shorter of
- * the ranges between. */
+/* Pairs reach as far as the widest reach among ranges within that distance, on either side; the
+ * distance is that of the shorter ranges between. */
 TEST(pairs_reach_as_far_as_the_wider_one)
 {
     for (int setup = 0; setup < 10 * SETUPS; setup++) {
@@ -251,7 +252,7 @@ TEST(pairs_reach_as_far_as_the_wider_one)
         const ptrdiff_t count = line->range_count;
         for (ptrdiff_t b = 0; b < count; b++) {
             struct range *range = &line->ranges[b];
-            if (setup % 2) range->len = draw_count(1, range->len); /* of spans that end anywhere */
+            if (setup % 2) range->len = draw_count(1, range->len); /* spans may end anywhere */
             range->reach = draw(0, 1) < 0.2   ? draw_count(1, 150)
                            : draw(0, 1) < 0.2 ? BATCH_MAX * draw_count(1, 2)
                                               : draw_count(1, 4);
@@ -273,7 +274,7 @@ TEST(pairs_reach_as_far_as_the_wider_one)
     }
 }
 
-/* Who stands at a distance of just h is not inside. */
+/* A particle at a distance of exactly h is not inside. */
 TEST(widths_end_at_h)
 {
     struct simulation s;
@@ -283,7 +284,7 @@ TEST(widths_end_at_h)
         a->x[0][i] = 0.25 * i, a->h_inverse[i] = i == 3 ? 2 - 0x1p-50 : 2;
     assert_true(reach_inside(a, 0, 64, 1) == 64 && reach_inside(a, 0, 64, 2) == 1);
     assert_true(reach_inside(a, 4, 60, 2) == 0 && reach_inside(a, 0, 64, 3) == 0);
-    for (int reach = 1; reach < 4; reach++) { /* nobody is inside: 1 all the same */
+    for (int reach = 1; reach < 4; reach++) { /* no neighbour is inside: the reach is 1 */
         struct range range = {.first = 20, .len = 20, .reach = reach};
         for (int i = 0; i < 70; i++) a->h_inverse[i] = 5;
         reach_tighten(&s, &range);
@@ -304,7 +305,7 @@ static void see_all(void *context, size_t i, const struct description *of)
     counted++;
 }
 
-/* As many images as there are; nobody who stands at a distance of just h. */
+/* The search ends with the last image and does not count particles at a distance of exactly h. */
 TEST(neighbours_end_somewhere)
 {
     struct simulation s;
@@ -320,10 +321,10 @@ TEST(neighbours_end_somewhere)
     unmade(&s);
 }
 
-/* --- sleep ------------------------------------------------------------------------------------ */
+/* --- inactive particles ----------------------------------------------------------------------- */
 
-/* Each limit exactly, and the next number beyond it, in d dimensions; where the setup's mean sound
- * speed and pressure are more than the particle's own, they count. */
+/* Each limit exactly, and the next number beyond it, in d dimensions; the setup's mean sound speed
+ * and pressure count if they are larger than the particle's own. */
 TEST(disturbed_beyond_a_limit)
 {
     for (int dim = 1; dim <= 3; dim++)
@@ -367,8 +368,8 @@ TEST(disturbed_beyond_a_limit)
                     }
 }
 
-/* A setup in which all can sleep, at speed v, but those groups that are given: dp/dt is not 0 in
- * one particle of theirs. */
+/* A setup at speed v in which all groups can be inactive except those given: in each of them one
+ * particle has dp/dt != 0. */
 static void at_rest(struct simulation *s, const bool *disturbed, double v)
 {
     struct particles *a = &s->particles;
@@ -384,7 +385,7 @@ static void at_rest(struct simulation *s, const bool *disturbed, double v)
     }
 }
 
-/* Who is awake, and in what spans and ranges, against the groups that should be. */
+/* Compares active groups, spans and ranges with the groups expected to be active. */
 static void sleeps(const struct simulation *s, const bool *awake)
 {
     const struct line *line = line_of(s);
@@ -393,7 +394,7 @@ static void sleeps(const struct simulation *s, const bool *awake)
     double rate = 0;
     for (ptrdiff_t g = 0; g < groups; g++) {
         assert_int_equal(line->groups.awake[g] != 0, awake[g]);
-        double rate_of = 0; /* of gas that moves as one */
+        double rate_of = 0; /* of gas that moves uniformly */
         for (ptrdiff_t i = g * GROUP; i < n && i < (g + 1) * GROUP; i++)
             rate_of = fmax(rate_of, 2 * s->particles.h_inverse[i]);
         if (awake[g]) rate_of = 0;
@@ -439,9 +440,8 @@ static ptrdiff_t margin_of(ptrdiff_t reach)
     return margin;
 }
 
-/* Awake groups fall asleep again far from those that are not calm (above a quarter of the
- * tolerance, in a rate or in a velocity beside its neighbour's), and look for it in one step of 16.
- */
+/* Active groups become inactive again far from disturbed groups (above a quarter of the tolerance,
+ * in a rate or in a velocity relative to the neighbour); that is checked every 16 steps. */
 static void sleep_once_calm(struct simulation *s, ptrdiff_t reach, bool sheared)
 {
     const ptrdiff_t n = s->particles.n, groups = (n + GROUP - 1) / GROUP;
@@ -459,7 +459,7 @@ static void sleep_once_calm(struct simulation *s, ptrdiff_t reach, bool sheared)
         }
         wake_around(awake, groups, g, margin_of(reach));
     }
-    line_of(s)->ranges[0].reach = 1; /* as laid out anew */
+    line_of(s)->ranges[0].reach = 1; /* as in a new arrangement */
     s->cost.steps = 14;
     groups_update(s);
     assert_int_equal(s->sleep.awake_count, n);
@@ -472,7 +472,8 @@ static void sleep_once_calm(struct simulation *s, ptrdiff_t reach, bool sheared)
     sleeps(s, awake);
 }
 
-/* Who falls asleep at the start, and who wakes when a signal comes near the end of a span. */
+/* Groups that are inactive at the start, and groups that become active when a signal comes near the
+ * end of a span. */
 TEST(groups_sleep_and_wake)
 {
     enum { MOST = 100 };
@@ -486,20 +487,20 @@ TEST(groups_sleep_and_wake)
         made(&s, n);
         struct line *line = line_of(&s);
         const bool narrow =
-            setup % 5 == 0; /* spans that are shorter than what is looked at later */
+            setup % 5 == 0; /* spans shorter than the margin that is checked later */
         const ptrdiff_t reach = line->reach = narrow ? 1 : draw_count(1, 12);
         for (ptrdiff_t g = 0; g < groups; g++) disturbed[g] = draw(0, 1) < 0.06;
         at_rest(&s, disturbed, setup % 3 ? 0 : 0.1);
         for (ptrdiff_t g = 0; g < groups; g++)
             if (disturbed[g]) wake_around(awake, groups, g, margin_of(reach));
-        for (ptrdiff_t i = n; i < n + GROUP; i++) s.particles.F[0][i] = 77; /* nobody's */
+        for (ptrdiff_t i = n; i < n + GROUP; i++) s.particles.F[0][i] = 77; /* beyond n */
         assert_int_equal(groups_begin(&s, &error), STATUS_OK);
         sleeps(&s, awake);
         for (ptrdiff_t i = n; i < n + GROUP; i++) assert_true(s.particles.F[0][i] == 77);
         assert_true(s.sleep.at_rest == (setup % 3 != 0 || !s.sleep.on));
 
-        /* of the disturbed ones in a span, the outermost two are looked for, no further inside
-         * than the margin */
+        /* of the disturbed particles in a span, the outermost two within the margin are looked
+         * for */
         bool later[MOST];
         memcpy(later, awake, sizeof later);
         for (ptrdiff_t i = 0; i < n; i++)
@@ -530,7 +531,7 @@ TEST(groups_sleep_and_wake)
         for (ptrdiff_t g = 0; g < groups; g++) later[g] = true;
         sleeps(&s, later);
         s.particles.F[0][3] = 1, line->ranges[0].reach = 5;
-        groups_update(&s); /* all are awake: nothing to do */
+        groups_update(&s); /* all are active: nothing to do */
         assert_int_equal(line->ranges[0].reach, 5);
         sleep_once_calm(&s, reach, setup % 2);
         unmade(&s);

@@ -35,7 +35,8 @@ static void visit(struct simulation *simulation, struct range *range, struct tal
     tally->pairs += (uint64_t)range->reach;
 }
 
-/* With fewer than 32 ranges, or one thread at work, one does it all. What is found is the same. */
+/* With fewer than 32 ranges, or with one thread, one thread computes all ranges. The result is the
+ * same. */
 TEST(every_range_once)
 {
     for (int size = 1; size <= 3; size++)
@@ -81,13 +82,13 @@ static struct range *range_of(const struct simulation *simulation, ptrdiff_t i)
     return range;
 }
 
-/* Puts particle i + 1 to the place of particle i: with this kernel neither has a root then. */
+/* Moves particle i + 1 to the position of particle i: with this kernel neither has a root then. */
 static void coincide(struct simulation *s, ptrdiff_t i)
 {
     s->particles.x[0][i + 1] = s->particles.x[0][i];
 }
 
-/* The first particle without a root is named, whoever finds it. */
+/* The first particle without a root is named, whichever thread finds it. */
 TEST(the_first_without_a_root)
 {
     static const ptrdiff_t places[][2] = {{0, 0},   {62, 62},   {64, 64},   {2559, 2559},
@@ -111,8 +112,8 @@ TEST(the_first_without_a_root)
         }
 }
 
-/* In every eighth step a reach that has become too large is lowered, by Newton and where widths are
- * predicted; one that is too small is raised at once. */
+/* A reach that is too large is lowered every eighth step, with Newton's method and with predicted
+ * widths; one that is too small is raised at once. */
 TEST(reaches_are_lowered_now_and_then)
 {
     for (int newton = 0; newton < 2; newton++)
@@ -135,8 +136,8 @@ TEST(reaches_are_lowered_now_and_then)
         }
 }
 
-/* Newton leaves 1/h with h; a sum at a predicted width is taken there, and the pressure follows on
- * the adiabat what the prediction has missed. */
+/* Newton's method sets 1/h together with h; a sum at a predicted width is taken there, and the
+ * pressure is corrected along the adiabat for the prediction's error. */
 TEST(what_sums_leave)
 {
     struct simulation *s = made_simulation(200);
@@ -150,7 +151,7 @@ TEST(what_sums_leave)
         near_relative(a->h_inverse[i] * a->h[i], 1, 1e-8);
         near_relative(a->P[i], 0.4 * a->rho[i] * a->U[i] / a->m[i], 1e-14);
     }
-    s->scheme.h_tolerance = 1e-2, s->dt = 1; /* Newton's own h, however far off */
+    s->scheme.h_tolerance = 1e-2, s->dt = 1; /* Newton's own h, whatever its error */
     for (ptrdiff_t i = 0; i < 200; i++) a->h[i] *= 1.004;
     assert_int_equal(widths_find(s, true, 0, &error), STATUS_OK);
     for (ptrdiff_t i = 0; i < 200; i++)
@@ -172,8 +173,8 @@ TEST(what_sums_leave)
     simulation_destroy(s);
 }
 
-/* A box whose widths reach over many images: as many ghosts as it takes, no more passes over ranges
- * that are done; a predicted width beyond all bounds is named. */
+/* In a box whose widths reach over many images there are enough ghosts, and ranges that are done
+ * are not passed again; a predicted width without bound is named. */
 TEST(ghosts_as_many_as_it_takes)
 {
     struct simulation *s = made_simulation(20);
@@ -187,7 +188,8 @@ TEST(ghosts_as_many_as_it_takes)
     assert_in_range(line_of(s)->reach, 40, 45);
     assert_int_equal(range_of(s, 3)->done, passes + 1);
     simulation_destroy(s);
-    /* twice as many until they are more than 64 and 2 eta + 2 boxes; the first of the widest */
+    /* doubled until there are more than 64 and the reach is more than 2 eta + 2 boxes; the first of
+     * the widest particles is named */
     static const struct {
         double eta;
         ptrdiff_t at, also, filled;
@@ -209,8 +211,8 @@ TEST(ghosts_as_many_as_it_takes)
     }
 }
 
-/* As many ghosts as there were, or as the reach asks for, 8 at least; twice as many where they do
- * not suffice, and those of the pairs after that. */
+/* The number of ghosts is kept or follows from the reach, at least 8; it doubles while they do not
+ * suffice, and pairs may add more. */
 TEST(ghosts_are_kept_filled)
 {
     static const struct {
@@ -235,9 +237,10 @@ TEST(ghosts_are_kept_filled)
     }
 }
 
-/* --- room ------------------------------------------------------------------------------------- */
+/* --- capacity --------------------------------------------------------------------------------- */
 
-/* Room for eight times the reach, and 8 more to read; ghosts that it moves are filled again. */
+/* There is capacity for eight times the reach plus 8 ghosts; ghosts are filled again when their
+ * arrays move. */
 TEST(room_for_eight_times_the_reach)
 {
     for (ptrdiff_t reach = 5; reach < 12; reach++) {
@@ -300,8 +303,8 @@ static void asked_matrix(const struct kernel *kernel, const struct particles *pa
     asked[first / BATCH_MAX].D = D;
 }
 
-/* Each range with its own reach and its thread's own scratch; pairs are counted on both sides in
- * the sums, once in the forces. */
+/* Forces of each range use its own reach and its thread's work arrays; pairs are counted twice in
+ * the sums and once in the forces. */
 TEST(forces_of_every_range)
 {
     for (int way = 0; way < 8; way++) {
@@ -312,7 +315,7 @@ TEST(forces_of_every_range)
         double rate = 0;
         s->team.most = s->team.size = way & 1 ? 2 : 1;
         s->plan.alpha = way & 4, s->scheme.alpha_max = 2;
-        line->scratch_size = 0; /* for so many threads */
+        line->scratch_size = 0; /* too small for two threads */
         line->loops.force = asked_force;
         s->scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
         line->loops.matrix = way & 2 ? asked_matrix : NULL;
@@ -343,7 +346,7 @@ TEST(forces_of_every_range)
     }
 }
 
-/* Images of what the matrices have found, as far as pairs reach and one more. */
+/* The images of matrix results are filled as far as pairs reach plus one. */
 TEST(matrices_of_every_range)
 {
     for (int slope = 0; slope < 2; slope++) {

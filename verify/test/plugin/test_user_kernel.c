@@ -12,7 +12,7 @@
 #include "user_figures.h"
 #include "user_kernel.h"
 
-static char folder[4000]; /* of the first module */
+static char folder[4000]; /* the folder of the first module */
 
 static int find_folder(void **state)
 {
@@ -30,7 +30,8 @@ static const char *path_of(const char *name)
     return path;
 }
 
-/* The certificate of a plug-in that must be usable; whether property `by` (if given) fails. */
+/* Certifies a plug-in that must be usable. Returns 1 if property `by` fails, or any if `by` is
+ * NULL. */
 static int rejected(const char *name, int dim, const char *by)
 {
     struct user_kernel user;
@@ -136,8 +137,8 @@ TEST(test_unusable)
     refused(test_word(1), ""); /* an executable is no shared object */
 }
 
-/* Exit status of the program with these arguments (%s, at most twice: the folder of the plug-ins).
- */
+/* Exit status of the program with these arguments (%s, at most twice, is the folder of the
+ * plug-ins). */
 static int status_of(const char *arguments)
 {
     char tail[4096], command[8192];

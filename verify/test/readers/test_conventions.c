@@ -24,7 +24,7 @@ static double uniform(double lo, double hi)
 static double storage[SNAPSHOT_COLUMNS][MOST];
 static const double boxed[3] = {1, 1, 1}, open_box[3] = {0, 0, 0};
 
-/* Particles at random in a unit box, with widths that differ; the last tenth is no gas. */
+/* Particles at random in a unit box, with different widths; the last tenth is not gas. */
 static struct snapshot_file scatter(int dim, size_t n, double h, double masses)
 {
     struct snapshot_file file = {.dim = dim, .n = n, .gas = n - n / 10};
@@ -53,7 +53,7 @@ static double apart(const struct snapshot_file *file, const double box[3], size_
     return sqrt(squares);
 }
 
-/* Densities as a code with this kernel sums them, W = 0 beyond ratio h. */
+/* Densities as a code with this kernel computes them; the kernel's support is `ratio` h. */
 static void sum_densities(const struct snapshot_file *file, const double box[3],
                           const struct kernel *kernel, double ratio, enum density_sum sum)
 {
@@ -67,7 +67,7 @@ static void sum_densities(const struct snapshot_file *file, const double box[3],
                        kernel->w(kernel, r / H, file->dim);
         }
         rho *= kernel->constant[file->dim] / pow(H, file->dim);
-        /* what is no gas says nothing of its kernel */
+        /* other particles say nothing about the gas's kernel */
         file->column[SNAPSHOT_RHO][i] = i < file->gas ? rho : 3 * rho;
     }
 }
@@ -106,7 +106,7 @@ static void is_found(const struct conventions *found, const char *name, double r
     near_below(best->residual, 1e-7);
     assert_int_equal(best->sum, sum);
     assert_non_null(strstr(found->why, "summed again"));
-    assert_null(strstr(found->why, name)); /* the next kernel is another one */
+    assert_null(strstr(found->why, name)); /* the second best is another kernel */
     assert_true(found->count <= 2 || strstr(found->why, "; the next kernel, "));
 }
 
@@ -114,7 +114,7 @@ TEST(every_kernel)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (size_t k = 0; k < kernel_family.n; k++) {
-            if (dim > 1 && k % 3 != (size_t)dim % 3) continue; /* all of them on a line */
+            if (dim > 1 && k % 3 != (size_t)dim % 3) continue; /* all of them in 1D only */
             const char *name = kernel_family.members[k]->name;
             const struct kernel kernel = kernel_called(name);
             const enum density_sum sum = k % 2 ? DENSITY_NUMBER : DENSITY_MASSES;
@@ -130,7 +130,8 @@ TEST(every_kernel)
         }
 }
 
-/* Densities near the ends of what is not periodic are nobody's: walls, layers, a vacuum. */
+/* Densities near ends that are not periodic are not compared: there may be walls, layers or a
+ * vacuum. */
 TEST(ends)
 {
     const struct kernel kernel = kernel_called("cubic_spline");
@@ -154,7 +155,7 @@ TEST(ends)
                 assert_int_equal(found.count, 1);
                 assert_true(found.same_masses);
             }
-    /* where none is so far inside, those one h inside do, and then all */
+    /* if no particle is that far inside, those one h inside count, and otherwise all */
     for (int margin = 0; margin < 2; margin++) {
         const struct snapshot_file file = scatter(1, 200, margin ? 0.4 : 0.9, 0);
         storage[0][0] = 0, storage[0][1] = 1;
@@ -168,8 +169,8 @@ TEST(ends)
     }
 }
 
-/* On a lattice any kernel fits; densities that nobody has summed are nobody's; what is near is none
- * either, and how near is. */
+/* On a lattice any kernel fits; densities that are no sum fit none; a kernel that nearly fits is
+ * not known, and the message says how nearly it fits. */
 TEST(no_proof)
 {
     const struct kernel kernel = kernel_called("wendland_c4");
@@ -184,7 +185,7 @@ TEST(no_proof)
     found = found_in(&file, boxed, NULL, NULL);
     assert_false(found.known);
     assert_non_null(strstr(found.why, "no kernel's sum agrees with the density: the best, "));
-    for (int worse = 0; worse < 2; worse++) { /* 1e-3 is the most */
+    for (int worse = 0; worse < 2; worse++) { /* the limit is 1e-3 */
         file = scatter(2, 400, 0.15, 0);
         sum_densities(&file, boxed, &kernel, 1, DENSITY_MASSES);
         for (size_t i = 0; i < file.n; i++)
@@ -211,7 +212,7 @@ TEST(masses)
         }
 }
 
-/* Where masses hardly differ both sums fit: the kernel is known all the same, and named once. */
+/* If masses hardly differ both sums fit: the kernel is known, and named once. */
 TEST(either_sum)
 {
     const struct kernel kernel = kernel_called("quadratic_spline");
@@ -226,14 +227,14 @@ TEST(either_sum)
     assert_null(strstr(found.why, "quadratic_spline"));
 }
 
-/* What the user says is taken, and how well it does is said. */
+/* What the user states is used, and the message says how well it fits. */
 TEST(said)
 {
     const struct kernel cubic = kernel_called("cubic_spline"),
                         quintic = kernel_called("quintic_spline");
     const struct snapshot_file file = scatter(2, 400, 0.075, 1);
     sum_densities(&file, boxed, &cubic, 2, DENSITY_MASSES);
-    struct conventions found = found_in(&file, boxed, &cubic, NULL); /* h is sought */
+    struct conventions found = found_in(&file, boxed, &cubic, NULL); /* h may mean anything */
     assert_int_equal(found.count, 2);
     near_relative(found.candidate[0].ratio, 2, 1e-6);
     assert_true(found.known);
@@ -252,10 +253,10 @@ TEST(said)
     assert_int_equal(found.count, 2 * kernel_family.n);
     is_found(&found, "cubic_spline", 2, DENSITY_MASSES);
     found =
-        found_in(&file, boxed, NULL, &(struct width_meaning){.ratio = 6}); /* beyond the scale */
+        found_in(&file, boxed, NULL, &(struct width_meaning){.ratio = 6}); /* beyond those tried */
     for (size_t k = 0; k < found.count; k++) assert_true(found.candidate[k].ratio == 6);
     assert_int_equal(found.count, 2 * kernel_family.n);
-    /* standard deviations of B-splines of n pieces on a line: sqrt(n/12) of one piece */
+    /* standard deviation of a B-spline of n pieces in 1D: sqrt(n/12) times the width of a piece */
     static const char *const splines[] = {"quadratic_spline", "cubic_spline", "quartic_spline",
                                           "quintic_spline"};
     for (int n = 3; n <= 6; n++) {
@@ -266,7 +267,7 @@ TEST(said)
     near_relative(conventions_deviation(&cubic, 3), 0.5 / 1.825742, 1e-6);
 }
 
-/* Sums over more than 4096 neighbours end the search: nearer ratios are still found. */
+/* A sum over more than 4096 neighbours ends the search: smaller ratios are still found. */
 TEST(crowds)
 {
     const struct kernel cubic = kernel_called("cubic_spline");
@@ -280,7 +281,7 @@ TEST(crowds)
     found = found_in(&file, boxed, &cubic, &(struct width_meaning){.ratio = 2.06});
     assert_true(!found.known && found.count == 0);
     assert_string_equal(found.why, "no sum is finite");
-    for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_H][i] = 0.3; /* none is within reach */
+    for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_H][i] = 0.3; /* none within reach */
     found = found_in(&file, boxed, &cubic, NULL);
     assert_true(!found.known && found.count == 0);
 }
@@ -290,7 +291,7 @@ TEST(crowds)
 TEST(as_columns)
 {
     for (int dim = 1; dim <= 3; dim++)
-        for (int proved = 0; proved < 3; proved++) { /* 2: there is no h */
+        for (int proved = 0; proved < 3; proved++) { /* 2: without h */
             const struct kernel kernel = kernel_called("quintic_spline");
             const struct snapshot_file made = scatter(dim, numbers[dim], widths[dim] / 3, 1);
             struct snapshot_file file;
@@ -376,7 +377,7 @@ static double flat(const struct kernel *kernel, double q, int dim)
     return 1;
 }
 
-/* Of a ball of constant density; and particles that all stand at the ends are asked as well. */
+/* A ball of constant density; if all particles are near the ends, they are compared. */
 TEST(corners)
 {
     const struct kernel ball = {.w = flat};

@@ -59,11 +59,11 @@ static enum status judged(struct error *error)
 TEST(judging)
 {
     for (int k = 0; k < 3; k++) { /* without u, without P, with both */
-        plant(1, 0, "");          /* without a box the case's own start is not asked for */
+        plant(1, 0, "");          /* without a box the case's own initial state is not computed */
         gas.has_u = k != 0, gas.has_P = k != 1, gas.has_h = k == 2;
         for (int i = 0; i < N; i++) gas.h[i] = 0.004;
         read_path = put("a.csv");
-        spared = 1; /* a case does without its reference */
+        spared = 1; /* a case may lack its reference */
         without_memory(judged, 10, true);
     }
     without_memory(as_csv, 20, true);

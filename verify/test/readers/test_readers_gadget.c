@@ -13,12 +13,12 @@ TEST(every_form)
         b.tagged = draw % 2, b.swapped = draw / 2 % 2;
         b.extra = drawn(3);
         if (drawn(4) == 0)
-            b.box = (const double[]){0, -1, 2.5 * SIDE}[drawn(3)]; /* or thin in it */
+            b.box = (const double[]){0, -1, 2.5 * SIDE}[drawn(3)]; /* or the gas is thin in it */
         if (drawn(4) == 0) b.parts = 0;
         b.there[ID] = !b.tagged || drawn(2);
-        b.there[ACCE] = b.tagged && drawn(2); /* nobody can tell what it is without its name */
+        b.there[ACCE] = b.tagged && drawn(2); /* without its name the block cannot be recognised */
         b.there[HSML] = drawn(3) || !b.tagged;
-        if (b.tagged && drawn(3) == 0) b.rows[ACCE] = b.rows[POS]; /* of all particles */
+        if (b.tagged && drawn(3) == 0) b.rows[ACCE] = b.rows[POS]; /* rows for all particles */
         is_read(&b, "a draw");
     }
     struct binary b = made(2);
@@ -37,7 +37,7 @@ TEST(left_out)
     for (int k = 0; k < BLOCKS; k++)
         for (int draw = 0; draw < 4; draw++) {
             struct binary b = made(1 + draw % 3);
-            b.table[0] = 0; /* its mass stands in a block */
+            b.table[0] = 0; /* so that its mass is in a block */
             b.rows[MASS] = 0;
             for (int t = 0; t < TYPES; t++) b.rows[MASS] += b.table[t] > 0 ? 0 : b.count[t];
             for (size_t i = 0; i < b.rows[MASS]; i++) b.value[MASS][i] = 1;
@@ -63,13 +63,13 @@ TEST(left_out)
             else
                 refuses(put_all(&b), tags[k], words);
         }
-    struct binary b = made(1); /* all of one mass: no block is needed */
+    struct binary b = made(1); /* all have masses in the table: no block is needed */
     for (int t = 0; t < TYPES; t++) b.table[t] = 2;
     b.there[MASS] = false;
     is_read(&b, "masses in the table");
 }
 
-/* Every byte that is missing, and every count that is another. */
+/* Files that miss any byte, and counts that are wrong. */
 TEST(cut_off)
 {
     for (int form = 0; form < 4; form++) {
@@ -78,7 +78,7 @@ TEST(cut_off)
         const size_t size = put_all(&b), head = b.tagged ? 280 : 264;
         for (size_t cut = 1; cut + head < size; cut += 1 + cut / 8)
             refuses(size - cut, "cut off", cut < 4 || b.tagged ? "" : "cut off: record");
-        for (int wrong = 0; wrong < 3 && b.tagged; wrong++) { /* counts and the first name */
+        for (int wrong = 0; wrong < 3 && b.tagged; wrong++) { /* counts, or the first name */
             if (wrong < 2) put_count(wrong ? 12 : 0, &b, 9);
             if (wrong == 2) bytes[7] = 'X';
             refuses(size, "no beginning", "no snapshot that is read");
@@ -112,7 +112,7 @@ TEST(headers)
 {
     static const struct {
         const char *says;
-        int count; /* of this type is changed; -1: none */
+        int count; /* the type whose count changes; -1: none */
         uint32_t to;
         int mass;
         double mass_to, time, redshift;
@@ -151,12 +151,12 @@ TEST(headers)
     }
 }
 
-/* Format 1 names nothing: a reading must be the only one in which all is plausible. */
+/* Format 1 has no names: exactly one assignment of the blocks must be plausible. */
 TEST(inferred)
 {
     static const struct {
         int block;
-        double factor; /* of all its values */
+        double factor; /* applied to all values of the block */
         bool fits;
     } rows[] = {{RHO, 1, true},       {RHO, 1.9, true},   {RHO, 2.1, false},   {RHO, 0.55, true},
                 {RHO, 0.45, false},   {RHO, -1, false},   {U, -1, false},      {U, 0, false},
@@ -177,7 +177,7 @@ TEST(inferred)
             }
             for (int w = MASS; w <= HSML; w++) b.width[w] = 8;
             for (size_t i = 0; i < MOST; i++) b.value[rows[k].block][i] *= rows[k].factor;
-            if (rows[k].block == RHO) /* spacings grow with it */
+            if (rows[k].block == RHO) /* spacings change with it */
                 for (size_t i = 0; i < MOST; i++)
                     b.value[HSML][i] = 2 * pow(b.value[MASS][i] / fabs(b.value[RHO][i]), 1. / dim);
             if (rows[k].block == MASS)
@@ -194,7 +194,7 @@ TEST(inferred)
     refuses(put_all(&b), "nothing but positions and velocities", "of 3 records none fit");
     b.there[VEL] = false;
     refuses(put_all(&b), "positions alone", "2 records, the first of 256 bytes");
-    b = made(1); /* twice the same blocks */
+    b = made(1); /* the same blocks twice */
     b.tagged = b.there[ACCE] = false;
     for (int t = 0; t < TYPES; t++) b.table[t] = t ? 1 : 0;
     b.rows[MASS] = b.count[0], b.there[MASS] = true;
@@ -206,7 +206,7 @@ TEST(inferred)
     size_t size = put_all(&b);
     for (int k = MASS; k <= HSML; k++) size = put_block(size, &b, k);
     refuses(size, "twice", "more than one choice fits");
-    b = made(1); /* again without widths: those that have some count */
+    b = made(1); /* again without widths, and some particles with a mass block */
     b.tagged = b.there[ACCE] = b.there[MASS] = false;
     for (int t = 0; t < TYPES; t++) b.table[t] = t ? 1 : 1.5 * SIDE / b.count[0];
     for (size_t i = 0; i < MOST; i++) b.value[U][i] *= 10;
@@ -232,7 +232,7 @@ TEST(records)
         else
             is_read(&b, "64 records");
     }
-    struct binary b = made(1); /* the first of two blocks of one name */
+    struct binary b = made(1); /* of two blocks with one name the first counts */
     size_t size = put_all(&b);
     for (size_t i = 0; i < MOST; i++) b.value[RHO][i] *= 2;
     put_block(size, &b, RHO);
@@ -242,7 +242,7 @@ TEST(records)
     assert_int_equal(read_bytes(all, &file, &error), STATUS_OK);
     assert_true(file.column[SNAPSHOT_RHO][3] == b.value[RHO][3] / 2);
     snapshot_file_free(&file);
-    /* a block may be 8 bytes long itself */
+    /* a block may itself be 8 bytes long */
     bytes[put_count(0, &b, 7)] = 1;
     refuses(300, "seven bytes", "no snapshot that is read");
 }

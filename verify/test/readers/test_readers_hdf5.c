@@ -49,7 +49,7 @@ TEST(left_out)
         for (size_t k = 0; k < l->count; k++)
             if (l->fields[k].meaning == MASS) items[k].path[0] = '\0';
         if (named) refuses(l, items, "no masses", "no masses");
-        /* both of two items are missing, of which one would do */
+        /* both of two alternatives are missing */
         items_of(l, items);
         for (size_t k = 0; k < l->count; k++)
             if (l->fields[k].column == SNAPSHOT_U || l->fields[k].column == SNAPSHOT_P)
@@ -58,9 +58,7 @@ TEST(left_out)
     }
 }
 
-/* The same, read in a process of its own, also when that process cannot hand over what it has
- * read. */
-/* The file may begin behind a block of its writer's, of 512 bytes or twice as many, or that. */
+/* The file may begin after a user block of 512 bytes or a power of 2 times that. */
 TEST(behind_a_block)
 {
     static char bytes[1 << 16];
@@ -150,7 +148,7 @@ TEST(other_forms)
             }
             if (is_column(f)) continue;
             items_of(l, items);
-            for (int form = 0; form < 8; form++) { /* where a number is said */
+            for (int form = 0; form < 8; form++) { /* an attribute or a dataset, in any shape */
                 items[k].attribute = form % 2;
                 if (f->text && !items[k].attribute) continue;
                 if (f->width <= 1) items[k].rank = form / 2 % 3;
@@ -168,7 +166,7 @@ static double fault_of(int fault)
     return faults[fault];
 }
 
-/* Phantom's particles without a width are not counted as particles. */
+/* True for Phantom's particles without a width, which are not counted. */
 static bool is_dead(const struct layout *l, const struct field *f, double h)
 {
     return strcmp(l->name, "phantom_hdf5") == 0 && f->column == SNAPSHOT_H && h <= 0;
@@ -200,8 +198,8 @@ TEST(spoilt_columns)
             for (int more = -1; more < 2; more += 2) {
                 items_of(l, items);
                 items[k].shape[0] = (hsize_t)(N + more);
-                /* the number of rows of a column, or the count in the header, is not that of the
-                 * positions */
+                /* the number of rows differs from that of the positions, or from the count in the
+                 * header */
                 snprintf(says, sizeof says, "%s has %d x %d numbers; allowed: %d x %s", f->path,
                          N + more, f->width, N,
                          f->meaning == COLUMN &&
@@ -239,7 +237,7 @@ TEST(spoilt_columns)
                              field_of(l, items, TYPES) ? 3 : 5);
                     refuses(l, items, f->path, says);
                 }
-            for (int fault = 0; fault < 2; fault++) { /* 0, and below it */
+            for (int fault = 0; fault < 2; fault++) { /* 0 and a negative value */
                 const bool above = f->column == SNAPSHOT_M || f->column == SNAPSHOT_RHO ||
                                    f->column == SNAPSHOT_H,
                            below = f->column == SNAPSHOT_U || f->column == SNAPSHOT_P;
@@ -255,7 +253,7 @@ TEST(spoilt_columns)
     }
 }
 
-/* In the header: words, nothing, no number. */
+/* In the header: text, an empty list, a value that is not a number. */
 TEST(spoilt_numbers)
 {
     for (int a = 0; a < LAYOUTS; a++) {

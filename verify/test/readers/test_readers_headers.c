@@ -8,7 +8,7 @@
 
 #include "made_layouts.h"
 
-/* ---- what a layout calls otherwise, or has beside ---- */
+/* ---- other names and additional items of a layout ---- */
 
 static struct item *item_called(struct item *items, const char *path)
 {
@@ -38,7 +38,7 @@ TEST(other_names)
         snprintf(item_called(items, rows[k].from)->path, sizeof items->path, "%s", rows[k].to);
         reads(&layouts[rows[k].layout], items, rows[k].to);
     }
-    /* what a code calls itself */
+    /* the name of the code */
     for (int k = 0; k < 4; k++) {
         static const char *const codes[] = {"AREPO or GADGET-4", "GIZMO 2022", "SWIFT v1.0",
                                             "SWIFT"};
@@ -63,7 +63,7 @@ TEST(other_names)
     reads(&l, items, "Config/GAMMA");
 }
 
-/* Runs in an expanding universe are not read: by what they say, else by redshift and time. */
+/* Runs in an expanding universe are refused, by their flag or else by redshift and time. */
 TEST(comoving)
 {
     static const struct {
@@ -134,7 +134,7 @@ TEST(boxes)
         double value;
     } wrong[] = {{0, (double)NAN},      {1, -9}, {1, -8},
                  {1, (double)INFINITY}, {4, 7},  {5, (double)NAN}};
-    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) { /* of ends: all or none */
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) { /* all ends, or none */
         struct snapshot_file file;
         struct error error = {0};
         items_of(&layouts[2], items);
@@ -180,14 +180,15 @@ TEST(units)
     }
 }
 
-/* Phantom's dead, of which h is not above 0, are left out; its box counts if all others lie in it.
- */
+/* Phantom's dead particles, whose h is not above 0, are left out; the box is used if it contains
+ * all others. */
 TEST(phantom)
 {
     static const char *const ends[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
     for (int dead = 0; dead < 3; dead++)
-        for (int end = 0; end < 14; end++) { /* one is left out, or lies within; 12: none; 13: all
-                                                are where particles are */
+        /* the end that is missing, or that lies within the gas; 12: none; 13: all ends are at
+         * particles */
+        for (int end = 0; end < 14; end++) {
             struct layout l = layouts[3];
             struct snapshot_file file;
             struct error error = {0};
@@ -220,10 +221,10 @@ TEST(phantom)
         }
 }
 
-/* Our own say where their box begins, from which positions count, and what they are of. */
+/* Our own snapshots have the box's corner, from which positions count, and the name of the case. */
 TEST(placed)
 {
-    for (int numbers = 0; numbers <= 4; numbers++) /* of the corner; 4: without a box */
+    for (int numbers = 0; numbers <= 4; numbers++) /* numbers in the corner; 4: without a box */
         for (int columns = 1; columns <= 3; columns += 2) {
             struct layout l = layouts[0];
             struct item items[ITEMS_MAX];
@@ -260,7 +261,7 @@ TEST(placed)
         }
 }
 
-/* Precision is that of the coarsest column, positions apart. */
+/* The precision is that of the coarsest column except positions. */
 TEST(precision)
 {
     for (size_t k = 0; k < layouts[0].count; k++) {
@@ -279,7 +280,7 @@ TEST(precision)
     }
 }
 
-/* As many dimensions as positions vary along: the first ones. */
+/* The number of dimensions is that of the last direction along which positions vary. */
 TEST(dimensions)
 {
     for (int width = 1; width <= 3; width++)
@@ -316,7 +317,7 @@ TEST(dimensions)
             }
 }
 
-/* More of them than columns of positions. */
+/* The header states more dimensions than positions have columns. */
 TEST(said_dimensions)
 {
     for (int said = 2; said <= 3; said++) {
@@ -331,7 +332,7 @@ TEST(said_dimensions)
     }
 }
 
-/* ---- what is none of them ---- */
+/* ---- unknown files ---- */
 
 TEST(unknown)
 {

@@ -11,7 +11,7 @@
 static const struct layout *const gadget = &layouts[0];
 enum { PARTS_MOST = 4 };
 
-/* The list, with numbers of particles that tell the part; as many as the part's place says. */
+/* The items of part k; the numbers of particles differ from part to part. */
 static void part(int k, int parts, struct item *items)
 {
     items_of(gadget, items);
@@ -39,7 +39,7 @@ static enum status read_parts(const char *name, struct snapshot_file *file, stru
     return snapshot_read(path_of(name), &here, file, error);
 }
 
-/* In whatever order parts lie there, their particles follow each other by the numbers of files. */
+/* Particles are in the order of the file numbers, whatever the order of files in the folder. */
 TEST(every_order)
 {
     int order[PARTS_MOST] = {0, 1, 2, 3};
@@ -77,7 +77,7 @@ TEST(every_order)
         }
 }
 
-/* The header's total is that of all parts; 0, or none, says nothing. */
+/* The header's total is that of all parts; 0 or a missing total is not checked. */
 TEST(totals)
 {
     for (int parts = 1; parts <= 2; parts++)
@@ -106,7 +106,7 @@ TEST(totals)
         }
 }
 
-/* Any of two parts has one item otherwise: they are not joined. */
+/* Parts of which one has a different item are not joined. */
 TEST(other_headers)
 {
     static const struct {
@@ -126,7 +126,7 @@ TEST(other_headers)
                 {"PartType0/Pressure", "P than the other parts", true, 0},
                 {"PartType0/Acceleration", "ax than the other parts", true, 0}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
-        for (int which = 0; which < (rows[k].gone ? 3 : 2); which++) { /* 2: both have it not */
+        for (int which = 0; which < (rows[k].gone ? 3 : 2); which++) { /* 2: both parts lack it */
             struct snapshot_file file;
             struct error error;
             struct item items[2][ITEMS_MAX];
@@ -144,7 +144,7 @@ TEST(other_headers)
                 snprintf(name, sizeof name, "s.%d", p);
                 write_part(name, items[p]);
             }
-            const bool masses = strstr(rows[k].item, "Masses"); /* the table has them */
+            const bool masses = strstr(rows[k].item, "Masses"); /* masses are in the table */
             const enum status status = read_parts("s.0", &file, &error);
             snapshot_file_free(&file);
             if (masses || which == 2) {
@@ -154,12 +154,12 @@ TEST(other_headers)
             if (status != STATUS_BAD_INPUT || !strstr(error.message, rows[k].says))
                 fail_msg("%s of part %d: '%s' is not in: %s", rows[k].item, which, rows[k].says,
                          error.message);
-            const bool own = strstr(rows[k].says, "cut off"); /* of the file itself */
+            const bool own = strstr(rows[k].says, "cut off"); /* a fault of the file itself */
             assert_non_null(strstr(error.message, own && !which ? "s.0" : "s.1"));
         }
 }
 
-/* Along each direction, and where only the last part is another. */
+/* Different boxes along each direction, and of the last part alone. */
 TEST(other_boxes)
 {
     for (int d = 0; d < 3; d++)
@@ -182,7 +182,7 @@ TEST(other_boxes)
         }
 }
 
-/* The coarsest part says how precise the whole is. */
+/* The precision is that of the coarsest part. */
 TEST(precision)
 {
     for (int which = 0; which < 2; which++) {
@@ -206,7 +206,7 @@ TEST(precision)
 TEST(names)
 {
     static const struct {
-        const char *first, *second, *says; /* says NULL: read */
+        const char *first, *second, *says; /* says NULL: both are read */
     } rows[] = {{"a.0", "a.1", NULL},
                 {"a.0.hdf5", "a.1.hdf5", NULL},
                 {"a.05.0.hdf5", "a.05.1.hdf5", NULL},

@@ -12,11 +12,11 @@
 #include "snapshot_file.h"
 
 enum { N = 14, BYTES = 1 << 16, KINDS = 8, ARRAYS = 10, VALUES = 12 };
-enum { X, Y, Z, H, VX, VY, VZ, U, P, ALPHA }; /* the last is nobody's */
+enum { X, Y, Z, H, VX, VY, VZ, U, P, ALPHA }; /* the last is not read */
 static const char *const tags[ARRAYS] = {"x",  "y",  "z", "h",        "vx",
                                          "vy", "vz", "u", "pressure", "alpha"};
 static const int columns[ARRAYS] = {0, 1, 2, SNAPSHOT_H, 3, 4, 5, SNAPSHOT_U, SNAPSHOT_P, -1};
-static const double types[N] = {1, -1, 2, 1, 1, 3, -1, 1, 1, -2, 1, 1, 1, 0}; /* 0: of none */
+static const double types[N] = {1, -1, 2, 1, 1, 3, -1, 1, 1, -2, 1, 1, 1, 0}; /* 0: of no type */
 
 static uint64_t seed = 28;
 static unsigned drawn(unsigned below)
@@ -31,14 +31,14 @@ struct dump {
     char name[101];
     double magic[4];
     struct {
-        const char *tag; /* NULL: left out */
+        const char *tag; /* NULL: missing */
         int kind;
         double value;
     } value[VALUES];
     double array[ARRAYS][N];
-    int kind[ARRAYS]; /* -1: left out */
+    int kind[ARRAYS]; /* -1: missing */
     bool typed;
-    int groups, rows; /* groups of arrays, the second of sinks; rows that are said */
+    int groups, rows; /* groups of arrays, the second of sinks; rows in the header */
 };
 
 static struct dump made(void)
@@ -77,7 +77,7 @@ static void put(const struct dump *d, double value, int size, bool real)
     else if (real)
         memcpy(word, &value, sizeof value);
     else
-        memcpy(word, &whole, sizeof whole); /* the low bytes come first on our machines */
+        memcpy(word, &whole, sizeof whole); /* the test's machines are little-endian */
     for (int k = 0; k < size; k++) bytes[at++] = word[d->swapped ? size - 1 - k : k];
 }
 
@@ -109,7 +109,7 @@ static void tag(const char *name)
 static void put_header(const struct dump *d)
 {
     for (int kind = 0; kind < KINDS; kind++) {
-        int n = kind == 0; /* one integer that is nobody's */
+        int n = kind == 0; /* an integer that is not read */
         for (int k = 0; k < VALUES; k++) n += d->value[k].tag && d->value[k].kind == kind;
         begin(), put(d, n, 4, false), end(d);
         if (!n) continue;
@@ -260,7 +260,7 @@ TEST(every_form)
         if (drawn(3) == 0) d.kind[U + (int)drawn(2)] = -1;
         if (drawn(4) == 0) d.value[4 + drawn(8)].tag = NULL;
         if (drawn(4) == 0)
-            d.value[6 + drawn(6)].value = 0.5; /* particles lie beyond, or it is none */
+            d.value[6 + drawn(6)].value = 0.5; /* particles lie beyond, or the ends coincide */
         is_read(&d);
     }
 }
@@ -316,7 +316,7 @@ TEST(names)
     refuses(put_all(&d), "in 2 blocks");
     d.value[5].value = 1;
     is_read(&d);
-    for (int k = 0; k < 4; k++) { /* whoever begins otherwise is none of Phantom's */
+    for (int k = 0; k < 4; k++) { /* files with another beginning are not Phantom's */
         d = made();
         d.magic[k] += 1;
         refuses(put_all(&d), "no snapshot that is read");
@@ -331,7 +331,7 @@ TEST(names)
     refuses(put_all(&d), "0 groups of arrays");
 }
 
-/* A file may end anywhere, and any of its bytes may be another: it is refused or read. */
+/* A file that ends early or has any byte changed is refused or read. */
 TEST(damaged)
 {
     for (int swapped = 0; swapped < 2; swapped++) {
@@ -352,12 +352,12 @@ TEST(damaged)
         put_all(&d);
         bytes[size - 1] ^= 1, bytes[size - 4] ^= 1;
         refuses(size, "damaged: record");
-        put_all(&d);       /* a count of the header */
-        at = 32 + 108 + 4; /* magic numbers, name, count of bytes */
+        put_all(&d);       /* a count in the header */
+        at = 32 + 108 + 4; /* after magic numbers, name and count of bytes */
         put(&d, 5000, 4, false);
         refuses(size, "5000 values of one kind");
         put_all(&d);
-        at = 32 + 108 + 4; /* magic numbers, name, count of bytes */
+        at = 32 + 108 + 4; /* after magic numbers, name and count of bytes */
         put(&d, -1, 4, false);
         refuses(size, "-1 values of one kind");
     }

@@ -26,7 +26,7 @@ TEST(random_styles)
     }
 }
 
-/* Every column by every name, in any letters, with what is neither letter nor digit. */
+/* Every column with every name, in any case, and with other characters between. */
 TEST(spellings)
 {
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++)
@@ -56,11 +56,11 @@ TEST(spellings)
     assert_int_equal(snapshot_column_of(&" (x)"[1]), SNAPSHOT_X); /* no name stands before it */
     char word[80] = "internalenergyinternalenergyinternalenergyinternalenergy";
     assert_int_equal(snapshot_column_of(word), -1);
-    memset(word, ' ', 70), strcpy(word + 70, "u"); /* blanks take no room */
+    memset(word, ' ', 70), strcpy(word + 70, "u"); /* blanks do not count */
     assert_int_equal(snapshot_column_of(word), SNAPSHOT_U);
 }
 
-/* Units beside the names are no columns; a note says that they are not applied. */
+/* Units beside names are not part of them; a note says that they are not converted. */
 TEST(units)
 {
     static const char *const noted[] = {"such as (km/s):", "such as (pc):", "such as ():"};
@@ -85,7 +85,7 @@ TEST(units)
     }
 }
 
-/* ---- lines that say what columns do not ---- */
+/* ---- values in comments ---- */
 
 #define ZEROS                                                                                      \
     "0000000000000000000000000000000000000000000" /* so many that with four letters more they are  \
@@ -116,7 +116,7 @@ TEST(remarks)
         {"# time = 0.2501\n# t = 0.25\n# time 0.25\n", true, false, false, 0.25, 0, {0}},
         {"# time = 0.25 s\n# gammas = 2\n# Box = 2\n# box = a\n", false, false, false, 0, 0, {0}},
         {"# box of 7\n# times = 2\n# gamma =\n# =\n#\n# 7\n", false, false, false, 0, 0, {0}},
-        /* within a comment, as people write headers */
+        /* in the free text of a comment */
         {"# Sod at t = 0.25, Gamma: 3/2\n", true, true, false, 0.25, 1.5, {0}},
         {"#Time: 0.25  gamma=1.5 #\n# dt = 3; my_t = 4\n", true, true, false, 0.25, 1.5, {0}},
         {"# n = 7,TIME=0.25;T=0.25\n# t_end = 9\n", true, false, false, 0.25, 0, {0}},
@@ -159,10 +159,10 @@ TEST(remarks)
             for (int d = 0; d < dim; d++) assert_true(file.box[d] == rows[k].box[d]);
             snapshot_file_free(&file);
         }
-    /* corners, and what our own snapshots say, before the names of the columns or behind them */
+    /* corners and the notes of our own snapshots, before the names of the columns or after them */
     static const struct {
         const char *box;
-        int count; /* of directions; 0: it is none */
+        int count; /* number of directions; 0: invalid */
         double corner[3], length[3];
     } ends[] = {{"-1:3", 1, {-1}, {4}},
                 {"-1:3 0:0.5", 2, {-1, 0}, {4, 0.5}},
@@ -184,7 +184,7 @@ TEST(remarks)
             if (!behind) strcpy(t.head, head);
             size_t size = text_of(&t, text, -1, -1, NULL);
             const size_t line = (size_t)(strchr(text, '\n') + 1 - text);
-            if (behind) { /* the names, what is said, the rows */
+            if (behind) { /* the names, the notes, the rows */
                 memcpy(other, text, line);
                 size_t at = line + (size_t)sprintf(other + line, "%s", head);
                 memcpy(other + at, text + line, size - line);
@@ -203,7 +203,7 @@ TEST(remarks)
                             file.box[d] == ends[k].length[d]);
             snapshot_file_free(&file);
         }
-    for (int more = 0; more < 2; more++) { /* a box of 160 letters and more is none */
+    for (int more = 0; more < 2; more++) { /* a box of 160 characters or more is not read */
         struct table t = table_of(2, true);
         struct snapshot_file file;
         t.columns -= 2;
@@ -220,13 +220,13 @@ TEST(remarks)
     static const char *const boxes[] = {"# box = 0\n", "# box = 0 1 1\n", "# box = -1\n",
                                         "# box = 1 0\n", "# box = 1 2 -3\n"};
     for (size_t k = 0; k < sizeof boxes / sizeof *boxes;
-         k++) { /* along the directions that there are */
+         k++) { /* only the directions of the particles count */
         static char text[TEXT_MAX];
         struct table t = table_of(3, true);
         snprintf(t.head, sizeof t.head, "%s", boxes[k]);
         refuses(text, text_of(&t, text, -1, -1, NULL), NULL, "; allowed: above 0");
     }
-    /* contradictions, with both lines, and what is no number of ours */
+    /* contradictions, with both lines, and values that our own snapshots never have */
     static const struct {
         const char *head, *says;
     } wrong[] = {
@@ -259,7 +259,7 @@ TEST(remarks)
         refuses(text, text_of(&t, text, -1, -1, NULL), NULL, wrong[k].says);
     }
     static const struct {
-        const char *head, *line; /* NULL: nothing is noted */
+        const char *head, *line; /* NULL: no note */
     } units[] = {{"#\n# time = 0.2 s\n", "line 2"},
                  {"# Sod, gamma = 5/0\n", "line 1"},
                  {"# time = unknown\n", NULL},
@@ -274,7 +274,7 @@ TEST(remarks)
         snapshot_file_free(&file);
     }
     char longest[1300];
-    for (int more = 0; more < 2; more++) { /* lines of 1200 letters and more say nothing */
+    for (int more = 0; more < 2; more++) { /* comments of 1200 characters or more are not read */
         struct table t = table_of(1, true);
         struct snapshot_file file;
         t.columns -= 2;
@@ -335,7 +335,7 @@ TEST(splash)
     memset(text + at, 'n', 48);
     refuses(text, at + 48, NULL, "too long ones");
     refuses(text, at + 47, NULL, "no x");
-    /* not on the first line: a table like any other */
+    /* not on the first line: an ordinary table */
     refuses("# a table\n# created by SPLASH\nx,vx\n1,2\n", 39, NULL, "no m; found: x vx");
     refuses("created by SPLASH\n1\n", 20, NULL, "column 2, 'by'");
 }

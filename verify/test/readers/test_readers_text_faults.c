@@ -10,7 +10,7 @@
 
 #include "made_table.h"
 
-/* ---- columns by the user's names ---- */
+/* ---- columns that the user maps ---- */
 
 TEST(maps)
 {
@@ -26,7 +26,7 @@ TEST(maps)
         reads(&other, map, &file);
         snapshot_file_free(&file);
     }
-    /* beside a column that by its own name would be taken, before it or behind it */
+    /* the map overrides a column's own name, before or after it */
     for (size_t c = 0; c < t.columns; c++)
         for (int before = 0; before < 2; before++) {
             struct table beside = t;
@@ -43,7 +43,7 @@ TEST(maps)
             reads(&beside, map, &file);
             snapshot_file_free(&file);
         }
-    struct table swapped = t; /* rho and P, each by the other's name */
+    struct table swapped = t; /* rho and P exchange names */
     size_t rho = 0, P = 0;
     for (size_t c = 0; c < t.columns; c++) {
         if (t.meaning[c] == SNAPSHOT_RHO) rho = c;
@@ -63,20 +63,20 @@ TEST(maps)
     refuses(text, size, "density=rho", "NAME one of");
     refuses(text, size, "P=P,rho", "NAME one of");
     refuses(text, size, "=rho", "NAME one of");
-    for (size_t c = 1; c < t.columns; c++) { /* called twice */
+    for (size_t c = 1; c < t.columns; c++) { /* two columns with one name */
         struct table twice = t;
         char says[80];
         strcpy(twice.name[c], "X");
         snprintf(says, sizeof says, "columns 'x' and 'X' both look like x");
         refuses(text, text_of(&twice, text, -1, -1, NULL), NULL, says);
         if (t.meaning[c] != OTHER) continue;
-        reads(&twice, "x=x", &file); /* which one is meant is said */
+        reads(&twice, "x=x", &file); /* the map says which one is meant */
         snapshot_file_free(&file);
     }
     struct table typed = table_of(1, true);
     strcpy(typed.name[0], "itype");
     refuses(text, text_of(&typed, text, -1, -1, NULL), NULL, "two columns are called 'itype'");
-    char map[80], says[80]; /* of long names the beginning is said */
+    char map[80], says[80]; /* messages quote the beginning of long names */
     for (int more = 0; more < 2; more++) {
         snprintf(map, sizeof map, "rho=%0*d", 40 + more, 0);
         snprintf(says, sizeof says, "has no column '%040d'; it has", 0);
@@ -87,7 +87,7 @@ TEST(maps)
     refuses(text, text_of(&unknown, text, -1, -1, NULL), NULL, "no x; found: m rho u P");
 }
 
-/* ---- faults at one place ---- */
+/* ---- one wrong value ---- */
 
 TEST(spoilt)
 {
@@ -128,7 +128,7 @@ TEST(spoilt)
     }
 }
 
-/* Of any particle, the first and the last among them. */
+/* Of any particle, including the first and the last. */
 TEST(values)
 {
     static char text[TEXT_MAX];
@@ -172,7 +172,7 @@ TEST(no_files)
         snapshot_file_free(&file);
         if (status != STATUS_BAD_INPUT || !strstr(error.message, rows[k].says))
             fail_msg("status %d: %s", (int)status, error.message);
-        const int still = open("/dev/null", O_RDONLY); /* nothing is left open */
+        const int still = open("/dev/null", O_RDONLY); /* no file stays open */
         close(still);
         assert_int_equal(still, next);
     }
@@ -205,7 +205,7 @@ TEST(heads)
         {"x\x7f,vx\n1,2\n", "no snapshot that is read"},
         {"\n\x1f\x7f", "no snapshot that is read"}};
     char text[8000] = "";
-    static const char *const needed[] = {"x", "vx", "m", "rho"}; /* each of them */
+    static const char *const needed[] = {"x", "vx", "m", "rho"}; /* every one of them */
     for (int k = 0; k < 4; k++) {
         char says[80], head[40];
         snprintf(says, sizeof says, "no %s; found:", needed[k]);
@@ -217,7 +217,7 @@ TEST(heads)
     }
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         refuses(rows[k].text, strlen(rows[k].text), NULL, rows[k].says);
-    for (int more = 0; more < 2; more++) { /* 64 columns, of 47 letters */
+    for (int more = 0; more < 2; more++) { /* 64 columns; names of 47 characters */
         size_t at = 0;
         for (int c = 0; c < 64 + more; c++)
             at += (size_t)sprintf(text + at, "%sc%d", c ? "," : "", c);
@@ -227,14 +227,14 @@ TEST(heads)
         at = 47 + (size_t)more + (size_t)sprintf(text + 47 + more, " x\n");
         refuses(text, at, NULL, more ? "of 1 to 47 letters" : "no vx");
     }
-    memset(text, ' ', sizeof text); /* only its beginning is asked whether it is text */
+    memset(text, ' ', sizeof text); /* only the beginning decides whether a file is text */
     text[4096] = '\x01';
     refuses(text, 4097, NULL, "no x");
     text[4095] = '\x01';
     refuses(text, 4097, NULL, "no snapshot that is read");
 }
 
-/* ---- legacy files of VTK ---- */
+/* ---- legacy VTK files ---- */
 
 #define HEAD  "# vtk DataFile Version 3.0\nparticles\n"
 #define ASCII HEAD "ASCII\n"

@@ -19,9 +19,9 @@ static const struct {
 
 struct document {
     enum form form;
-    bool big, wide, single, base64; /* base64: of appended bytes */
-    bool odd;                       /* attributes as no writer that we know has them */
-    int ends;                       /* numbers of the box: two for each direction */
+    bool big, wide, single, base64; /* base64: encoding of appended bytes */
+    bool odd;                       /* valid attributes that no known writer uses */
+    int ends;                       /* numbers of the box: two per direction */
     double value[ARRAYS][3 * ROWS];
     char text[BYTES_MAX], appended[BYTES_MAX];
     size_t length, bytes;
@@ -55,7 +55,7 @@ static size_t put(const struct document *d, unsigned char *to, const void *numbe
     return size;
 }
 
-/* The size of the bytes, then the bytes, as they stand in the file. */
+/* An array as in the file: the number of bytes, then the bytes. Returns the length. */
 static size_t packed(const struct document *d, int a, bool base64, char *to)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -115,7 +115,7 @@ static void add_array(struct document *d, int a)
     add(d, "</DataArray>\n");
 }
 
-/* Letters as their numbers, of which those that are none are left out; nine as components. */
+/* Text as character codes, where invalid codes are skipped; nine as components. */
 static const struct {
     const char *name, *numbers;
     int count;
@@ -187,7 +187,7 @@ TEST(every_form)
     }
 }
 
-/* ---- wrong at one place ---- */
+/* ---- one fault ---- */
 
 #define ZEROS "000000000000000000000000000000000000000000000000000000000000" /* 60 of them */
 
@@ -232,7 +232,7 @@ static const struct {
     {APPENDED, "offset=\"0\"", "offset=\"1000000\"",
      "'Points' has the offset '1000000'; allowed: 0 to"},
     {APPENDED, "offset=\"0\"", "offset=\"-1\"", "'Points' has the offset '-1'; allowed: 0 to"},
-    /* longer than any word, and as long as one may be */
+    /* longer than the longest word, and as long */
     {APPENDED, "offset=\"0\"", "offset=\"" ZEROS "0000\"", "'Points' has the offset ''"},
     {APPENDED, "offset=\"0\"", "offset=\"-" ZEROS "01\"", "'Points' has the offset '-0"},
     {APPENDED, "offset=\"0\"", "offset=\"4\"", "bytes; its points need 216"},

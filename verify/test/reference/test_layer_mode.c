@@ -61,8 +61,8 @@ TEST(units_are_those_of_the_header)
     }
 }
 
-/* Gas without a layer has no growing mode, by either method; nor have waves that are much shorter
- * than their layer is thick. */
+/* Gas without a layer has no growing mode, by either method; nor do waves much shorter than the
+ * layer's thickness. */
 TEST(nothing_grows)
 {
     const struct layer still[] = {{1.4, 3, 0.2, 1.3, 0, 0, 1.7, 0, false, 0.6, false},
@@ -74,7 +74,7 @@ TEST(nothing_grows)
     assert_true(!(cimag(layer_mode_collocation(&still[0], 16)) >= 1e-6));
 }
 
-/* With units of time that are 2^e times as long, and of density, 2^b times as much. */
+/* The unit of time is multiplied by 2^e and that of density by 2^b. */
 TEST(units_do_not_matter)
 {
     static const struct {
@@ -100,8 +100,8 @@ TEST(units_do_not_matter)
     }
 }
 
-/* Weak gravity moves gas as slowly as it does where nothing is compressed: the growth goes with its
- * root. What would take 1e8 sound times is round-off. */
+/* With weak gravity gas is nearly incompressible: the growth rate is proportional to the root of
+ * gravity. A growth time of 1e8 sound times is below round-off. */
 TEST(slow_growth_is_known_as_far_as_it_can_be)
 {
     struct layer layer = layers[4];

@@ -26,7 +26,7 @@ TEST(couette_by_images)
     near_below(fabs(liquid_poiseuille(0.3, 100) - 0.5 * 0.3 * 0.7), 1e-15);
 }
 
-/* Means by midpoints. */
+/* Means by the midpoint rule. */
 TEST(means)
 {
     enum { PARTS = 4000 };
@@ -77,8 +77,8 @@ TEST(poiseuille_by_differences)
     }
 }
 
-/* Free of sources and of rotation, nothing through the bottom, and at the surface the condition of
- * pressure: omega^2 phi = g dphi/dy, for phi with grad phi = v: phi = cosh(k y) cos(k x)/(k sinh(k
+/* The velocity is free of sources and of rotation, vanishes at the bottom along y, and obeys
+ * omega^2 phi = g dphi/dy at the surface, where v = grad phi and phi = cosh(k y) cos(k x)/(k sinh(k
  * H)). */
 TEST(waves)
 {

@@ -60,7 +60,7 @@ TEST(test_disc)
         near_absolute(s.v_out - 21 * r / 64, 0, 1e-14);
         near_absolute(s.v_along - 2 * r / 64, 0, 1e-14);
     }
-    assert_true(disc_sample(2, 1.5, 1, 0).rho == 1); /* the edge is of the disc */
+    assert_true(disc_sample(2, 1.5, 1, 0).rho == 1); /* the edge belongs to the disc */
     assert_true(disc_sample(2, 1.5, nextafter(1, 2), 0).rho == 0);
 }
 
@@ -69,7 +69,7 @@ TEST(test_noh)
     for (int d = 1; d <= 3; d++) {
         struct noh_state s = noh_sample(3, d, nextafter(0.25, 0), 0.25); /* gamma = 3: R = t */
         assert_true(s.rho == pow(2, d) && s.v == 0 && s.P == s.rho);
-        s = noh_sample(3, d, 0.25, 0.25); /* at the shock: ahead of it */
+        s = noh_sample(3, d, 0.25, 0.25); /* the shock itself has the state ahead of it */
         assert_true(s.rho == pow(2, d - 1) && s.v == -1 && s.P == 0);
         s = noh_sample(1.5, d, 0.5, 1);
         near_relative(s.rho, pow(3, d - 1), 1e-15);
@@ -140,7 +140,7 @@ static void other_handler(const char *reason, const char *file, int line, int nu
     (void)reason, (void)file, (void)line, (void)number;
 }
 
-/* What is integrated may depend on the place. GSL's handler of errors is whose it was. */
+/* The integrand may depend on the position. GSL's error handler is restored. */
 TEST(test_sedov_integral)
 {
     struct sedov s;
@@ -152,8 +152,8 @@ TEST(test_sedov_integral)
     assert_true(gsl_set_error_handler(before) == other_handler);
 }
 
-/* At the shock the jump of a strong shock; ahead of it the gas as it was; in the middle no density
- * and a pressure, held inside of a part of 1e-12. */
+/* At the shock the jump of a strong shock; ahead of it the undisturbed gas; in the middle no
+ * density and a pressure that is constant below 1e-12 of the radius. */
 TEST(test_sedov_ends)
 {
     for (int d = 1; d <= 3; d++) {
@@ -218,7 +218,7 @@ TEST(test_sedov_inside)
     }
 }
 
-/* At every place of every blast the search ends, and finds no denser gas than right behind the
+/* The search ends at every position of every blast, and finds no gas denser than that behind the
  * shock. */
 TEST(test_sedov_anywhere)
 {
@@ -244,7 +244,7 @@ TEST(test_sedov_anywhere)
 
 TEST(test_layers_of_mcnally)
 {
-    for (int i = 0; i <= 103; i++) { /* exactly on where they join, and right behind */
+    for (int i = 0; i <= 103; i++) { /* exactly where layers join, and right behind */
         const double y = i <= 100 ? i / 100. : 0.25 * (i - 100) * (1 + 9e-7), x = 0.013 * i;
         const double from = fabs(y - (y < 0.5 ? 0.25 : 0.75)), fall = 0.5 * exp(-from / 0.025);
         const double step = y > 0.25 && y < 0.75 ? 1 - fall : y == 0.25 || y == 0.75 ? 0.5 : fall;
@@ -254,7 +254,7 @@ TEST(test_layers_of_mcnally)
         near_absolute(s.v[1] - 0.01 * sin(4 * M_PI * x), 0, 1e-15);
         assert_true(s.P == 2.5);
     }
-    enum { N = 7 }; /* and one behind them */
+    enum { N = 7 }; /* and one more */
     const double x[] = {0.1, 0.23, 0.37, 0.52, 0.68, 0.77, 0.95, 0.4},
                  y[] = {0.2, 0.3, 0.55, 0.8, 0.4, 0.5 + 2e-7, 0.26, 0.5},
                  v[] = {1, -2, 3, 1.5, -1, 0.5, 2, 9}, w[] = {1, 2, 1.5, 0.5, 3, 100, 2, 9};
@@ -276,7 +276,7 @@ TEST(test_table_of_mcnally)
         {0, 1e-2},
         {0.7, 1.935984506048611e-2},
         {1.5, 1.479463247047325e-1},
-        /* natural cubic splines of ln M, solved in multiple precision */
+        /* natural cubic splines of ln M, computed in multiple precision */
         {0.05, 0.00950626600005055141},
         {0.333, 0.00825700128086381176},
         {0.77, 0.0242911217036157891},
@@ -349,7 +349,7 @@ TEST(test_layer_bases)
         assert_true(b.P == 1.7);
         near_relative(b.c2, 1.4 * 1.7 / b.rho, 1e-14);
     }
-    /* far out, beyond what cosh can say: P = P0 - g (rho y + step (|y| - width ln 2)) */
+    /* far out, where cosh overflows: P = P0 - g (rho y + step (|y| - width ln 2)) */
     struct layer far = heavy;
     far.g = 1e-4;
     near_relative(layer_base(&far, 100).P, 1.7 - 1e-4 * (130 + 0.2 * (100 - 0.07 * M_LN2)), 1e-14);

@@ -8,7 +8,7 @@
 #include "riemann.h"
 #include "riemann_property.h"
 
-/* Any double at all: special values, random bits, 600 decades. */
+/* Any double: special values, random bits, 600 decades. */
 static double anything(gsl_rng *random)
 {
     static const double special[] = {0,        -0.0,      1,        DBL_MIN,   DBL_MAX,
@@ -33,7 +33,7 @@ static bool in_order(double a, double b, double c)
     return a <= b && b <= c;
 }
 
-/* Whatever comes in: refused, or a solution that makes sense, whose samples make sense. */
+/* Any input is refused or has a solution with valid values, whose samples are valid. */
 TEST(test_anything)
 {
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
@@ -97,8 +97,8 @@ TEST(test_equal_states)
     }
 }
 
-/* The same problem in units of velocity of 2^e: p* goes with 2^(2 e), also below the least normal
- * number, where it says so. */
+/* The same problem with a unit of velocity of 2^e: p* scales with 2^(2 e), also below the least
+ * normal number, where the solution is marked as underflown. */
 TEST(test_underflow)
 {
     static const int exponents[] = {-100, -500, -509, -511, 300};
@@ -119,7 +119,7 @@ TEST(test_underflow)
     }
 }
 
-/* It is said of a density, too, whichever side it is on: thin gas that runs away from a wall. */
+/* The mark also stands for a density on either side: thin gas that moves away from a wall. */
 TEST(test_underflow_of_one_side)
 {
     for (int side = -1; side <= 1; side += 2) {
@@ -142,11 +142,11 @@ TEST(test_cold_gas)
     near_relative(s.rho_star_left, 4, 1e-14);
     near_relative(s.right_head, 1. / 3, 1e-14);
     assert_true(s.v_star == 0);
-    /* parting cold gases leave vacuum at once; cold gas at rest stays */
+    /* cold gases that move apart leave vacuum at once; cold gas at rest stays */
     assert_true(solved(1.4, out, in).vacuum);
     const struct riemann_solution still = solved(1.4, in, in);
     assert_true(!still.vacuum && still.p_star == 0 && still.v_star == 1);
-    /* hot gas runs into cold gas: an infinitely strong shock */
+    /* hot gas expands into cold gas: an infinitely strong shock */
     const struct riemann_solution mixed =
         solved(1.4, (struct riemann_state){1, 0, 1}, (struct riemann_state){1, 0, 0});
     assert_int_equal(mixed.right_wave, RIEMANN_SHOCK);
@@ -154,8 +154,8 @@ TEST(test_cold_gas)
     near_below(riemann_defects_of(&mixed).energy, 1e-14);
 }
 
-/* Hot gas, at rest or moving, beside cold gas: its rarefaction and a strong shock of one pressure
- * and one velocity, found by bisection. */
+/* Hot gas, at rest or moving, beside cold gas: the rarefaction and the strong shock have one
+ * pressure and one velocity, found by bisection. */
 TEST(test_hot_beside_cold)
 {
     for (int k = 0; k < 8; k++) {
@@ -164,7 +164,7 @@ TEST(test_hot_beside_cold)
         const struct riemann_solution s = solved(gamma, hot, cold),
                                       t = solved(gamma, cold, (struct riemann_state){1.5, -v, 2});
         const double z = (gamma - 1) / (2 * gamma), c = sqrt(gamma * 2 / 1.5);
-        double lo = 0, hi = 1e3; /* more pressure: slower on the left, faster on the right */
+        double lo = 0, hi = 1e3; /* higher p: slower on the left, faster on the right */
         for (int i = 0; i < 200; i++) {
             const double p = 0.5 * (lo + hi), behind = sqrt(2 * p / ((gamma + 1) * rho));
             const double left =
@@ -180,8 +180,9 @@ TEST(test_hot_beside_cold)
     }
 }
 
-/* Hot gas that almost parts from very heavy cold gas at rest: both move, as slowly as the heavy one
- * can be pushed, v = sqrt(2 p/((gamma + 1) rho)); the light one's own motion is known worse. */
+/* Hot gas that almost separates from very heavy cold gas at rest: both move with v = sqrt(2
+ * p/((gamma + 1) rho)), the speed of the heavy gas; along the fan of the light gas it is less
+ * precise. */
 TEST(test_heavy_beside_light)
 {
     const double gamma = 1.4, c = sqrt(1.4), apart = 2 * c / (gamma - 1);
@@ -195,13 +196,13 @@ TEST(test_heavy_beside_light)
             near_relative(s.v_star, pushed, 1e-14);
             near_relative(s.right_head, 1.2 * pushed, 1e-14);
             assert_true(t.v_star == -s.v_star && t.left_head == -s.right_head);
-            /* and along the fan */
+            /* along the fan */
             const double jump = apart * (1 - pow(s.p_star, 1. / 7));
             near_absolute(v + jump - s.v_star, 0, 1e-13);
         }
 }
 
-/* Cold gases that meet: in units of velocity of 2^e all has the same bits. */
+/* Cold gases that collide: the bits are the same in units of velocity of 2^e. */
 TEST(test_cold_in_other_units)
 {
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
@@ -228,7 +229,7 @@ TEST(test_sample_regions)
     assert_true(at.rho == 1);
     at = riemann_sample(&s, nextafter(0.25, 1), 0.25, 0);
     assert_true(at.rho == 0.125 && at.P == 0.1);
-    /* what lies on an edge */
+    /* exactly on a wave */
     at = riemann_sample(&s, s.contact, 0, 1);
     assert_true(at.rho == s.rho_star_left && at.v == s.v_star && at.P == s.p_star);
     assert_true(riemann_sample(&s, s.left_head, 0, 1).rho == 1);
@@ -261,7 +262,7 @@ TEST(test_vacuum_samples)
     assert_true(at.rho == 0 && at.v == 7);
     at = riemann_sample(&s, s.left_tail - 1e-3, 0, 1);
     assert_true(at.rho > 0 && at.rho < 1e-15 && at.P > 0);
-    /* where the gas ends, 3 - 2 3/(3 - 1), nothing is left */
+    /* at the front of the gas, 3 - 2 3/(3 - 1), the density is 0 */
     for (int side = -1; side <= 1; side += 2) {
         const struct riemann_state hot = {1, 3 * side, 3}, away = {0, 0, 0};
         s = side < 0 ? solved(3, hot, away) : solved(3, away, hot);
@@ -273,7 +274,7 @@ TEST(test_vacuum_samples)
     s = solved(1.4, none, none);
     at = riemann_sample(&s, 0, 0, 1);
     assert_true(s.vacuum && s.left_wave == RIEMANN_NONE && at.rho == 0);
-    /* opened in the middle: gas, fan, nothing, fan, gas */
+    /* with vacuum in the middle: gas, fan, vacuum, fan, gas */
     s = solved(1.4, (struct riemann_state){1, -5, 0.4}, (struct riemann_state){1, 5, 0.4});
     assert_true(riemann_sample(&s, -6, 0, 1).rho == 1);
     assert_true(riemann_sample(&s, -2, 0, 1).rho > 0);
@@ -300,7 +301,7 @@ TEST(test_bad_input)
                 {{1, nan, 1}, finite},
                 {{1, 0, inf}, finite},
                 {{1, -inf, 1}, finite},
-                {{1e308, 1e308, 1e308}, beyond} /* (on the right: they part) */};
+                {{1e308, 1e308, 1e308}, beyond} /* (on the right: the gases separate) */};
     const struct riemann_state good = {1, 0, 1};
     const double gammas[] = {1, 0.9, -2, nan, inf};
     struct riemann_solution s = {.gamma = 42};
@@ -309,12 +310,12 @@ TEST(test_bad_input)
         if (rows[i].fault != beyond)
             assert_string_equal(riemann_solve(1.4, &good, &rows[i].gas, &s), rows[i].fault);
     }
-    /* too fast is the head of the fan alone: c = 2e307 */
+    /* only the head of the fan is too fast: c = 2e307 */
     const struct riemann_state far = {3.5e-307, -1.7e308, 1e308}, none = {0, 0, 0},
                                back = {3.5e-307, 1.7e308, 1e308};
     assert_string_equal(riemann_solve(1.4, &far, &none, &s), beyond);
     assert_string_equal(riemann_solve(1.4, &none, &back, &s), beyond);
-    /* the left one's first */
+    /* the left state's fault comes first */
     assert_string_equal(riemann_solve(1.4, &rows[0].gas, &rows[4].gas, &s), negative);
     assert_string_equal(riemann_solve(1.4, &rows[4].gas, &rows[0].gas, &s), finite);
     for (size_t i = 0; i < sizeof gammas / sizeof *gammas; i++)
@@ -324,8 +325,9 @@ TEST(test_bad_input)
     assert_null(riemann_solve(1 + 1e-9, &good, &good, &s));
 }
 
-/* Two gases that meet gently: a shock of strength d = p* - P on both sides, by Hugoniot a root of
- * d^2 - (gamma + 1)/2 rho w^2 d - gamma P rho w^2. Just vacuum: at the speed at which it opens. */
+/* Two gases that collide gently: a shock of strength d = p* - P on both sides, by Hugoniot a root
+ * of d^2 - (gamma + 1)/2 rho w^2 d - gamma P rho w^2. Then gases at the speed at which vacuum
+ * forms. */
 TEST(test_gentle_and_parting)
 {
     for (int k = -14; k <= 0; k++)
@@ -337,20 +339,20 @@ TEST(test_gentle_and_parting)
             near_below(fabs(s.p_star - 1 - d), 3e-16 * (1 + d) + 1e-13 * d * d);
             near_below(fabs(s.v_star), 1e-18);
         }
-    /* of equal gases the mean velocity stays */
+    /* gases of equal state have the mean velocity */
     const struct riemann_state fast = {1, 0.75, 1}, slow = {1, 0.25, 1};
     assert_true(solved(1.4, fast, slow).v_star == 0.5);
     assert_true(solved(1.4, slow, fast).v_star == 0.5);
-    /* gamma = 3, c = 3: the gases part at 2 (c + c)/(gamma - 1) = 6 */
+    /* gamma = 3, c = 3: vacuum forms at 2 (c + c)/(gamma - 1) = 6 */
     const struct riemann_solution just =
         solved(3, (struct riemann_state){1, -3, 3}, (struct riemann_state){1, 3, 3});
     assert_true(just.vacuum && just.left_tail == 0 && just.right_tail == 0);
-    /* a difference of 6 - 2^-50, the next below 6: no rounding, whatever long double is */
+    /* a difference of 6 - 2^-50, the next below 6: exact for any long double */
     const struct riemann_solution nearly =
         solved(3, (struct riemann_state){1, -3, 3}, (struct riemann_state){1, 3 - 0x1p-50, 3});
     assert_false(nearly.vacuum);
-    /* gamma = 7: cold gas takes 1/2 of velocity from a pressure of 1, which the left gas has: its
-     * wave is of no strength, and as where all is at rest a rarefaction */
+    /* gamma = 7: cold gas reaches a velocity of 1/2 with a pressure of 1, which is that of the left
+     * gas: its wave has no strength and, as for gas at rest, counts as a rarefaction */
     const struct riemann_state pushes = {2, 0.5, 1}, waits = {1, 0, 0};
     const struct riemann_solution pushed = solved(7, pushes, waits);
     assert_true(pushed.p_star == 1 && pushed.v_star == 0.5 && pushed.rho_star_left == 2);

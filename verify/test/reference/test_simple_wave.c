@@ -34,8 +34,8 @@ TEST(test_breaking)
     near_relative(simple_wave_sample(&flat, 0.3, 1e6).rho, 2.385, 1e-15);
 }
 
-/* The steepest place is sought: 1/t is the greatest of
- * (gamma + 1)/2 c0 k A (1 + A s)^((gamma - 3)/2) sqrt(1 - s^2). */
+/* The breaking time at the steepest position: 1/t is the largest value of (gamma + 1)/2 c0 k A (1 +
+ * A s)^((gamma - 3)/2) sqrt(1 - s^2). */
 TEST(test_breaking_times)
 {
     static const double gammas[] = {1.1, 1.4, 2.2, 3, 5}, amplitudes[] = {1e-3, 0.25, -0.6, 0.95};
@@ -92,27 +92,26 @@ TEST(test_faults)
     }
 }
 
-/* Small numbers are none, and late ones neither. */
+/* Values beyond the range of double, and times before the start or infinite, give NaN. */
 TEST(test_beyond_double)
 {
     const struct simple_wave fast = {1.4, 1, 1e308, 1, 1e-3, 1};
-    assert_true(isnan(simple_wave_sample(&fast, 0.3, 5).rho)); /* moved: infinitely far */
+    assert_true(isnan(simple_wave_sample(&fast, 0.3, 5).rho)); /* moved infinitely far */
     assert_true(isnan(simple_wave_sample(&wave, HUGE_VAL, 0).rho));
     assert_true(isnan(simple_wave_sample(&wave, 0.3, -DBL_TRUE_MIN).rho));
     assert_true(isnan(simple_wave_sample(&wave, 0.3, (double)NAN).rho));
     assert_true(isfinite(simple_wave_sample(&wave, 0.3, 0).rho));
 }
 
-/* 1 to the left, -1 to the right, and between them no number. */
+/* 1 to the left, -1 to the right, NaN between. */
 static double torn(double x, void *parameters)
 {
     (void)parameters;
     return fabs(x) < 0.9 ? (double)NAN : x < 0 ? 1 : -1;
 }
 
-/* The search for a start ends: GSL's stops at what is no number, and whatever wave that is allowed
- * has values between its least and its greatest one at any time until it breaks, or, beyond the
- * range of double, none. */
+/* Every search for a starting point ends: GSL's stops at NaN, and any valid wave has values between
+ * its extremes at any time until it breaks, or NaN beyond the range of double. */
 TEST(test_every_search_ends)
 {
     gsl_function f = {torn, NULL};
