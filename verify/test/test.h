@@ -16,7 +16,8 @@
 
 #include "near.h"
 
-/* TEST(name) { ... } is a test without a state of cmocka's; it runs in its turn in the file. */
+/* TEST(name) { ... } defines a test without a state of cmocka's; tests run in the order of the
+ * file. */
 #define TEST(name)                                                                                 \
     static void name(void **state);                                                                \
     __attribute__((constructor)) static void test_add_##name(void)                                 \
@@ -25,7 +26,7 @@
     }                                                                                              \
     static void name(__attribute__((unused)) void **state)
 
-/* What is called before the first test of the file and after the last one (or NULL). */
+/* Functions (or NULL) that run before the first test of the file and after the last one. */
 #define TEST_BETWEEN(before, after)                                                                \
     __attribute__((constructor)) static void test_add_between(void)                                \
     {                                                                                              \
@@ -36,5 +37,5 @@
 void test_add(const char *name, CMUnitTestFunction function);
 void test_between(CMFixtureFunction before, CMFixtureFunction after);
 
-/* The k-th word behind the program's name, from 1. NULL: there is none. */
+/* The k-th argument of the test program, from 1; NULL: there is none. */
 const char *test_word(int k);

@@ -24,7 +24,7 @@
 #include "suite.h"
 #include "suite_output.h"
 
-/* GSL frees these itself: they do not count as pieces that are left. */
+/* GSL frees these itself, so that they do not count as blocks. */
 WRAP(gsl_rng_alloc, (const gsl_rng_type *type), (type), false)
 WRAP(gsl_qrng_alloc, (const gsl_qrng_type *type, unsigned dim), (type, dim), false)
 
@@ -52,7 +52,7 @@ static enum status fill(struct error *error)
     return status;
 }
 
-/* Shaken ones, and of equal masses. */
+/* A jittered lattice with equal masses. */
 static enum status created(struct error *error)
 {
     const struct problem problem = {.sample = gas_sample, .fill = initial_fill};
@@ -115,7 +115,7 @@ static enum status regular(struct error *error)
     return status;
 }
 
-/* All that comes before a run's first step; a glass is measured. */
+/* Everything before a run's first step; the quality of a glass is measured. */
 static enum status explained(struct error *error)
 {
     static struct run run;
@@ -136,7 +136,7 @@ TEST(places_of_particles)
     without_memory(equal, 3, true);
     without_memory(relaxed, 4, true);
     struct error error;
-    assert_int_equal(explained(&error), STATUS_OK); /* what it asks for once is there */
+    assert_int_equal(explained(&error), STATUS_OK); /* fills what stays allocated */
     without_memory(explained, 8, true);
     without_memory(relax_measured, 4, true);
     without_memory(regular, 4, true);
@@ -163,7 +163,7 @@ static enum status loaded(struct error *error)
     return case_load(&file, path, error);
 }
 
-/* The message lists the cases that there are, for which memory is needed. */
+/* The message lists the cases, which needs memory. */
 static enum status unknown(struct error *error)
 {
     static struct case_file file;
@@ -285,7 +285,7 @@ static enum status add_jobs(struct pool *pool, size_t n, struct error *error)
     return STATUS_OK;
 }
 
-/* More jobs than there is room for at first. */
+/* More jobs than the first capacity. */
 static enum status divided(struct error *error)
 {
     struct pool pool = {0};
@@ -310,7 +310,7 @@ static enum status computed(struct error *error)
     return status;
 }
 
-/* Eight particles on a line. */
+/* Eight particles in 1D. */
 static struct setup line_setup(double arrays[4][8])
 {
     struct setup setup = {.dim = 1,
@@ -342,7 +342,7 @@ static enum status rated(struct error *error)
     return status;
 }
 
-/* A snapshot for which there is no memory is left out; the next one is tried again. */
+/* A snapshot without memory is skipped; the next one is tried again. */
 static enum status set_aside(struct error *error)
 {
     double arrays[4][8];
@@ -364,8 +364,8 @@ static enum status set_aside(struct error *error)
     return error->status;
 }
 
-/* Widths that reach over many boxes need more ghosts, and pairs more scratch memory. A request that
- * was refused may be repeated. */
+/* Widths that reach over many boxes need more ghosts, and pairs more work memory. A request that
+ * failed may be repeated. */
 static enum status widened(struct error *error)
 {
     double arrays[4][8], rate;
@@ -377,7 +377,7 @@ static enum status widened(struct error *error)
     const struct line *line = line_of(simulation);
     assert_true(a->ghosts == 64);
     for (ptrdiff_t i = 0; i < 8; i++) a->h_inverse_found[i] = a->h_inverse_old[i] = 1. / 30;
-    simulation->scheme.eta = 60; /* so far is no runaway */
+    simulation->scheme.eta = 60; /* a width below the limit of runaway */
     status = widths_find(simulation, false, 0, error);
     if (!status) status = forces_sum(simulation, &rate, error);
     if (status) {
@@ -399,7 +399,7 @@ static enum status resumed(struct error *error)
     return checkpoint_load(&checkpoint, to_resume, &growth, error);
 }
 
-/* Without memory a sound file is not called damaged. */
+/* If memory is short, a valid file is not reported as damaged. */
 static void resume(void)
 {
     double arrays[4][8];
@@ -417,7 +417,7 @@ TEST(jobs_and_tables)
 {
     resume();
     without_memory(divided, 100, true);
-    without_memory(computed, 13, false); /* the reply is there when its end is looked for */
+    without_memory(computed, 13, false); /* the reply is complete when its end is looked for */
     without_memory(rated, 3, true);
     without_memory(set_aside, 3, true);
     without_memory(widened, 10, true);

@@ -11,11 +11,11 @@
 
 enum { WATCHED_FENCE = 128 }; /* bytes on either side; the first ones hold the size */
 
-static atomic_long watched_calls;  /* that asked for memory */
-static atomic_long watched_refuse; /* the number of the call that gets none; 0: all do */
-static atomic_long watched_live;   /* blocks that were not given back */
-static atomic_size_t watched_now, watched_most; /* bytes in use, and at most */
-static atomic_long watched_broken;              /* fences that were written to */
+static atomic_long watched_calls;               /* calls for memory */
+static atomic_long watched_refuse;              /* the number of the call that fails; 0: none */
+static atomic_long watched_live;                /* blocks that are not freed */
+static atomic_size_t watched_now, watched_most; /* bytes in use, and their maximum */
+static atomic_long watched_broken;              /* blocks with overwritten fences */
 
 void *__real_malloc(size_t size);
 void *__real_aligned_alloc(size_t alignment, size_t size);
@@ -90,7 +90,7 @@ void *__wrap_realloc(void *memory, size_t size)
     return larger;
 }
 
-/* Forgets what was counted; call number `refuse` gets nothing. */
+/* Resets the counts; call number `refuse` will fail. */
 static void watched_begin(long refuse)
 {
     watched_calls = watched_live = watched_broken = 0;

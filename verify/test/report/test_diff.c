@@ -32,7 +32,8 @@ static void problem_is(const char *command, const char *inside, const char *name
         }
 }
 
-/* Of a run's settings those that say what is computed; a scheme is what one wants to compare. */
+/* Only those settings of a run that say what is computed; schemes may differ, because they are
+ * compared. */
 TEST(settings_of_a_problem)
 {
     static const char *const scheme[] = {
@@ -50,7 +51,7 @@ TEST(settings_of_a_problem)
         problem_is("run", "settings", problem[i], true);
 }
 
-/* Of other documents what they are about; of a run its case and mode alone. */
+/* The subject of other documents; for a run only its case and mode. */
 TEST(members_of_a_problem)
 {
     static const struct {

@@ -36,8 +36,8 @@ static void add_json(struct buffer *to, json_t *document)
     json_decref(document);
 }
 
-/* A document as it may be after a change: figures moved by nothing, little and much, words others,
- * members gone. */
+/* A document as after a change: figures changed by nothing, little or much, words replaced, members
+ * removed. */
 static json_t *changed(struct made_draw *draw, const json_t *of, const char *name)
 {
     static const double factors[] = {1,         1,      1,      1,    1,   1.0000000005,
@@ -73,7 +73,7 @@ static json_t *changed(struct made_draw *draw, const json_t *of, const char *nam
     return json_deep_copy(of);
 }
 
-/* What a function prints on standard output, added to a text. */
+/* Adds the printed output of diff to a text. */
 static void add_printed(struct buffer *to, const struct diff *diff, bool exact, bool color)
 {
     char text[4096];
@@ -139,7 +139,7 @@ TEST(diffs)
     json_decref(template);
 }
 
-/* Nights of one document that changes by and by; other modes and damaged lines between them. */
+/* Nights of one document that changes gradually; other modes and damaged lines between them. */
 TEST(histories)
 {
     json_t *template = made_template(test_word(1), "figures.json");
@@ -186,7 +186,7 @@ TEST(histories)
     json_decref(template);
 }
 
-/* Levels with scatter, odd nights and steps. */
+/* Levels with scatter, outliers and steps. */
 TEST(series)
 {
     struct made_kept kept;

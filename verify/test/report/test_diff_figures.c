@@ -8,12 +8,12 @@
 
 #include "made_diff.h"
 
-/* ---- figures, both ways round ---- */
+/* ---- figures, in both directions ---- */
 
-/* A figure of each kind: at `good` and at `bad`. */
+/* A figure of each kind with a good and a bad value. */
 static const struct kind {
     const char *path, *inside, *good, *bad;
-    enum metric_verdict worse, better; /* from good to bad, and back */
+    enum metric_verdict worse, better; /* verdict from good to bad, and back */
     bool fault;                        /* a regression */
 } kinds[] = {
     {"error", NULL, "1e-3", "2e-3", VERDICT_WORSE, VERDICT_BETTER, true},
@@ -24,7 +24,7 @@ static const struct kind {
     {"cost.cpu_s", "cost", "1", "4", VERDICT_WORSE, VERDICT_BETTER, false},
     {"cost.wall_s", "cost", "1", "40", VERDICT_WORSE, VERDICT_BETTER, false},
     {"cost.steps", "cost", "100", "200", VERDICT_WORSE, VERDICT_BETTER, false},
-    /* its noise is the whole distance from 1: what comes nearer is the same */
+    /* its noise is its distance from 1: a smaller distance is the same */
     {"normalisation", NULL, "1", "1.5", VERDICT_WORSE, VERDICT_SAME, false},
     {"p_star", NULL, "1", "2", VERDICT_INCOMPARABLE, VERDICT_INCOMPARABLE, false},
     {"signal", NULL, "1", "\"nan\"", VERDICT_INCOMPARABLE, VERDICT_INCOMPARABLE, false},
@@ -44,7 +44,7 @@ static void add_figure(json_t *document, const struct kind *kind, const char *te
     put(document, kind->inside, dot ? dot + 1 : kind->path, text);
 }
 
-/* Each kind alone, in each pair of: not there, null, good, bad. */
+/* Each kind alone, for each pair of: missing, null, good, bad. */
 TEST(each_kind)
 {
     for (size_t f = 0; f < KINDS; f++) {
@@ -96,7 +96,7 @@ TEST(each_kind)
     json_decref(nans);
 }
 
-/* What stands exactly at a limit. */
+/* Values exactly at a limit. */
 TEST(limits)
 {
     static const struct {
@@ -133,7 +133,7 @@ TEST(limits)
         new.value = rows[k].b, new.noise = rows[k].other;
         if (metric_judge(&old, &new, &amount, &fault) != rows[k].verdict) fail_msg("row %zu", k);
     }
-    /* of entries that are alike a word is worse than a number */
+    /* among equal verdicts a word is worse than a number */
     const struct metric number = {.kind = READING_PART, .value = 1},
                         word = {.path = "status", .word = "pass"};
     assert_true(metric_worse(&word, &number) && !metric_worse(&number, &word));
@@ -141,7 +141,7 @@ TEST(limits)
 
 /* ---- names ---- */
 
-/* A document with a list `key` of one entry that is called by so many letters. */
+/* A document with a list `key` of one entry whose name has this many characters. */
 static json_t *called(const char *key, int letters, const char *command)
 {
     char name[1000];
@@ -151,8 +151,8 @@ static json_t *called(const char *key, int letters, const char *command)
                      "b", "reproduce", "b", "error", 3.);
 }
 
-/* What stands in a list is found again by its name, which has room for 898 letters; an object by
- * its path. */
+/* An entry of a list is identified by its name, of at most 898 characters, and an object by its
+ * path. */
 TEST(names)
 {
     struct diff diff;
@@ -161,14 +161,14 @@ TEST(names)
         assert_int_equal(differ(old, new, &diff), more ? STATUS_BAD_INPUT : STATUS_OK);
         diff_free(&diff);
         json_decref(old), json_decref(new);
-        /* two names, of which the first leaves no room */
+        /* two names, of which the first fills the field */
         old = called("errors", 896 + more, "a"), new = json_deep_copy(old);
         json_object_set_new(json_array_get(json_object_get(new, "errors"), 0), "name",
                             json_string("x"));
         assert_int_equal(differ(old, new, &diff), STATUS_BAD_INPUT);
         diff_free(&diff);
         json_decref(old), json_decref(new);
-        /* a path of 1535 letters and more */
+        /* a path of 1535 characters and more */
         old = json_pack("{s:s, s:f, s:{}}", "command", "run", "error_l1", 1., "e");
         json_t *inside = json_object_get(old, "e");
         for (int level = 0; level < 16; level++) {
@@ -182,7 +182,8 @@ TEST(names)
         diff_free(&diff);
         json_decref(old), json_decref(new);
     }
-    /* of skips and autopsies, which may be of one case twice, by what computes them */
+    /* entries of skips and autopsies of the same case are identified by the command that computes
+     * them */
     static const char *const keys[] = {"skips", "autopsies", "errors"};
     for (int k = 0; k < 3; k++) {
         char path[64];
@@ -195,10 +196,10 @@ TEST(names)
     }
 }
 
-/* ---- wholes and parts ---- */
+/* ---- totals and parts ---- */
 
-/* A whole that fails because its part does is no regression of its own, be it the first figure of
- * all or the last; one that fails alone is. */
+/* A total that fails because its part fails is not a regression of its own, be it the first figure
+ * or the last; one that fails alone is. */
 TEST(whole_and_part)
 {
     static const char *const wholes[] = {"outcome", "status"}, *const parts[] = {"studies", "runs"};
@@ -229,7 +230,7 @@ static const char *path_of(const struct difference *d)
     return d->new ? d->new->path : d->old->path;
 }
 
-/* Two of one rank, and one that says none (0). */
+/* Two of the same rank, and one without rank (0). */
 static const struct {
     const char *group, *name;
     int rank;
@@ -237,7 +238,7 @@ static const struct {
               {"hydro", "rates", 101},        {"gradients", "order", 250}, {"none", "such", 0}};
 enum { CHECKS = sizeof checks / sizeof *checks };
 
-/* Lists of checks and figures of all kinds, drawn: good or bad, there or not, before and after. */
+/* Random lists of checks and figures of all kinds: good, bad or missing, before and after. */
 static void drawn(json_t *document)
 {
     json_t *list = json_array(), *studies = json_array();
@@ -272,7 +273,8 @@ static void drawn(json_t *document)
     json_object_set_new(document, "studies", studies);
 }
 
-/* What vanishes one way is new the other way; what stays stays. */
+/* A figure that vanishes in one direction is new in the other one; the same figure stays the
+ * same. */
 TEST(both_ways_round)
 {
     static const enum metric_verdict back[] = {

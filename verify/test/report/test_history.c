@@ -21,7 +21,7 @@ enum { NIGHTS_MOST = 500, KEPT = 120 };
 static const char error_path[] = "studies[sod, ia].levels[n 400].errors.density.l1",
                   order_path[] = "studies[sod, ia].orders[density, l1].order";
 
-/* What a night says; a field that is NULL or NaN is missing in its line. */
+/* The results of a night; a field that is NULL or NaN is missing in its line. */
 struct night {
     const char *mode;
     char git[16], date[16];
@@ -77,7 +77,7 @@ static struct night usual_night(int number)
     return night;
 }
 
-/* A trend is of what the study is judged by, of the first that has errors and orders. */
+/* The trend is of the study's gated figure, and of the first study that has errors and orders. */
 static const json_t *trend_of(const json_t *history, const char *what)
 {
     const json_t *trends = json_object_get(history, "trends");
@@ -86,7 +86,7 @@ static const json_t *trend_of(const json_t *history, const char *what)
     return json_object_get(json_array_get(trends, 0), what);
 }
 
-/* Are these the history's nights, oldest first? `now` is the last of them. */
+/* Compares the history with these nights, oldest first; the last one is tonight. */
 static void same_nights(const json_t *history, const struct night *const *nights, size_t count)
 {
     const json_t *heads = json_object_get(history, "nights"), *errors = trend_of(history, "error"),
@@ -117,7 +117,7 @@ static void same_since(const json_t *history, const struct night *const *nights,
     }
 }
 
-/* Of however many nights the newest 120 are told, this one the last of them. */
+/* The newest 120 nights are kept, tonight the last of them. */
 TEST(the_newest_are_kept)
 {
     static const int counts[] = {0, 1, 2, 3, 118, 119, 120, 121, 122, 240, NIGHTS_MOST};
@@ -144,7 +144,7 @@ TEST(the_newest_are_kept)
     }
 }
 
-/* A history that cannot be opened: below a file there is none. */
+/* A history that cannot be opened: its path goes through a file. */
 TEST(no_place)
 {
     const struct night night = usual_night(1);
@@ -164,7 +164,8 @@ TEST(no_place)
     json_decref(results);
 }
 
-/* The change of one figure from `before` to `after` at night `at` of `count`, as it is told. */
+/* The change of one figure from `before` to `after` at night `at` of `count`, as the document has
+ * it. */
 static json_t *changed(const char *path, double before, double after, int at, int count)
 {
     FILE *file = fopen(path_of("history"), "w");
@@ -219,7 +220,7 @@ TEST(which_way_is_better)
             assert_string_equal(value_text(change, "git_before"), git);
             json_decref(history);
         }
-    /* within the noise nothing has changed: 1 % of an error, 0.03 of an order */
+    /* changes within the noise do not count: 1 % of an error, 0.03 of an order */
     for (int sign = -1; sign <= 1; sign += 2) {
         json_t *history = changed(error_path, 1e-3, 1e-3 * (1 + 0.009 * sign), 6, 12);
         assert_int_equal(json_array_size(json_object_get(history, "changes")), 0);
@@ -233,8 +234,8 @@ TEST(which_way_is_better)
     }
 }
 
-/* Faults first, then what has moved most, up or down, and what has no ratio before it; counts of
- * work last; by path where two have moved alike. */
+/* Faults come first, then the largest changes, up or down, and figures without a ratio; counts of
+ * work are last; equal changes are in the order of their paths. */
 static void in_order_of_since(const json_t *figures)
 {
     const json_t *figure, *last = NULL;
@@ -258,12 +259,11 @@ static void in_order_of_since(const json_t *figures)
     }
 }
 
-/* Since last night: each figure's verdict, what is a fault first, and how many there are of each.
- */
+/* Since last night: the verdict of each figure, faults first, and the number of each verdict. */
 TEST(since_says_which_way)
 {
     static const struct {
-        double error, order; /* last night; this night they are 1e-3 and 0.95 */
+        double error, order; /* last night's; tonight's are 1e-3 and 0.95 */
         const char *of_error, *of_order;
     } rows[] = {
         {1e-3, 0.95, "same", "same"},       {2e-3, 0.95, "better", "same"},
@@ -310,7 +310,7 @@ TEST(since_says_which_way)
         assert_string_equal(of_order, rows[r].of_order);
         for (size_t w = 1; w < sizeof words / sizeof *words; w++) {
             size_t count = 0;
-            if (w < 3) /* statuses are new, too: no line here has them */
+            if (w < 3) /* statuses are new as well: no line here has them */
                 json_array_foreach(figures, i, figure)
                     count += strcmp(value_text(figure, "verdict"), words[w]) == 0;
             if (w < 3) near_absolute(value_member(since, words[w]), (double)count, 0);
@@ -320,10 +320,10 @@ TEST(since_says_which_way)
     unlink(path_of("history"));
 }
 
-/* Nights without a figure do not count where it moves, nor are they a change. */
+/* Nights without a figure are no change, and do not move its night of change. */
 TEST(nights_that_lack_a_figure)
 {
-    for (int lacking = 0; lacking < 3; lacking++) { /* before the change, around it, at its night */
+    for (int lacking = 0; lacking < 3; lacking++) { /* before the change, around it, at it */
         FILE *file = fopen(path_of("history"), "w");
         struct night night;
         for (int i = 0; i < 15; i++) {

@@ -29,7 +29,7 @@ static void compare(struct made_kept *kept, const char *what, size_t number, str
     free(all);
 }
 
-/* Numbers to nine digits; what depends on the build and the day is left out. */
+/* Adds numbers to nine digits; members that depend on the build and the day are left out. */
 static void add_document(struct buffer *to, json_t *document)
 {
     static const char *const heads[] = {"version", "git",  "compiler", "flags",
@@ -58,8 +58,7 @@ static void write_text(const char *name, const char *text)
     fclose(file);
 }
 
-/* Some cheap pieces are computed: their documents are of the right kind, and hold what they should.
- */
+/* Computes some cheap pieces and verifies the kind and the length of their documents. */
 static void compute_some(struct pool *pool)
 {
     static const struct {
@@ -91,13 +90,12 @@ static void compute_some(struct pool *pool)
     }
 }
 
-/* Pieces that are dear in a report, made small: what they say of themselves, and what they refuse.
- */
+/* Expensive pieces of a report, made small: their documents, and the settings that they refuse. */
 TEST(small_pieces)
 {
     static const struct {
         struct report_piece piece;
-        const char *key, *command, *reproduce, *members[2]; /* command NULL: is refused */
+        const char *key, *command, *reproduce, *members[2]; /* command NULL: the piece is refused */
     } rows[] = {
         {{.kind = REPORT_AUTOPSY, .where = "yee", .keys = "eta=2.5", .sizes = "8^2,9^2,10^2,11^2"},
          "eta=2.5",
@@ -136,7 +134,7 @@ TEST(small_pieces)
     }
 }
 
-/* What errors cost, of studies of one case that are of a field or of a value. */
+/* The cost of errors, for studies of one case that measure a field or a value. */
 TEST(cost_of_codes)
 {
     json_t *results = json_pack(
@@ -160,8 +158,8 @@ TEST(cost_of_codes)
     json_decref(results);
 }
 
-/* Runs of cases, claims and kernels that pair have their settings, to six digits; of studies, which
- * have very many, there are tests of their own. */
+/* Adds the settings, to six digits, of runs of cases, claims and pairing; the many studies have
+ * tests of their own. */
 static void add_settings(struct buffer *to, const struct pool_job *job)
 {
     static const char *const names[] = {"profile of ", "rest_", "square,", "kelvin_", "rayleigh_"};
@@ -221,13 +219,13 @@ TEST(reports)
     add_document(&text, results);
     compare(&kept, "report", 0, &text);
     json_decref(results);
-    struct error *said = &pool->jobs[0].error; /* not a result */
+    struct error *said = &pool->jobs[0].error; /* without a result */
     *said = (struct error){STATUS_ENVIRONMENT, "no process"};
     assert_int_equal(report_judge(report, NULL, &results, &error), STATUS_ENVIRONMENT);
     assert_non_null(strstr(error.message, ": no process"));
     assert_null(results);
     said->status = STATUS_OK;
-    refuse(pool, "league of operators"); /* the others are judged all the same */
+    refuse(pool, "league of operators"); /* the other pieces are judged */
     assert_int_equal(report_judge(report, NULL, &results, &error), STATUS_OK);
     json_t *trouble;
     size_t k, told = 0;
@@ -235,16 +233,16 @@ TEST(reports)
         told += strcmp(value_text(trouble, "message"), "refused") == 0;
     assert_int_equal(told, 1);
     json_decref(results);
-    refuse(pool, "sod, n = 198"); /* a run of a study, which has no order without it */
+    refuse(pool, "sod, n = 198"); /* a run of a study, which has no order without this run */
     assert_int_equal(report_judge(report, NULL, &results, &error), STATUS_BAD_INPUT);
     assert_null(results);
     report_destroy(report);
-    report_destroy(planned(&kept, REPORT_NIGHTLY)); /* it would be judged as by day */
+    report_destroy(planned(&kept, REPORT_NIGHTLY)); /* judged as the daily one */
     made_close(&kept);
     json_decref(template);
 }
 
-/* ---- what is said of claims, and of kernels that pair ---- */
+/* ---- conclusions on claims and pairing ---- */
 
 static void all_say(json_t *list, const char *verdict)
 {
@@ -257,7 +255,7 @@ static void all_say(json_t *list, const char *verdict)
     json_decref(list);
 }
 
-/* Runs with what a claim speaks of come after those without. */
+/* Runs with the claimed scheme come after those without. */
 TEST(claims_in_words)
 {
     static const char *const figures[] = {"growth_rate", "velocity_rms"};
@@ -283,11 +281,11 @@ TEST(claims_in_words)
     pool_free(&pool);
 }
 
-/* Kernels pair, or not, where their transforms become negative, or elsewhere. */
+/* Kernels pair, or not, where their transforms are negative, or elsewhere. */
 TEST(pairing_in_words)
 {
     static const struct {
-        double others, wendland; /* pairs; NaN: the runs broke down */
+        double others, wendland; /* share of pairs; NaN: the runs broke down */
         const char *verdict, *of_cubic;
     } rows[] = {
         {(double)NAN, (double)NAN, "not shown: runs broke down", "all runs broke down"},

@@ -3,14 +3,14 @@
  * values are equal. (Movies themselves: movie.py.) */
 #include "test.h"
 
-/* its own text, of which the ranges are asked */
+/* the source itself, because its static functions are tested */
 #include "movie.c"
 
 TEST(curves)
 {
     static const double x[3] = {1, 2, 3};
     static const struct {
-        double y[3], low, high; /* the range after it; both 0: none */
+        double y[3], low, high; /* the range of the curve; both 0: none */
     } rows[] = {{{2, 2, 2}, 0, 0},
                 {{NAN, 2, 2 * (1 + 1e-5)}, 0, 0},
                 {{2, 2 * (1 + 3e-5), NAN}, 2 - 3e-6, 2 * (1 + 3e-5) + 3e-6},

@@ -6,7 +6,7 @@
 #include "page.h"
 #include "verdict.h"
 
-/* Of a check that fails the worst figure and 20 more are shown, then how many there are. */
+/* For a failed check the page shows the worst figure and 20 more, then the number of figures. */
 TEST(failing_figures)
 {
     for (int failing = 1; failing < 24; failing++) {

@@ -12,7 +12,7 @@
 
 enum { PAGES = 100 };
 
-/* The page, opened, without its style sheet and its script, and the files beside it. */
+/* The unfolded page without its style sheet and script, and the files beside it. */
 static char *whole(struct page *page)
 {
     size_t sealed;
@@ -39,7 +39,7 @@ static void compare(struct made_kept *kept, const char *what, size_t number, cha
     free(text);
 }
 
-/* As JSON, for JUnit, and in short. */
+/* The verdict as JSON, for JUnit, and in short. */
 static char *verdict_in_words(const json_t *results)
 {
     struct buffer text = {0};
@@ -90,8 +90,8 @@ TEST(pages)
     made_close(&kept);
 }
 
-/* Verdict, list of failures and JUnit file are of one mind, whatever is found; failures come by
- * rank, and each check once. */
+/* Verdict, list of failures and JUnit file agree for any results; failures are in the order of
+ * ranks, with each check once. */
 TEST(one_verdict)
 {
     json_t *template = made_template(test_word(1), "report.json");
@@ -101,7 +101,7 @@ TEST(one_verdict)
         json_t *results = made_document(&draw, json_object_get(template, "report"));
         static const char *const words[] = {"none",  "pass",         "fail", "known",
                                             "smoke", "undetermined", "skip", "odd"};
-        if (k % 2) { /* so little that it may be well */
+        if (k % 2) { /* so few results that none may fail */
             json_decref(results);
             results = json_pack("{s:[{s:s, s:s, s:[{s:s}]}]}", "runs", "case", "a", "status",
                                 k % 3 ? "ok" : "broke_down", "gates", "status",
@@ -120,7 +120,7 @@ TEST(one_verdict)
                 const json_t *a = json_array_get(failures, j), *b = json_array_get(failures, i);
                 const json_t *one = json_object_get(a, "area"), *other = json_object_get(b, "area");
                 const bool check = !strcmp(json_string_value(other), "check");
-                /* checks come first, and each name of theirs once */
+                /* checks come first, and the name of each check once */
                 assert_true(!check || json_equal(one, other));
                 assert_false(check &&
                              json_equal(json_object_get(a, "name"), json_object_get(b, "name")));

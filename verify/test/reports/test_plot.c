@@ -89,14 +89,14 @@ TEST(inline_svg)
         assert_int_equal(occurrences(svg, " id=\""), occurrences(svg, prefix));
         snprintf(prefix, sizeof prefix, " href=\"#%s-", plots[k]->name);
         assert_int_equal(occurrences(svg, "href="), occurrences(svg, prefix));
-        /* text and axes take the page's colours */
+        /* text and axes have the page's colours */
         assert_null(strstr(svg, "\"black\""));
         assert_non_null(strstr(svg, "fill=\"currentColor\""));
         free(svg);
     }
 }
 
-/* Values that differ by round-off alone, or not at all, are a line in a plot, on either axis. */
+/* Values that are equal, or differ by round-off, are a straight line in a plot, on either axis. */
 TEST(one_value)
 {
     if (!have_gnuplot()) skip();
@@ -142,7 +142,7 @@ TEST(documents)
     free(bytes);
 }
 
-/* A logarithmic axis takes no range that it cannot have: it has that of the data. */
+/* A logarithmic axis ignores an invalid range and takes that of the data. */
 TEST(ranges_of_logarithms)
 {
     static const struct {
@@ -188,7 +188,7 @@ static enum process_status shell(const char *command, const char *input, size_t 
 
 enum { FILES = 64 };
 
-/* How many files are open, and the first number that is above all of them. */
+/* The number of open files; *above is one more than the largest descriptor. */
 static int open_files(int *above)
 {
     int count = 0;
@@ -197,7 +197,7 @@ static int open_files(int *above)
     return count;
 }
 
-/* A filter that answers before it has read, that reads nothing, that fails, dies, hangs. */
+/* A filter that answers before it reads, that reads nothing, that fails, dies, hangs. */
 TEST(processes)
 {
     int above = 0;
@@ -230,7 +230,7 @@ TEST(processes)
     assert_int_equal(process_filter(arguments, "", 0, 5, &output, message, sizeof message),
                      PROCESS_NOT_FOUND);
     buffer_free(&output);
-    /* where there is room for some of its pipes alone */
+    /* with descriptors for some of its pipes only */
     enum process_status status = PROCESS_FAILED;
     for (int room = 0; status; room++) {
         struct rlimit usual, limit;
@@ -239,19 +239,19 @@ TEST(processes)
         assert_int_equal(setrlimit(RLIMIT_NOFILE, &limit), 0);
         status = shell("exit 0", input, size, 60, &output, message, sizeof message);
         assert_int_equal(setrlimit(RLIMIT_NOFILE, &usual), 0);
-        if (!status) assert_true(above - files + room >= 6); /* others may be free below */
+        if (!status) assert_true(above - files + room >= 6); /* smaller descriptors may be free */
         if (status) assert_string_equal(message, "sh cannot be run: Too many open files");
         assert_int_equal(open_files(&above), files);
     }
     free(input);
-    /* none of this has changed how this process handles a broken pipe */
+    /* this process handles a broken pipe as before */
     sigset_t mask;
     sigprocmask(SIG_BLOCK, NULL, &mask);
     assert_false(sigismember(&mask, SIGPIPE));
 }
 
-/* A program that is kept answers each question; one that it fails takes neither its words nor its
- * end to the next. */
+/* A persistent program answers each question; after a failure neither its output nor its end is
+ * taken for the next answer. */
 TEST(questions)
 {
     char sh[] = "sh", c[] = "-c", message[512];
@@ -263,7 +263,7 @@ TEST(questions)
         enum process_status status;
         bool goes_on;
     } asked[] = {{"1\n", "1\nfile\n", PROCESS_OK, true},
-                 {"2\n", "2\n", PROCESS_OK, true}, /* the file has been read */
+                 {"2\n", "2\n", PROCESS_OK, true}, /* the program reads from the file */
                  {"die\n", "", PROCESS_FAILED, false},
                  {"stop\n", "bye\n", PROCESS_OK, false},
                  {"3\n", "3\n", PROCESS_OK, true}};
@@ -298,8 +298,8 @@ TEST(questions)
     fclose(file);
 }
 
-/* One gnuplot for many plots draws what one for each draws, and a plot that fails is the only one.
- */
+/* One gnuplot for many plots draws the same as one for each plot; a plot that fails does not affect
+ * the others. */
 TEST(pen)
 {
     if (!have_gnuplot()) skip();
@@ -342,7 +342,7 @@ TEST(missing_gnuplot)
     assert_non_null(strstr(message, "gnuplot-nox"));
 }
 
-/* Names of plots are ids and files, and fit on one page. */
+/* The names of plots are used as ids and as file names, and fit on one page. */
 TEST(names)
 {
     static const char *const made[][2] = {
@@ -366,7 +366,7 @@ TEST(names)
     }
 }
 
-/* What judges in the other tests must itself be able to fail. */
+/* The checks of markup in these tests can fail. */
 TEST(markup)
 {
     char fault[256];
@@ -379,7 +379,7 @@ TEST(markup)
     assert_non_null(markup_network("<img src=\"https://example.org/\"/>"));
 }
 
-/* Where a value is missing the line ends, and begins again after it. */
+/* The line ends before a missing value, and begins again after it. */
 TEST(gap)
 {
     static const double at[] = {1, 2, 3, 4, 5}, gapped[] = {1, 2, NAN, 4, 5};
@@ -399,7 +399,7 @@ TEST(gap)
     free(svg);
 }
 
-/* A unit of an image is as long on both axes; panels beside each other do not overlap. */
+/* An image has the same scale on both axes; panels beside each other do not overlap. */
 TEST(images)
 {
     static const double left[] = {0.5, 1.5, 2.5}, up[] = {1, 3}, z[] = {-1, 2, 3, 4, NAN, 6};

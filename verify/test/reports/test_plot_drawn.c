@@ -32,7 +32,7 @@ static const char *words(struct made_draw *draw)
     return toss(draw, 5) ? NULL : texts[made_below(draw, sizeof texts / sizeof *texts)];
 }
 
-/* Of a size that differs from panel to panel; some are not finite, equal, or nearly so. */
+/* Numbers of a magnitude that differs between panels; some are not finite, equal, or nearly so. */
 static void numbers(struct made_draw *draw, double *values, size_t n)
 {
     static const double sizes[] = {1, 1, 1, 1e-3, 300, 1e4, 1e-9};
@@ -44,7 +44,7 @@ static void numbers(struct made_draw *draw, double *values, size_t n)
     }
 }
 
-/* Ascending and positive, even or not. */
+/* Ascending positive numbers, evenly spaced or not. */
 static void centres(struct made_draw *draw, double *values, size_t n)
 {
     const double step = (double)(1 + made_below(draw, 16)) / 4;
@@ -91,7 +91,7 @@ static void draw_series(struct made_draw *draw, struct drawn *d, size_t p, size_
 
 static void draw_plot(struct made_draw *draw, struct drawn *d, struct plot *plot)
 {
-    const bool x_log = toss(draw, 2); /* a stack has one x axis */
+    const bool x_log = toss(draw, 2); /* stacked panels share their x axis */
     *d = (struct drawn){.ticks = {0.5, 200}};
     *plot = (struct plot){.name = toss(draw, 9) ? "it's" : "drawn",
                           .title = words(draw),
@@ -158,7 +158,7 @@ TEST(scripts)
 
 /* ---- SVG ---- */
 
-/* A tag with attributes as gnuplot has them, now and then a malformed one. */
+/* A tag with attributes as in gnuplot's output, sometimes malformed. */
 static void draw_tag(struct made_draw *draw, struct buffer *to, const char *name)
 {
     static const char *const attributes[] = {"fill='black'",
@@ -200,7 +200,7 @@ static void draw_tag(struct made_draw *draw, struct buffer *to, const char *name
 static void draw_particles(struct made_draw *draw, struct buffer *to)
 {
     static const char *const colors[] = {"rgb(0,114,178)", "rgb(213,94,0)", "black"};
-    for (size_t n = made_below(draw, 5); n > 0; n--) { /* one by one: arguments have no order */
+    for (size_t n = made_below(draw, 5); n > 0; n--) { /* arguments have no order */
         const size_t x = made_below(draw, 90), y = made_below(draw, 100);
         const char *size = toss(draw, 3) ? "1.5" : "0.75";
         const char *color = colors[made_below(draw, toss(draw, 2) ? 3 : 1)];
@@ -242,7 +242,7 @@ TEST(pictures)
         struct made_draw draw = {k, NULL};
         struct buffer raw = {0}, to = {0};
         if (!toss(&draw, 20)) buffer_add(&raw, "<?xml version='1.0'?>\n");
-        /* 32 groups may stand in one another */
+        /* groups may be nested 32 deep */
         const size_t deep = toss(&draw, 20) ? 31 + made_below(&draw, 3) : 0;
         draw_tag(&draw, &raw, toss(&draw, 40) ? "sgv" : "svg");
         buffer_add(&raw, ">");

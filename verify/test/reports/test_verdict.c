@@ -5,7 +5,8 @@
 
 #include "verdict.h"
 
-/* What alone makes a verdict: one figure that passed, one order, one run; faults do not. */
+/* Results that suffice for a verdict: one figure that passed, one order, one run; faults alone do
+ * not. */
 TEST(alone)
 {
     static const struct {
@@ -62,7 +63,7 @@ TEST(alone)
     }
 }
 
-/* A long subject is cut at the end of a word, whose comma goes as well. */
+/* A long subject is cut at the end of a word, and the comma after it is removed. */
 TEST(cut)
 {
     static const struct {

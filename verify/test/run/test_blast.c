@@ -38,7 +38,7 @@ TEST(gas_falls_in_a_ball)
                     const struct noh_state want = noh_sample(gamma, dim, r, t);
                     if (dim > 1 &&
                         (fabs(r - noh_shock(gamma, t)) < 1e-9 || fabs(r + t - radius) < 1e-9))
-                        continue; /* only on a line places are exact */
+                        continue; /* only in 1D are positions exact */
                     const bool gas = r < noh_shock(gamma, t) || r + t < radius;
                     for (int d = 0; d < 3; d++) near_absolute(have.v[d] - want.v * n[d], 0, 1e-14);
                     if (i == 0) assert_true(have.v[0] == 0);
@@ -58,7 +58,7 @@ TEST(gas_falls_in_a_ball)
     assert_true(p.window.lo[0] == -1 && p.window.hi[1] == 1 && p.window.radius == 0.25);
     p = prepared_of(&s, 2, "kind=noh|window=-0.125 0.25");
     assert_true(p.window.lo[0] == -0.125 && p.window.lo[1] == -1 && p.window.radius == 0);
-    /* particles of the ball alone, as many as asked for */
+    /* all particles lie in the ball, as many as requested */
     p = prepared_of(&s, 2, "kind=noh|lo=-1 -2|hi=1 2|n=900");
     struct initial initial = prepared_filled(&p, &s);
     double farthest = 0;
@@ -76,7 +76,7 @@ TEST(balls_last_until_their_edge_comes)
 {
     struct settings s;
     struct prepared p = prepared_of(&s, 1, "kind=noh|gamma=1.6|window=-0.125 0.25");
-    lasts_until(&p, 0.25); /* the far end counts */
+    lasts_until(&p, 0.25); /* the farther end counts */
     p = prepared_of(&s, 1, "kind=noh|gamma=1.6|window=-0.375 0.25");
     lasts_until(&p, 0.125);
     refused_late(&p, 0.25,
@@ -88,11 +88,11 @@ TEST(balls_last_until_their_edge_comes)
     p = prepared_of(&s, 2, "kind=noh|gamma=1.6|window_radius=0.25");
     lasts_until(&p, 0.25);
     for (int d = 0; d < 2; d++) p.window.lo[d] = -0.125 - 0.0625 * d, p.window.hi[d] = 0.0625;
-    p.window.radius = 0.25; /* its corners are nearer, 0.225 from the middle */
+    p.window.radius = 0.25; /* the window's corners are nearer, 0.225 from the middle */
     near_relative(last_time(&p), 0.5 - hypot(0.125, 0.1875), 1e-14);
     p.window.radius = 0;
     near_relative(last_time(&p), 0.5 - hypot(0.125, 0.1875), 1e-14);
-    p = prepared_of(&s, 3, "kind=noh|gamma=1.6|lo=9 19 29|hi=11 21 31"); /* off the origin */
+    p = prepared_of(&s, 3, "kind=noh|gamma=1.6|lo=9 19 29|hi=11 21 31"); /* not around the origin */
     for (int d = 0; d < 3; d++) p.window.lo[d] = 9.875 + 10 * d, p.window.hi[d] = 10.125 + 10 * d;
     p.window.radius = 0;
     near_relative(last_time(&p), 0.5 - 0.125 * sqrt(3), 1e-14);
@@ -114,9 +114,9 @@ TEST(collisions_are_measured)
                 near_relative(exactly(&p, "shock_radius", t), R, 1e-14);
             else
                 assert_true(exactly(&p, "shock_radius", t) == 0);
-            /* half-way to the gas ahead of the shock, pressed together by its way */
+            /* the mean of both densities at the shock's radius */
             const double level = 0.5 * (dense + pow(1 + 1 / 0.25, dim - 1));
-            for (int i = 0; i <= N; i++) { /* which the density falls through on its way outwards */
+            for (int i = 0; i <= N; i++) { /* the density crosses it along the radius */
                 double r = 0;
                 for (int d = 0; d < dim; d++) r = hypot(r, cloud.x[d][i] - 0.25);
                 cloud.m[i] = 2 * level * cloud.volume[i] / (1 + 3 * r);
@@ -132,11 +132,12 @@ TEST(collisions_are_measured)
                  k ? shells_mean(&p, &cloud.snapshot, 0.25 * R, 0.75 * R) : 1);
             same(measured(&p, "centre_density", &cloud.snapshot),
                  k ? shells_mean(&p, &cloud.snapshot, 0, 0.25 * R) : 1);
-            if (k == 1) /* there is somebody */
+            if (k == 1) /* the plateau has particles */
                 assert_true(measured(&p, "plateau", &cloud.snapshot) > 0);
             if (k) assert_true(measured(&p, "centre_density", &cloud.snapshot) > 0);
             if (k != 1) continue;
-            /* four, a millionth of the radius to either side of the limits of the plateau */
+            /* four particles, at a distance of 1e-6 of the radius inside and outside of either end
+             * of the plateau */
             const double x[] = {0.25 + 0.25 * R * (1 - 5e-7), 0.25 + 0.25 * R * (1 + 5e-7),
                                 0.25 + 0.75 * R * (1 - 5e-7), 0.25 + 0.75 * R * (1 + 5e-7)},
                          middle[] = {0.25, 0.25, 0.25, 0.25}, m[] = {1, 2, 4, 8},

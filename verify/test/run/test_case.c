@@ -53,14 +53,14 @@ TEST(everything)
     assert_true(b->field == FIELD_VELOCITY && b->norm == NORM_LINF);
     assert_true(b->gate.low == 0.5 && b->gate.high == 1 && b->gate.bound == 3);
     assert_string_equal(b->known.why, "it jumps");
-    /* what is not said */
+    /* defaults */
     if (parse(&file, HEAD, &error)) fail_msg("%s", error.message);
     for (size_t f = 0; f < FIELDS; f++) assert_true(file.fields[f] && !file.exact[f]);
     assert_true(file.bench && file.gate_count == 0 && file.ladder_count == 0);
     assert_true(file.quick_count == 0 && file.night_count == 0);
 }
 
-/* The line of a bad text is given by its number in it. */
+/* The file is refused with its line number and this message. */
 static void refused(const char *text, const char *message)
 {
     struct case_file file;
@@ -90,7 +90,7 @@ static void begins(const char *text, const char *message)
 #define ORDER_GATE      "least order, greatest order, bound; or "
 #define GATE            ORDER_GATE ERROR_GATE TWO_SIDES KNOWN
 
-/* A gate of a functional: the order that raises its bound, and the bound. */
+/* The gate of a functional: the order that raises its bound, and the bound. */
 TEST(functionals)
 {
     struct case_file file;
@@ -158,7 +158,7 @@ TEST(functionals)
         fail_msg("%s", error.message);
 }
 
-/* What schemes that are compared are held to: a bound, or how far they are known to fail. */
+/* Gates of compared schemes: a bound, or how far they are known to fail. */
 TEST(compared)
 {
     struct case_file file;
@@ -197,7 +197,7 @@ TEST(compared)
 #undef COMPARED
 }
 
-/* A bound of its own beyond the case's ladder. */
+/* A separate bound for runs finer than the case's ladder. */
 TEST(finer)
 {
     struct case_file file;
@@ -314,7 +314,7 @@ TEST(whole_files)
     refused("[case]\ntitle = a\ndimension = 1\nreference = simple_wave\n[initial]\nkind = riemann\n"
             "left = 1 0 1\nright = 1 0 2\n[run]\nt_end = 1\n",
             AT("4") "reference = simple_wave; allowed: riemann");
-    /* 180 characters are a line, with the ends that others write; one more is none */
+    /* a line may have 180 characters, also with other line ends, and not one more */
     memset(line, 'x', sizeof line);
     line[180 - strlen("title = ")] = '\0';
     const char *rest = strstr(HEAD, "dimension");
@@ -339,7 +339,7 @@ TEST(built_in_cases_are_sound)
     assert_true(n >= 6);
 }
 
-/* Damaged case files: never a crash, always OK or a message. */
+/* Damaged case files never crash: the status is OK or there is a message. */
 TEST(damaged_cases_are_survived)
 {
     static const char noise[] = "\n[]=;:# \t\r0aZ.,-\"";

@@ -19,7 +19,7 @@ static const char *path_of(const char *name)
     return path;
 }
 
-/* The built-in case of that name, filled up with empty lines to so many bytes. */
+/* Writes the built-in case of that name, padded with empty lines to this size. */
 static void write_case(const char *path, const char *name, size_t bytes)
 {
     FILE *file = fopen(path, "w");
@@ -44,7 +44,7 @@ TEST(built_in)
     assert_true(n > 10);
 }
 
-/* A word with a slash, or that ends in .ini, is a path; a file is not looked for by a name. */
+/* A word with a slash, or that ends in .ini, is a path; files are not searched by name. */
 TEST(paths)
 {
     struct case_file file;
@@ -78,7 +78,7 @@ static void refused(const char *name, const char *why)
     assert_string_equal(error.message, said);
 }
 
-/* A case file is read and closed again, whichever file descriptor it gets. */
+/* A case file is closed after reading, whichever file descriptor it gets. */
 TEST(descriptors)
 {
     struct case_file file;
@@ -102,9 +102,9 @@ TEST(no_case_files)
     refused(path_of("none.ini"), "No such file or directory");
     refused(folder, "Is a directory");
     assert_int_equal(mkfifo(path_of("pipe.ini"), 0600), 0);
-    refused(path_of("pipe.ini"), "not a regular file"); /* nobody writes to it */
+    refused(path_of("pipe.ini"), "not a regular file"); /* no process writes to it */
     unlink(path_of("pipe.ini"));
-    /* no larger than it may be, and by a byte */
+    /* the largest size allowed, and one byte more */
     struct case_file file;
     struct error error = {0};
     write_case(path_of("large.ini"), "sod", LARGEST);
@@ -112,11 +112,11 @@ TEST(no_case_files)
     write_case(path_of("large.ini"), "sod", LARGEST + 1);
     refused(path_of("large.ini"), "larger than 64 KiB: not a case file");
     unlink(path_of("large.ini"));
-    /* the system's own files have no size until they are read */
+    /* files of /proc have no size until they are read */
     struct stat is;
     if (stat("/proc/kallsyms", &is) == 0 && is.st_size == 0 && access("/proc/kallsyms", R_OK) == 0)
         refused("/proc/kallsyms", "larger than 64 KiB: not a case file");
-    /* nothing, and next to nothing */
+    /* empty, and a single byte */
     char empty[512];
     for (int n = 0; n < 2; n++) {
         FILE *file_of = fopen(path_of("short.ini"), "w");
@@ -132,7 +132,7 @@ TEST(no_case_files)
         snprintf(empty, sizeof empty, "%s", said);
     }
     unlink(path_of("short.ini"));
-    /* what is in a file is told of it */
+    /* messages about a file's contents name it */
     FILE *bad = fopen(path_of("bad.ini"), "w");
     assert_non_null(bad);
     fputs("[case]\nno such line\n", bad);
@@ -142,7 +142,7 @@ TEST(no_case_files)
     unlink(path_of("bad.ini"));
 }
 
-/* The message lists all cases, as far as it has room. */
+/* The message lists as many cases as fit. */
 TEST(unknown_names)
 {
     struct case_file file;
@@ -154,7 +154,7 @@ TEST(unknown_names)
     if (strncmp(error.message, said, strlen(said)) != 0) fail_msg("%s", error.message);
     assert_int_equal(case_load(&file, "sot", &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "no case 'sot'; did you mean 'sod'? allowed: "));
-    memset(name, 'a', sizeof name - 1); /* longer than any path that is made of it */
+    memset(name, 'a', sizeof name - 1); /* longer than any path made from it */
     name[sizeof name - 1] = '\0';
     assert_int_equal(case_load(&file, name, &error), STATUS_BAD_INPUT);
     assert_memory_equal(error.message, "no case 'aaaa", 13);

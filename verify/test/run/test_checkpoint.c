@@ -25,7 +25,7 @@ static int begin(void **state)
     (void)state;
     if (!mkdtemp(folder)) return 1;
     snprintf(path, sizeof path, "%s/state", folder);
-    memset(build, 'b', CHECKPOINT_WORD); /* as long as it may be */
+    memset(build, 'b', CHECKPOINT_WORD); /* the longest build */
     return 0;
 }
 
@@ -36,7 +36,7 @@ static int end(void **state)
     return rmdir(folder);
 }
 
-/* It is due so many seconds after it was last written, or after the first question. */
+/* A checkpoint is due this many seconds after it was last written, or after the first call. */
 TEST(when)
 {
     struct checkpoint checkpoint = {.every = 1000};
@@ -51,8 +51,7 @@ TEST(when)
     assert_true(checkpoint_due(&checkpoint));
     assert_true(checkpoint.written >= before && checkpoint.written <= clock_wall());
     assert_false(checkpoint_due(&checkpoint));
-    /* The clock counts from the start of the machine, so that negative times are allowed as
-     * well. */
+    /* The clock counts from the start of the machine, so negative times are allowed. */
     checkpoint.written = -checkpoint.every;
     assert_true(checkpoint_due(&checkpoint));
     checkpoint = (struct checkpoint){.every = 0};
@@ -67,7 +66,7 @@ static void saved(struct simulation *simulation)
     if (checkpoint.trouble.status) fail_msg("%s", checkpoint.trouble.message);
 }
 
-/* The message of a run that starts from the file. */
+/* Restores a state; the error is the message of a run that starts from the file. */
 static enum status loaded(struct checkpoint *checkpoint, struct simulation *simulation,
                           struct error *error)
 {
@@ -86,7 +85,7 @@ TEST(goes_on)
     struct simulation *self = made_simulation(40), *other = made_simulation(40);
     struct checkpoint checkpoint = usual();
     struct error error = {0};
-    unlink(path); /* no file: nothing happens */
+    unlink(path); /* without a file nothing happens */
     assert_int_equal(loaded(&checkpoint, other, &error), STATUS_OK);
     made_run(self, 0.05, NULL);
     saved(self);
@@ -142,13 +141,13 @@ TEST(damaged)
     snprintf(head, sizeof head, "sphproof-checkpoint/1 %s\n%s\n", build, usual().run);
     assert_memory_equal(bytes, head, strlen(head));
     const size_t body = strlen(head);
-    /* cut off; the last ones are of the checksum */
+    /* truncated; the last ones within the checksum */
     const size_t lengths[] = {body, body + 8, body + 9, (body + n) / 2, n - 8, n - 1};
     for (size_t k = 0; k < sizeof lengths / sizeof *lengths; k++) {
         write_all(bytes, lengths[k]);
         refused(usual(), "is damaged");
     }
-    write_all(bytes, body - 1); /* its second line has no end */
+    write_all(bytes, body - 1); /* the second line has no end */
     refused(usual(), "is damaged");
     const size_t places[] = {body, body + 1, (body + n) / 2, n - 9, n - 8, n - 1};
     for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
@@ -160,7 +159,7 @@ TEST(damaged)
     bytes[n] = 0;
     write_all(bytes, n + 1);
     refused(usual(), "is damaged");
-    for (size_t k = 0; k < 2; k++) { /* no such first line, or none */
+    for (size_t k = 0; k < 2; k++) { /* another first line, or none */
         write_all(k ? "" : "sphproof-checkpoint/2 bbb\n", k ? 0 : 26);
         refused(usual(), "is no checkpoint, or of another version");
     }
@@ -174,7 +173,7 @@ TEST(damaged)
     simulation_destroy(self);
 }
 
-/* Files whose checksum is right, and which are too short, or begin otherwise. */
+/* Files with a correct checksum that are too short, or have another beginning. */
 TEST(forged)
 {
     enum { LINE = (1 << 16) - 1 };
@@ -185,7 +184,7 @@ TEST(forged)
     const size_t n = read_all(bytes, sizeof bytes);
     snprintf(head, sizeof head, "sphproof-checkpoint/1 %s\n%s\n", build, usual().run);
     const size_t length = strlen(head), first = strcspn(head, "\n") + 1;
-    /* nothing, a letter, half a state */
+    /* empty, one byte, half of a state */
     const size_t bodies[] = {0, 1, (n - length) / 2};
     for (size_t k = 0; k < 3; k++) {
         const uint64_t sum = cache_hash(CACHE_HASH, bytes + length, bodies[k]);
@@ -196,9 +195,9 @@ TEST(forged)
         refused(usual(), k ? "is damaged, or too large" : "is damaged");
         memcpy(bytes + length + bodies[k], kept, 8);
     }
-    write_all(bytes, first); /* no second line */
+    write_all(bytes, first); /* without a second line */
     refused(usual(), "is damaged");
-    /* a sound state after a second line that is longer than any */
+    /* a valid state after a second line that is too long */
     memmove(bytes + first + LINE, bytes + length, n - length);
     memset(bytes + first, ' ', LINE);
     write_all(bytes, first + LINE + n - length);
@@ -206,7 +205,7 @@ TEST(forged)
     simulation_destroy(self);
 }
 
-/* The file is longer than what is read at once; a fault in any part of it is found. */
+/* A file longer than one read; a fault in any part is detected. */
 TEST(large_ones)
 {
     static char bytes[1 << 23];
@@ -231,7 +230,7 @@ TEST(large_ones)
     }
 }
 
-/* For the state of another build or run the message says what differs. */
+/* If a state is of another build or run, the message says what differs. */
 TEST(others)
 {
     static const struct {
@@ -252,7 +251,7 @@ TEST(others)
         snprintf(why, sizeof why, "is of another run: %s", rows[k].why);
         refused(checkpoint, why);
     }
-    /* of a key that is given twice the last value counts */
+    /* if a key is repeated, the last value counts */
     checkpoint.run = "{\"settings\": {\"n\": 1, \"n\": 50}}";
     refused(checkpoint, "is of another run: n is 40 there, 50 here");
     self = made_simulation(40);
@@ -263,7 +262,7 @@ TEST(others)
     self = made_simulation(40);
     saved(self);
     simulation_destroy(self);
-    checkpoint.run = "{}"; /* that asks for less */
+    checkpoint.run = "{}"; /* with fewer settings */
     refused(checkpoint, "is of another run");
     checkpoint = usual();
     for (size_t k = 0; k < 2; k++) {
@@ -274,10 +273,10 @@ TEST(others)
     }
 }
 
-/* A description of the run fills its line, and may not be longer. */
+/* The longest description of a run is accepted, and a longer one is refused. */
 TEST(long_runs)
 {
-    enum { MOST = (1 << 16) - 2 }; /* with the line's end and the text's */
+    enum { MOST = (1 << 16) - 2 }; /* the line's end and the terminating zero excluded */
     static char text[MOST + 2];
     for (size_t more = 0; more < 2; more++) {
         struct simulation *self = made_simulation(40);
@@ -297,8 +296,8 @@ TEST(long_runs)
     }
 }
 
-/* Where nothing can be written, the trouble is reported until it can; a file that cannot be opened
- * is refused. */
+/* While nothing can be written, the trouble is reported; a file that cannot be opened is
+ * refused. */
 TEST(no_room)
 {
     struct simulation *self = made_simulation(40);

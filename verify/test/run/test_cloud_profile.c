@@ -17,15 +17,15 @@ static const double now = 0.25;
 
 /* ---- the gas ---- */
 
-static bool around;              /* a flow about the centre, else one along x */
-static bool even;                /* the same everywhere */
-static double mark[2], off[4];   /* near this place in x and y: added to rho, v[0], v[1], P */
-static struct problem problem;   /* of which there is nothing but the sample */
-static struct run_result result; /* at `now`, with a boost */
+static bool around;              /* the flow is around the centre, not along x */
+static bool even;                /* the flow is uniform */
+static double mark[2], off[4];   /* near this x and y, add to rho, v[0], v[1], P */
+static struct problem problem;   /* has a sample function only */
+static struct run_result result; /* at time `now`, with a boost */
 
-static const double behind = 0.4921875; /* in the window */
+static const double behind = 0.4921875; /* a position in the window */
 
-/* Fails if a place behind the last particle is asked for, or if more than the boost is changed. */
+/* Fails for the position behind the last particle, and if more than the boost was changed. */
 static void sample(const struct prepared *p, const double at[3], double t, struct problem_state *s)
 {
     const double x = at[0] - centre[0], y = at[1] - centre[1],
@@ -34,14 +34,14 @@ static void sample(const struct prepared *p, const double at[3], double t, struc
     assert_true(t == now && p->boundary[0] == BOUNDARY_FIXED);
     *s = (struct problem_state){
         .rho = 2 + at[0], .v = {3 + at[0] * at[0], 0.5, 0.25}, .P = 5 - at[0]};
-    const double turn = p->domain.dim == 2 ? 1 + R : 0; /* round the centre; 2 - R away from it */
+    const double turn = p->domain.dim == 2 ? 1 + R : 0; /* azimuthal; the radial one is 2 - R */
     if (around)
         *s = (struct problem_state){
             .rho = 2 + R,
             .v = {(-y * turn + x * (2 - R)) / R, (x * turn + y * (2 - R)) / R, z * (2 - R) / R},
             .P = 5 - R};
     if (around && y == 0 && z == 0 && x < 0)
-        s->rho += 1; /* of the line along x only one half counts */
+        s->rho += 1; /* along the line x only one half counts */
     if (even) *s = (struct problem_state){.rho = 0x1p-10, .v = {around ? 0 : -1000}, .P = 1};
     if (!(fabs(at[0] - mark[0]) < 1e-6 && fabs(at[1] - mark[1]) < 1e-6)) return;
     s->rho += off[0], s->v[0] += off[1], s->v[1] += off[2], s->P += off[3];
@@ -49,8 +49,7 @@ static void sample(const struct prepared *p, const double at[3], double t, struc
 
 static double x[3][MANY + 1], v[3][MANY + 1], rho[MANY + 1], P[MANY + 1], h[MANY + 1];
 
-/* n particles at positions to which the boost has carried them, and one behind them that is
- * nowhere. */
+/* n particles at positions that include the boost, and one more at no position. */
 static void make(int dim, bool circular, size_t n)
 {
     around = circular;
@@ -87,7 +86,7 @@ static void make(int dim, bool circular, size_t n)
                                         .time = now};
 }
 
-/* Where particle i would be without the boost; is that in the window? */
+/* Position of particle i without the boost. Returns true if it lies in the window. */
 static bool place_of(size_t i, double at[3])
 {
     const struct window *window = &result.problem.window;
@@ -99,7 +98,7 @@ static bool place_of(size_t i, double at[3])
     return inside;
 }
 
-/* ---- what is looked at ---- */
+/* ---- what is compared ---- */
 
 static double number(const json_t *object, const char *name, size_t i)
 {
@@ -124,7 +123,7 @@ static const char *const along_x[] = {"density", "velocity", "pressure", NULL}, 
                                                                                     "radial",
                                                                                     "pressure"};
 
-/* Density, velocities and pressure of the gas at a place, as the curve has them. */
+/* Density, velocities and pressure of the gas at a position, as in the curve. */
 static void exact_at(const double at[3], double values[4])
 {
     double square = 0;
@@ -177,7 +176,7 @@ TEST(maps)
     }
 }
 
-/* Where only functionals are known there is neither an error nor a curve. */
+/* If only functionals are known there is neither an error nor a curve. */
 TEST(nothing_to_compare_with)
 {
     make(2, false, FEW);
@@ -189,8 +188,7 @@ TEST(nothing_to_compare_with)
     json_decref(profile);
 }
 
-/* Particles of the window in their order, and the curve from end to end of it, or from the centre.
- */
+/* Particles of the window in order, and the curve from end to end of it, or from the centre. */
 TEST(particles_and_the_curve)
 {
     for (int k = 0; k < 4; k++) {
@@ -250,8 +248,7 @@ TEST(particles_and_the_curve)
     }
 }
 
-/* If there are many particles, about 600 are kept, drawn by Knuth's generator instead of every k-th
- * one. */
+/* Of many particles about 600 are kept, drawn by Knuth's generator instead of every k-th one. */
 TEST(some_of_many)
 {
     uint64_t drawn = 1;
@@ -279,14 +276,14 @@ static bool has_a_curve(void)
     return curve;
 }
 
-/* One particle of an otherwise uniform gas has another value of one quantity, by a little less or
- * more than 1e-9, absolute and relative. */
+/* One particle of an otherwise uniform gas differs in one quantity, by a little less or more than
+ * 1e-9, absolute and relative. */
 TEST(what_is_no_function_of_the_coordinate)
 {
     for (int k = 0; k < 8; k++) {
         const int q = k % 4;
         const bool circular = k > 3;
-        if (!circular && q == 2) continue; /* of the velocity that along x */
+        if (!circular && q == 2) continue; /* only the velocity along x counts */
         for (int sign = -1; sign <= 1; sign += 2)
             for (int more = -1; more <= 1; more += 2) {
                 static const double rest[] = {0x1p-10, 0, 0, 1};
@@ -298,12 +295,12 @@ TEST(what_is_no_function_of_the_coordinate)
                 memset(off, 0, sizeof off);
                 off[q] = sign * 1e-9 * (1 + size) * (1 + more * (size == 1000 ? 1e-5 : 2e-7));
                 assert_int_equal(has_a_curve(), more < 0);
-                mark[0] = few[0][0], mark[1] = few[1][0]; /* beside the window */
+                mark[0] = few[0][0], mark[1] = few[1][0]; /* outside of the window */
                 off[q] = 1;
                 assert_true(has_a_curve());
             }
     }
-    make(2, true, FEW); /* at the bound itself it is still one */
+    make(2, true, FEW); /* a difference equal to the bound is allowed */
     even = true;
     x[0][1] = centre[0] + boost[0] * now;
     mark[0] = centre[0], mark[1] = few[1][1];
@@ -312,9 +309,9 @@ TEST(what_is_no_function_of_the_coordinate)
     assert_true(has_a_curve());
     off[2] = nextafter(off[2], 1);
     assert_false(has_a_curve());
-    make(3, true, MANY); /* in space nothing but round-off goes round the centre */
+    make(3, true, MANY); /* in 3D the azimuthal velocity is round-off */
     assert_true(has_a_curve());
-    /* each of 96 is looked at, of more every second one, and so on */
+    /* up to 96 particles are all compared, of more every second one, and so on */
     static const struct {
         size_t n, i;
         bool seen;
@@ -325,7 +322,7 @@ TEST(what_is_no_function_of_the_coordinate)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         make(2, false, rows[k].n);
         even = true;
-        x[1][rows[k].i] = boost[1] * now + 0.46875; /* where nobody else is */
+        x[1][rows[k].i] = boost[1] * now + 0.46875; /* away from the other particles */
         mark[0] = x[0][rows[k].i] - boost[0] * now, mark[1] = 0.46875;
         memset(off, 0, sizeof off);
         off[0] = 1;

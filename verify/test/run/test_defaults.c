@@ -11,7 +11,7 @@
 
 enum { ROWS = 32, CELL = 40 };
 
-/* A row of the first table after a header that begins with a word: up to five cells. */
+/* Up to five cells of a row of the first table whose header begins with a given word. */
 struct row {
     char cell[5][CELL];
 };
@@ -50,7 +50,7 @@ static const struct row *row_of(const struct table *table, const char *name)
     return NULL;
 }
 
-/* "1.5", "0.8/eta", "sinc_n/2" */
+/* Evaluates "1.5", "0.8/eta" or "sinc_n/2". */
 static double value_of(const char *cell, double eta, double sinc_n)
 {
     if (strcmp(cell, "sinc_n/2") == 0) return sinc_n < 5 ? 2.5 : sinc_n / 2;
@@ -60,7 +60,7 @@ static double value_of(const char *cell, double eta, double sinc_n)
     return *end ? value / eta : value;
 }
 
-/* The scheme of a case with these words; false where they exclude each other. */
+/* The scheme of a case with these words; false if they exclude each other. */
 static bool scheme_of(const struct run_settings *base, size_t n, const char *const *words,
                       struct run *run)
 {
@@ -79,7 +79,7 @@ static void is(double got, double want, const struct run *run, const char *what)
                  run->scheme.kernel.member.name, run->scheme.integrator->member.name);
 }
 
-/* Judges a scheme whose choices are made by what the keys' meanings say about auto. */
+/* Compares a scheme's defaults with those that the documentation states for auto. */
 static void judge(const struct run *run, int dim)
 {
     const struct scheme *s = &run->scheme;
@@ -117,7 +117,7 @@ static void judge(const struct run *run, int dim)
     assert_int_equal(s->integrator->evaluations, atoi(i->cell[2]));
 }
 
-/* Every kernel, integrator, gradient, formulation and viscosity of so many dimensions. */
+/* Every kernel, integrator, gradient, formulation and viscosity in this number of dimensions. */
 static void every_scheme(const char *name, int dim)
 {
     const struct run_settings base = keyed_case(name, "");
@@ -162,7 +162,7 @@ TEST(nothing_but_these)
     assert_int_equal(integrators.n, integrator_family.n);
 }
 
-/* A scheme without any choice, and choices that take long time steps away. */
+/* A scheme without keys, and choices that exclude long time steps. */
 TEST(nothing_chosen)
 {
     static const struct {
@@ -199,7 +199,7 @@ TEST(nothing_chosen)
         {{"viscosity=time_dependent", "alpha_max=0.8"}, 0.8},
         {{"kernel=cubic_spline", "alpha=0.5"}, 0.8},
         {{"gradient=ia", "alpha=0.5"}, 0.8},
-        {{"shifting=closed", "t_end=0.1"}, 1}, /* from here on in 2D */
+        {{"shifting=closed", "t_end=0.1"}, 1}, /* the rest are in 2D */
         {{"shifting=closed", "viscosity_form=mu"}, 0.8},
     };
     const size_t count = sizeof steps / sizeof *steps;
@@ -210,7 +210,7 @@ TEST(nothing_chosen)
     }
 }
 
-/* shifting=auto: closed for these problems, where nothing excludes it. */
+/* shifting=auto: closed for these problems, unless a key excludes it. */
 TEST(what_shifts)
 {
     enum { KEYS = 2 };
@@ -260,7 +260,7 @@ TEST(what_shifts)
     }
 }
 
-/* shock_conductivity=auto: of gas that viscosity heats. */
+/* shock_conductivity=auto: in gas that viscosity heats. */
 TEST(what_conducts)
 {
     static const struct {
@@ -290,7 +290,7 @@ TEST(what_conducts)
     }
 }
 
-/* sinc: half its exponent. */
+/* sinc: half of its exponent. */
 TEST(sinc)
 {
     const struct run_settings sod = keyed_case("sod", ""), rest = keyed_case("rest_2d", "");
@@ -309,9 +309,9 @@ TEST(sinc)
     }
 }
 
-/* --- what is refused -------------------------------------------------------------------------- */
+/* --- refused choices -------------------------------------------------------------------------- */
 
-/* A scheme of the given case's dimension with one member that is another. */
+/* A scheme of the case's dimension with one changed member is refused with this message. */
 static void with(const struct scheme *scheme, int dim, size_t member, double value,
                  const char *said)
 {
@@ -370,7 +370,7 @@ TEST(numbers_that_are_refused)
              dim > 1 ? NULL
                      : "shock_conductivity=2 and dimension=1 exclude each other: conductivity is "
                        "for 2 and 3 dimensions");
-        /* of a viscosity that varies only */
+        /* only for a viscosity that varies */
         const double alphas[][2] = {{-1e-300, 1}, {0.5, 0.25}, {0.5, (double)INFINITY}, {1, NAN}};
         for (int k = 0; k < 4; k++) {
             s.alpha_min = alphas[k][0], s.alpha_max = alphas[k][1];
@@ -392,8 +392,8 @@ TEST(numbers_that_are_refused)
     }
 }
 
-/* Lagrangian forms have no pair width. In each family, members behind those that have a form in 1D
- * are for 2D and 3D only. */
+/* Lagrangian forms have no pair width. In each family, members after those with a form in 1D are
+ * for 2D and 3D only. */
 TEST(choices_that_are_refused)
 {
     const struct run_settings base = keyed_case("sod", "");
@@ -419,7 +419,7 @@ TEST(choices_that_are_refused)
     static const struct {
         const struct family *family;
         const char *key, *first_of_two;
-        size_t at; /* 0: not of a scheme */
+        size_t at; /* offset of the member; 0: not in the scheme */
     } rows[] = {
         {&scheme_gradient_family, "gradient", "corrected", offsetof(struct scheme, gradient)},
         {&scheme_volume_element_family, "volume_element", "number",

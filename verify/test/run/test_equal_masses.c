@@ -9,8 +9,8 @@
 #include "gas.h"
 #include "initial.h"
 
-/* What a seed makes of a coordinate of Sobol's sequence before it is shifted, worked out a second
- * time: thirty binary digits, added without carrying to those of a root times the seed less 1. */
+/* A coordinate of Sobol's sequence scrambled by a seed, before its shift, computed independently:
+ * thirty binary digits, combined by exclusive or with those of a root times the seed less 1. */
 static double digits_added(double part, int d, uint64_t seed)
 {
     static const uint64_t roots[] = {0x9e3779b9, 0x6a09e667, 0xbb67ae85, 0x3c6ef373};
@@ -18,7 +18,7 @@ static double digits_added(double part, int d, uint64_t seed)
     return (double)((uint64_t)ldexp(part, 30) ^ digits) / (1 << 30);
 }
 
-/* The construction: Sobol's sequence with its digits exchanged, shifted; each point is kept with a
+/* The construction: Sobol's sequence with scrambled digits, shifted; each point is kept with a
  * probability that follows from the density. */
 TEST(equal_masses_follow_the_density)
 {

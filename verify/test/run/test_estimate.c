@@ -13,7 +13,7 @@ static const double v[3][N + 1] = {{1, 2, 6, 99}, {0, 4, 2, 99}, {3, 3, 9, 99}},
                              m[N + 1] = {1, 8, 0.125, 1e-9}, u[N + 1] = {2, 1, 0.5, 1e9},
                              rho[N + 1] = {1, 1, 4, 1e9};
 
-/* The scheme that costs least: density and force by predicted widths. */
+/* The cheapest scheme: density and force with predicted widths. */
 static struct setup plain_setup(int dim)
 {
     struct setup setup = {.dim = dim,
@@ -46,12 +46,12 @@ TEST(of_particles)
     static const double ball[] = {0, 2, M_PI, 4 * M_PI / 3};
     for (int dim = 1; dim <= 3; dim++) {
         struct setup setup = plain_setup(dim);
-        /* in 2D and 3D the copy of the snapshot takes the place of the neighbours */
+        /* in 2D and 3D the copy of the snapshot reuses the memory of the neighbours */
         const double memory = 7e6 + memory_bytes(&setup) + (dim == 1 ? 8. * N * 8 : 0);
         struct estimate found = estimate_size(&setup);
         near_relative(found.memory, memory, 1e-15);
         assert_true(found.steps == 0 && found.cpu_s == 0);
-        /* signals: sound, and what motion beside the mean one becomes when it is stopped */
+        /* signals: the sound speed, and that after motion relative to the mean has become heat */
         double fastest = 0;
         for (int i = 0; i < N; i++) {
             double square = 0;
@@ -61,7 +61,7 @@ TEST(of_particles)
             fastest = fmax(fastest, 2 * sqrt(1.5 * 0.5 * (u[i] + square / 2)) / h);
         }
         const double steps = ceil(0.75e8 * fastest / 0.2), neighbours = ball[dim] * pow(2.5, dim);
-        assert_true(steps > 1e8); /* enough of them to be told apart to 1e-8 */
+        assert_true(steps > 1e8); /* enough of them to resolve 1e-8 */
         static const struct {
             enum gradient gradient;
             enum viscosity viscosity;
@@ -103,7 +103,7 @@ TEST(of_particles)
     }
 }
 
-/* A million particles of the best scheme in 3D go into a GiB. */
+/* A million particles with the best scheme in 3D fit into a GiB. */
 TEST(of_a_million)
 {
     struct setup setup = plain_setup(3);
@@ -120,7 +120,7 @@ TEST(of_a_million)
     assert_true(estimate_size(&setup).memory < 0x1p30);
 }
 
-/* Of gas as cold as can be next to nothing is asked; each step takes one evaluation at least. */
+/* Gas as cold as possible makes few steps; each step has at least one evaluation. */
 TEST(of_few_steps)
 {
     static const double cold[N] = {1e-30, 1e-30, 1e-30}, still[N] = {0};
@@ -138,7 +138,8 @@ TEST(of_few_steps)
     near_relative(estimate_run(&setup).cpu_s, 1e-9 * N * 10 * (4 + 3), 1e-14);
 }
 
-/* What a run in 2D or 3D refuses; in 1D and where the box is open a particle may reach further. */
+/* Runs in 2D or 3D refuse kernels too wide for the box; in 1D and in open boxes a particle may
+ * reach further. */
 TEST(of_reach)
 {
     for (int dim = 1; dim <= 3; dim++) {
@@ -157,12 +158,12 @@ TEST(of_reach)
                                      refused ? STATUS_BAD_INPUT : STATUS_OK);
                     if (refused) assert_non_null(strstr(error.message, "particle 1 reaches"));
                 }
-        setup.rho = NULL; /* unknown */
+        setup.rho = NULL; /* unknown density */
         assert_int_equal(estimate_check_reach(&setup, &error), STATUS_OK);
     }
 }
 
-/* What is there may be used up. */
+/* A run may use all memory that is available. */
 TEST(more_than_there_is)
 {
     const double there = allowance_memory("");

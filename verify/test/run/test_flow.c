@@ -9,7 +9,7 @@
 #include "prepared.h"
 #include "vortex.h"
 
-enum { N = 60 }; /* and one behind them, which nobody may count */
+enum { N = 60 }; /* and one more, which must not count */
 
 /* Particles anywhere in a box. */
 struct cloud {
@@ -30,7 +30,7 @@ static void scatter(struct cloud *cloud, const struct prepared *p, double time)
         cloud->rho[i] = 1 + 0.3 * sin(1.7 * i);
         cloud->volume[i] = 1 + 0.4 * sin(4.9 * i);
     }
-    /* the one behind them is faster than all, round the middle */
+    /* the additional particle turns around the middle, and is the fastest */
     cloud->v[0][N] = 50 * (p->window.centre[1] - cloud->x[1][N]);
     cloud->v[1][N] = 50 * (cloud->x[0][N] - p->window.centre[0]);
     cloud->snapshot = (struct snapshot){.n = N,
@@ -42,7 +42,7 @@ static void scatter(struct cloud *cloud, const struct prepared *p, double time)
                                         .time = time};
 }
 
-/* Where particle i would be without boost, from the middle of the box, and its velocity. */
+/* Position relative to the middle of the box, and velocity, of particle i without the boost. */
 static void at_rest(const struct cloud *cloud, const struct prepared *p, int i, double x[3],
                     double v[3])
 {
@@ -101,7 +101,7 @@ TEST(vortices_turn_round_the_middle)
         }
     }
     struct settings s;
-    prepared_of(&s, 2, "kind=gresho|lo=0|hi=0.8"); /* fits exactly */
+    prepared_of(&s, 2, "kind=gresho|lo=0|hi=0.8"); /* an exact fit */
     prepared_of(&s, 2, "kind=yee|gamma=100");
     prepared_refused(2, "kind=gresho|lo=0|hi=0.7999999 1",
                      "lo=0 hi=0.8: the vortex has a diameter of 0.8 and does not fit");
@@ -130,7 +130,7 @@ TEST(vortex_is_measured)
     near_relative(measured(&p, "disc_error", &cloud.snapshot), sum / n, 1e-12);
     near_relative(measured(&p, "peak_velocity", &cloud.snapshot), peak, 1e-12);
     assert_true(exactly(&p, "disc_error", 1) == 0 && exactly(&p, "peak_velocity", 1) == 1);
-    /* two particles, one of them at 1/2 exactly: no part of the disc; nobody turns forwards */
+    /* two particles, one of them at exactly 1/2, outside of the disc; neither turns forwards */
     const struct prepared still = prepared_of(&s, 2, "kind=gresho|lo=-1|hi=1");
     const double x[] = {0.25, 0.5}, y[] = {0, 0}, v[] = {0, 0}, w[] = {-0.5, -2};
     const struct snapshot two = {.n = 2, .x = {x, y}, .v = {v, w}};
@@ -158,7 +158,7 @@ TEST(layers_fill_a_square)
         assert_true(have.P == want.P && have.v[2] == 0);
         near_relative(have.u, want.P / (0.6 * want.rho), 1e-13);
     }
-    /* sides that differ by rounding alone are the same */
+    /* sides that differ by rounding count as equal */
     for (int part = -3; part <= 3; part += 2) {
         struct prepared q;
         struct error error;
@@ -168,7 +168,7 @@ TEST(layers_fill_a_square)
         assert_int_equal(prepared_try(&q, &s, 2, keys, &error),
                          abs(part) > 1 ? STATUS_BAD_INPUT : STATUS_OK);
     }
-    /* by 1e-12 of a side exactly, which few doubles can */
+    /* exactly 1e-12 of a side, which few doubles can be */
     prepared_of(&s, 2, "kind=kelvin_helmholtz|lo=0|hi=1.000088900582341 1.000088900583341");
     prepared_refused(2, "kind=kelvin_helmholtz|lo=0|hi=2 2.5",
                      "the layers lie in a square box, and this one has sides of 2 and 2.5");
@@ -188,10 +188,10 @@ TEST(layers_fill_a_square)
     near_relative(measured(&p, "mode_amplitude", &cloud.snapshot),
                   2 * sqrt(sine * sine + cosine * cosine) / weight, 1e-12);
     struct snapshot vast = cloud.snapshot;
-    vast.n = (size_t)1 << 50; /* there is no memory for its copy */
+    vast.n = (size_t)1 << 50; /* too large to be copied */
     assert_true(isnan(measured(&p, "mode_amplitude", &vast)));
 
-    /* the side along x is the one that counts */
+    /* the side along x sets the units */
     const struct prepared long_side = prepared_of(
         &s, 2, "kind=kelvin_helmholtz|lo=0|hi=2 2.0000000000019|gamma=1.6666666666666667");
     assert_true(exactly(&long_side, "mode_amplitude", 2.4) == kelvin_helmholtz_reference(1.2));
@@ -222,7 +222,7 @@ TEST(layers_slide_past_each_other)
     static const struct {
         int dim;
         const char *keys;
-        double n[3], flow[3], length; /* along which v changes, and of v */
+        double n[3], flow[3], length; /* directions of the change and of v; wave length */
     } rows[] = {
         {2, "", {1, 0}, {0, 1}, 2},
         {2, "|direction=0 -1", {0, -1}, {1, 0}, 2},
@@ -242,14 +242,14 @@ TEST(layers_slide_past_each_other)
         snprintf(keys, sizeof keys, "kind=shear|lo=-1|background=1.3 0 0.7|gamma=1.6%s",
                  rows[k].keys);
         struct prepared p = prepared_of(&s, rows[k].dim, keys);
-        memset(p.own.bytes, 0x5a, sizeof p.own.bytes); /* of whatever was there before */
+        memset(p.own.bytes, 0x5a, sizeof p.own.bytes); /* arbitrary bytes before */
         assert_int_equal(p.problem->prepare(&p, &s, NULL), STATUS_OK);
         scatter(&cloud, &p, 0.4);
         double along = 0, whole = 0;
         for (int i = 0; i < N; i++) {
             double x[3], v[3], phase = 0, speed = 0;
             at_rest(&cloud, &p, i, x, v);
-            for (int d = 0; d < rows[k].dim; d++) { /* from the corner */
+            for (int d = 0; d < rows[k].dim; d++) { /* measured from the corner */
                 phase += 2 * M_PI * rows[k].n[d] * (x[d] + 0.5 * domain_length(&p.domain, d)) /
                          rows[k].length;
                 speed += v[d] * rows[k].flow[d];
@@ -265,7 +265,7 @@ TEST(layers_slide_past_each_other)
             assert_true(have.rho == 1.3 && have.P == 0.7);
             near_relative(have.u, 0.7 / (0.6 * 1.3), 1e-14);
         }
-        if (!(along / whole > 0)) { /* of which there is a logarithm */
+        if (!(along / whole > 0)) { /* so that its logarithm exists */
             along = -along;
             for (int d = 0; d < rows[k].dim; d++)
                 for (int i = 0; i < N; i++)
@@ -287,7 +287,7 @@ TEST(layers_slide_past_each_other)
     prepared_refused(2, "kind=shear|direction=0 0", "the wave runs nowhere");
 }
 
-/* ---- rest, and particles of a file ---- */
+/* ---- gas at rest, and particles of a file ---- */
 
 TEST(gas_rests)
 {
@@ -324,10 +324,10 @@ TEST(nothing_is_known_of_a_file)
 
 static const char square_keys[] = "kind=square|lo=-1 2 0|hi=3 4 8|gamma=1.6|contrast=5";
 
-/* Equal spacing: a lattice of 4 by 4 cells or multiples, no cell on both sides of an edge. */
+/* Equal spacing: a lattice of 4 by 4 cells or multiples, with no cell on both sides of an edge. */
 TEST(squares_share_a_lattice)
 {
-    /* a few; and so many that one part of 16 or 64 more or less would be a row more or less */
+    /* few particles, and so many that 1/16 or 1/64 more or less would be a row more or less */
     static const int wanted[][3] = {{0}, {0}, {4, 968, 950}, {4, 1320, 1300}};
     for (int dim = 2; dim <= 3; dim++)
         for (int k = 0; k < 3; k++) {
@@ -368,13 +368,14 @@ TEST(squares_share_a_lattice)
                 near_relative(initial.m[i], initial.rho[i] * volume / (double)n, 1e-14);
                 mass += initial.m[i];
             }
-            /* an n-th part of the box is dense, exactly */
+            /* the dense part is exactly 1/4 or 1/8 of the box */
             near_relative(mass, volume * (1 + 4 / (dim == 2 ? 4. : 8.)), 1e-12);
             free(initial.storage);
         }
 }
 
-/* Equal masses: each gas on its own lattice, the thin one without what would lie in the square. */
+/* Equal masses: each gas has a lattice of its own, and the thin gas's has no particles in the
+ * square. */
 TEST(squares_have_equal_masses)
 {
     static const struct {
@@ -390,7 +391,7 @@ TEST(squares_have_equal_masses)
         const struct prepared p = prepared_of(&s, rows[k].dim, rows[k].keys);
         const struct initial initial = prepared_filled(&p, &s);
         const double contrast = settings_real(&s, SETTING_contrast);
-        struct domain boxes[2] = {p.domain, p.domain}; /* the square, and all */
+        struct domain boxes[2] = {p.domain, p.domain}; /* the square, and the whole box */
         double volume = 1, inner = 1;
         for (int d = 0; d < p.domain.dim; d++) {
             const double length = domain_length(&p.domain, d);
@@ -438,7 +439,7 @@ TEST(squares_have_equal_masses)
 
 TEST(squares_that_cannot_be_laid_are_refused)
 {
-    /* how particles lie, their number, a lattice; either gas may have too few of them for it */
+    /* spacing, number and lattice; either gas may have too few particles for it */
     static const struct {
         const char *keys;
         double n;

@@ -26,7 +26,7 @@ TEST(arrays_lie_apart)
         for (int k = 0; k < count; k++)
             for (int i = 0; i < N; i++) {
                 arrays[k][i] = 10 * k + i;
-                /* all of them in the room that was asked for */
+                /* all arrays lie in the allocated memory */
                 assert_true(arrays[k] + i >= initial.storage &&
                             arrays[k] + i < initial.storage + count * N);
             }
@@ -56,8 +56,7 @@ static bool left_of(const void *context, const double x[3])
     return x[0] + 0.01 * x[1] + 0.001 * x[2] < *(const double *)context;
 }
 
-/* A lattice is added behind the particles that are there already, and some of it is taken out
- * again. */
+/* A lattice is added after the particles already there, and some of it is removed again. */
 TEST(lays_and_keeps)
 {
     for (int dim = 2; dim <= 3; dim++) {
@@ -93,7 +92,7 @@ TEST(lays_and_keeps)
             assert_true(initial.u[i] == gas_energy(x) && initial.rho[i] == gas_density(x));
             near_relative(initial.m[i], gas_density(x) / (double)n, 1e-15);
         }
-        initial.n = n + first; /* the last one is nobody's */
+        initial.n = n + first; /* the last one must not count */
         const double edge = -0.4;
         double x[3] = {0};
         initial_keep(&initial, first, left_of, &edge);
@@ -163,12 +162,12 @@ TEST(balls_are_cut_from_lattices)
     }
 }
 
-/* ---- what the settings do to what a problem has filled ---- */
+/* ---- settings applied to a filled problem ---- */
 
 enum { LINE = 10 };
 
 /* Neighbours with the same state, some that differ only in density or mass, three equal ones, and
- * one behind the last. */
+ * one after the last. */
 static enum status fill_line(const struct prepared *p, const struct settings *settings,
                              struct initial *initial, struct error *error)
 {
@@ -198,7 +197,7 @@ static struct initial created(const struct prepared *p, const struct settings *s
     return initial;
 }
 
-/* Equal neighbours become pairs a tenth of their distance apart; others stay. */
+/* Equal neighbours become pairs a tenth of their distance apart; the others stay. */
 TEST(pairs_of_a_line)
 {
     const struct prepared p = {.problem = &line, .domain = {1, {0}, {9}}, .boost = {100}};
@@ -224,7 +223,7 @@ enum { CLOUD = 40 };
 
 static const double low[] = {-1, -1.5, -2}, high[] = {2, 2.5, 3};
 
-/* Points near the ends of each direction, with room of their own; two exactly there. */
+/* Points near the ends of each direction, two exactly there, in separate memory. */
 static enum status fill_cloud(const struct prepared *p, const struct settings *settings,
                               struct initial *initial, struct error *error)
 {
@@ -246,9 +245,9 @@ static enum status fill_cloud(const struct prepared *p, const struct settings *s
     return STATUS_OK;
 }
 
-/* Jitter moves each particle by up to jitter times its spacing: round a periodic box, back from an
- * end that is not periodic, and in 1D no further than the end. Flows without a jump are then
- * sampled again. */
+/* Jitter moves each particle by up to jitter times its spacing: across the ends of a periodic box,
+ * back from an end that is not periodic, and in 1D no further than the end. Flows without a jump
+ * are then sampled again. */
 TEST(jitter_moves_all)
 {
     for (int dim = 1; dim <= 3; dim++)
@@ -294,7 +293,7 @@ TEST(jitter_moves_all)
                 assert_true(after.u[i] == (again ? s.u : 20 + i));
                 assert_true(after.rho[i] == (again ? s.rho : before.rho[i]));
                 assert_true(after.m[i] == before.m[i]);
-                assert_true(before.u[i] == 20 + i); /* without jitter all stays */
+                assert_true(before.u[i] == 20 + i); /* without jitter nothing changes */
             }
             for (int d = 0; d < dim; d++) assert_true(over[d] > 3);
             gsl_rng_free(random);
@@ -303,7 +302,7 @@ TEST(jitter_moves_all)
         }
 }
 
-/* A lower end belongs to the box, an upper one is the lower one of the next box. */
+/* The lower end belongs to the box, the upper one is the lower one of the next box. */
 TEST(ends_of_the_box)
 {
     const struct problem problem = {.sample = gas_sample, .fill = fill_cloud};
@@ -329,11 +328,11 @@ TEST(failures_are_passed_on)
     const struct problem problem = {.sample = gas_sample, .fill = fill_nothing};
     const struct prepared p = {.problem = &problem, .domain = {2, {0, 0}, {1, 1}}};
     const struct settings settings = keyed_settings("");
-    struct initial initial = {.storage = (double *)8}; /* nobody's */
+    struct initial initial = {.storage = (double *)8}; /* a pointer that must not be freed */
     struct error error = {0};
     assert_int_equal(initial_create(&initial, &p, &settings, &error), STATUS_BAD_INPUT);
     assert_null(initial.storage);
-    for (int equal = 0; equal < 2; equal++) { /* too few for a glass */
+    for (int equal = 0; equal < 2; equal++) { /* too few particles for a glass */
         const struct settings glass =
             keyed_settings(equal ? "n=9 lattice=glass equal_masses=yes" : "n=9 lattice=glass");
         assert_int_equal(initial_fill(&p, &glass, &initial, &error), STATUS_BAD_INPUT);
@@ -344,7 +343,7 @@ TEST(failures_are_passed_on)
     assert_int_equal(initial_fill_ball(&p, &of_ball, 0.5, &initial, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "a glass needs more particles"));
     initial_free(&initial);
-    of_ball = keyed_settings("n=9 lattice=fcc"); /* in a plane */
+    of_ball = keyed_settings("n=9 lattice=fcc"); /* in 2D */
     assert_int_equal(initial_fill_ball(&p, &of_ball, 0.5, &initial, &error), STATUS_BAD_INPUT);
     assert_int_equal(initial_fill(&p, &of_ball, &initial, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "lattice=fcc has no form in 2 dimensions"));

@@ -7,12 +7,12 @@
 #include "keyed.h"
 
 enum { N = 5 };
-/* and one behind the last, which is none of them */
+/* one more after the last, which must not count */
 static const double x[2][N + 1] = {{0.1, 0.4, 0.5, 0.9, 0.7, 0.6}, {0.2, 0.3, 0.8, 0.1, 0.6, 0.5}};
 static const double volume[N + 1] = {0.1, 0.25, 0.3, 0.15, 0.2, 9};
 static const bool inside[N] = {true, true, true, false, true};
-static bool still;   /* the exact velocity is the same everywhere */
-static double faint; /* > 0: it is this large, to the left and to the right, in gas with c = 2 */
+static bool still;   /* the exact velocity is uniform */
+static double faint; /* > 0: the velocity's size, to the left and to the right, in gas with c = 2 */
 
 static void sample(const struct prepared *p, const double at[3], double t, struct problem_state *s)
 {
@@ -28,9 +28,9 @@ static void sample(const struct prepared *p, const double at[3], double t, struc
         .u = 2};
 }
 
-static struct problem problem; /* of the result; what the case's file names has the names */
+static struct problem problem; /* of the result; the names follow from the case file */
 
-/* A result in two dimensions, of particles in a window that three of them are in. */
+/* A result in 2D, of particles of which three lie in the window. */
 static void make(struct run_settings *settings, struct run_result *result, const char *name)
 {
     const struct run run = keyed_run(name, "");
@@ -58,8 +58,8 @@ static void names_are(const struct case_file *file, size_t count, const char *co
     for (size_t i = 0; i < n; i++) assert_string_equal(names[i], want[i]);
 }
 
-/* Parts of a circular flow, fields with a gate, fields without one; functionals where no field is
- * known, and then those only that have an exact value. */
+/* Parts of a circular flow, fields with a gate, fields without one; functionals with an exact value
+ * if no field is known. */
 TEST(names)
 {
     static const char *const functionals[] = {"growth_rate", "mode_noise", "mode_error"};
@@ -74,7 +74,7 @@ TEST(names)
     file->gate_count = 3;
     file->gates[0] = (struct case_gate){.field = FIELD_INTERNAL_ENERGY, .norm = NORM_L2};
     file->gates[1] = (struct case_gate){.functional = "disc_error", .field = FIELD_DENSITY};
-    for (int f = 0; f < FIELDS; f++) file->exact[f] = true; /* says nothing here */
+    for (int f = 0; f < FIELDS; f++) file->exact[f] = true; /* has no effect here */
     file->gates[2] = (struct case_gate){.field = FIELD_PRESSURE};
     names_are(
         file, 3, functionals, exact, 5,
@@ -87,7 +87,7 @@ TEST(names)
     file->dimension = 1;
     names_are(file, 3, functionals, exact, 3,
               (const char *const[]){"density", "velocity", "internal_energy"});
-    make(&settings, &result, "noh_2d"); /* to its middle, not round it */
+    make(&settings, &result, "noh_2d"); /* the flow is towards the middle, not around it */
     memset(file->fields, 0, sizeof file->fields);
     file->fields[FIELD_PRESSURE] = true;
     names_are(file, 3, functionals, exact, 1, (const char *const[]){"pressure"});
@@ -97,7 +97,7 @@ TEST(names)
     names_are(file, 0, NULL, NULL, 0, NULL);
 }
 
-/* The mean distance of a field from its mean, by volume, over the particles in the window. */
+/* The mean absolute deviation of a field, by volume, over the particles in the window. */
 static double signal_of(double value[N][3])
 {
     double mean[3] = {0}, all = 0, sum = 0;
@@ -145,7 +145,7 @@ TEST(fields)
     judged_is(&settings, &result, "velocity", 0.02, signal_of(v));
     settings.file.fields[FIELD_DENSITY] = true;
     judged_is(&settings, &result, "density", 0.01, signal_of(rho));
-    /* what is the same everywhere: its size, of a velocity the sound speed, by volume */
+    /* of a uniform field its value, of a velocity the sound speed, by volume */
     memset(settings.file.fields, 0, sizeof settings.file.fields);
     settings.file.fields[FIELD_INTERNAL_ENERGY] = true;
     judged_is(&settings, &result, "internal_energy", 0.04, 2);
@@ -154,7 +154,7 @@ TEST(fields)
     still = false;
     make(&settings, &result, "gresho");
     judged_is(&settings, &result, "azimuthal", 0.77, signal_of(v));
-    /* on a line the density, and bench knows the signal */
+    /* in 1D the density, whose signal bench knows */
     struct judged judged;
     result.problem.domain.dim = 1;
     judged_of(&settings.file, &result, &judged);
@@ -162,7 +162,7 @@ TEST(fields)
     assert_true(judged.error == 0.01 && isnan(judged.signal));
 }
 
-/* A velocity that is no more than round-off beside the sound speed is uniform. */
+/* A velocity that is only round-off relative to the sound speed is uniform. */
 TEST(faint_signals)
 {
     static const double places[2][2] = {{0.25, 0.75}, {0.5, 0.5}}, halves[2] = {0.5, 0.5};
@@ -196,13 +196,13 @@ TEST(functionals)
     judged_is(&settings, &result, "growth_rate", 0.5, 2);
     result.functionals[1].exact = 0;
     judged_is(&settings, &result, "growth_rate", 1.5, 1);
-    result.functional_count = 1; /* nothing is exact */
+    result.functional_count = 1; /* no exact values */
     judged_of(&settings.file, &result, &judged);
     assert_string_equal(judged.name, "");
     assert_true(isnan(judged.error) && isnan(judged.signal));
     result.functionals[0] = (struct run_functional){"growth_rate", 1.5, -2};
     judged_is(&settings, &result, "growth_rate", 3.5, 2);
-    /* a field's own error is not a functional's, whatever is called like it */
+    /* an error of a field is not that of a functional with the same name */
     make(&settings, &result, "square");
     memset(settings.file.fields, 0, sizeof settings.file.fields);
     for (int f = 0; f < FIELDS; f += FIELDS - 1) {

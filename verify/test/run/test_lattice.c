@@ -4,7 +4,7 @@
 
 #include "lattice.h"
 
-/* As many cells as fit best: 2.5 of them, and a little more or less. */
+/* The number of cells that fits best: 2.5, and a little more or less. */
 TEST(cells_that_fit)
 {
     for (int more = -1; more <= 1; more += 2) {
@@ -18,7 +18,7 @@ TEST(cells_that_fit)
     }
 }
 
-/* So many quasi-random points that some come as near to an end as to a millionth: all are in. */
+/* So many quasi-random points that some are within 1e-6 of an end: all lie inside. */
 TEST(sobol_points_stay_inside)
 {
     enum { N = (1 << 20) + 1 };

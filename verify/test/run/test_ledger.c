@@ -63,7 +63,7 @@ TEST(means)
     }
 }
 
-/* A mirrored tube has the same error in each of its regions, and gas as still. */
+/* A mirrored tube has the same error in each region, and its gas is as still. */
 TEST(mirrored_budgets)
 {
     static const char *const tubes[][2] = {
@@ -93,8 +93,9 @@ TEST(mirrored_budgets)
     }
 }
 
-/* What a particle at the centre of a blast has is compared with what the exact gas has in a ball as
- * large as it, as exactly there u is without bound; others with their own place's. */
+/* A particle at the centre of a blast is compared with the mean of the exact gas over a ball of its
+ * volume, because u is infinite at the centre; others are compared with the gas at their
+ * positions. */
 TEST(centres)
 {
     static const struct {
@@ -119,8 +120,8 @@ TEST(centres)
             if (problem_radius(p, x) < 1e-9) {
                 const double reach = pow(s->volume[i] / unit, 1. / p->domain.dim);
                 assert_true(exact.u > 1e9);
-                /* mass in a ball that grows with the shock, see check exact/blast; P rises outwards
-                 */
+                /* mass in a ball that grows with the shock, see check exact/blast; P rises
+                 * outwards */
                 struct problem_state edge;
                 problem_sample(p, (double[3]){reach}, run.time, &edge);
                 const double growth = 2 / ((p->domain.dim + 2) * run.time);

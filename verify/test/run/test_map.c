@@ -5,7 +5,7 @@
 
 #include "map.h"
 
-/* So wide that no cell is beyond somebody's h. */
+/* So wide that every cell is within some particle's h. */
 static double wide[200];
 
 static struct map made(const struct domain *domain, const struct snapshot *s, size_t most)
@@ -17,7 +17,7 @@ static struct map made(const struct domain *domain, const struct snapshot *s, si
     return map;
 }
 
-/* 4 x 2 cells of width 1; a cell holds its lower edges, the last one also its upper edge. */
+/* 4 x 2 cells of width 1; a cell contains its lower edges, the last one also its upper edge. */
 TEST(cells_of_a_plane)
 {
     enum { N = 8, NONE = 8 };
@@ -38,7 +38,7 @@ TEST(cells_of_a_plane)
     const double values[N] = {10, 3, 20, 30, 1e3, 1e4, 40, 6};
     /* cell 3: of cells 2 and 7; cell 4: of 0, 1, 5; cell 6: of 1, 2, 5, 7 */
     const double mean[9] = {10, 30, 40, 22.25, 20, 20, 23.625, 4.5, -77};
-    double z[9] = {7, 7, 7, 7, 7, 7, 7, 7, -77}; /* the last one is beside the map */
+    double z[9] = {7, 7, 7, 7, 7, 7, 7, 7, -77}; /* the last one lies outside of the map */
     map_mean(&map, values, z);
     for (size_t k = 0; k < 9; k++) near_relative(z[k], mean[k], 1e-15);
     assert_true(map.x >= (double *)map.storage && map.y >= map.x + 4);
@@ -47,7 +47,8 @@ TEST(cells_of_a_plane)
     map = made(&domain, &s, 3);
     assert_true(map.nx == 3 && map.ny == 2);
     map_free(&map);
-    /* one particle in a flat box: cells are as wide as it is apart, but never none of them */
+    /* one particle in a flat box: the number of cells follows from its spacing, and is at least
+     * one */
     const struct domain flat = {2, {0, 0}, {4, 0.1}};
     const struct snapshot one = {.n = 1, .x = {x + 6, y}, .h = wide};
     map = made(&flat, &one, MAP_CELLS);
@@ -55,7 +56,7 @@ TEST(cells_of_a_plane)
     map_free(&map);
 }
 
-/* A slice of two spacings: from its lower face on, without its upper one. */
+/* A slice of two spacings contains its lower face and not its upper one. */
 TEST(slice_of_a_box)
 {
     enum { N = 32 };
@@ -78,7 +79,7 @@ TEST(slice_of_a_box)
     map_free(&map);
 }
 
-/* Empty cells have the mean of the nearest ring that holds somebody, up to MAP_REACH. */
+/* Empty cells have the mean of the nearest ring with particles, up to MAP_REACH. */
 TEST(rings)
 {
     enum { SIDE_X = 14, SIDE_Y = 11, CELLS = SIDE_X * SIDE_Y };
@@ -122,7 +123,7 @@ TEST(rings)
     map_free(&map);
 }
 
-/* Empty cells that no h reaches are a void: by the distance of their centres, in the plane. */
+/* Empty cells beyond every h are void; distances are those of cell centres, in the plane. */
 TEST(voids)
 {
     enum { SIDE = 12, N = SIDE * SIDE };

@@ -50,7 +50,7 @@ TEST(test_shells)
 {
     const struct prepared p = {.domain = {2, {-1, -2}, {1, 2}},
                                .window = {.dim = 2, .lo = {-1, -1}, .hi = {1, 1}}};
-    /* four in the window, 1/4 apart; beyond it a large one, and one beyond all shells */
+    /* four in the window, 1/4 apart; outside of it a large one, and one beyond all shells */
     const double px[] = {0.1, 0, 0.3, -0.5, 0, 1, 0.2}, py[] = {0, 0.2, 0.4, 0, -1.5, 0, 0.2},
                  mass[] = {1, 2, 3, 4, 5, 6, 7},
                  V[] = {0.09375, 0.03125, 0.0625, 0.0625, 9, 0.0625, 0.5};
@@ -70,7 +70,7 @@ TEST(test_shells)
     assert_true(isnan(shells_mean(&p, &s, 0.21, 0.49)));
     double fine[7];
     for (int i = 0; i < 7; i++) fine[i] = 1e-8;
-    s.volume = fine; /* no more shells than there is room for */
+    s.volume = fine; /* at most SHELLS_MAX shells */
     shells_make(&shells, &p, &s);
     assert_int_equal(shells.n, SHELLS_MAX);
     near_relative(shells.width, 1. / SHELLS_MAX, 1e-15);

@@ -8,7 +8,7 @@
 #include "mode.h"
 #include "prepared.h"
 
-/* Problems in boxes of another place and size than the unit one. */
+/* Problems in boxes other than the unit box. */
 static const char shear_keys[] = "kind=kelvin_helmholtz_mode|lo=-0.9 3|hi=1.1 5|waves=2|"
                                  "amplitude=0.001|gamma=1.6|boost=0.25 -0.5",
                   heavy_keys[] = "kind=rayleigh_taylor_mode|lo=0.5 -2|hi=2.5 2|waves=2|"
@@ -25,7 +25,7 @@ static const struct mode_start *start_of(const struct prepared *p)
     return (const struct mode_start *)p->own.bytes;
 }
 
-/* The layer that a problem stands for, in the units in which the box is 1 high. */
+/* The layer of a problem, in units in which the box has a height of 1. */
 TEST(layers_are_those_of_the_keys)
 {
     const struct prepared shear = made(shear_keys), heavy = made(heavy_keys);
@@ -40,12 +40,12 @@ TEST(layers_are_those_of_the_keys)
     near_relative(s->mode.layer.k, 4 * M_PI, 1e-15);
     assert_true(s->mode.layer.gamma == 1.6 && s->mode.layer.periodic && s->length == 2);
     assert_true(s->origin[0] == -0.9 && s->origin[1] == 3.5);
-    near_relative(s->amplitude, 0.0005, 1e-15); /* of the speed 1/2 */
+    near_relative(s->amplitude, 0.0005, 1e-15); /* relative to the speed 1/2 */
     near_relative(h->mode.layer.k, 8 * M_PI, 1e-15);
     near_relative(h->mode.layer.g, 0.5, 1e-15);
     assert_true(h->origin[0] == 0.5 && h->origin[1] == 0 && h->length == 4);
     near_relative(h->amplitude, 0.001 * sqrt(2 * M_PI * 0.5 / (8 * M_PI)), 1e-15);
-    for (int k = 0; k < 2; k++) { /* from e^0 at t = 0; the same rate as a growing mode's */
+    for (int k = 0; k < 2; k++) { /* growth from t = 0 with the rate of the mode */
         const struct prepared *p = k ? &heavy : &shear;
         const double rate = cimag(start_of(p)->mode.omega) / start_of(p)->length;
         double times[2];
@@ -91,24 +91,24 @@ TEST(samples_are_base_and_mode)
 
 enum { N = 700, BINS = 32 };
 
-/* A state of arbitrary points with arbitrary volumes, whose velocity is the mode, something else
- * and a boost. Three points of one row have no others in their part of the height. */
+/* A state of arbitrary points with arbitrary volumes, whose velocity is the mode, another flow and
+ * a boost. Three points of one row are alone in their part of the height. */
 struct made_state {
-    double x[2][N + 1], v[2][N + 1], volume[N + 1]; /* one behind them */
+    double x[2][N + 1], v[2][N + 1], volume[N + 1]; /* one more after the last */
     struct snapshot snapshot;
 };
 
 static void make_state(struct made_state *made, const struct prepared *p, double scatter)
 {
     const struct mode_start *start = start_of(p);
-    /* the layer's half ends, as exactly as a number can say it; out of the box */
+    /* as near to the end of the layer's half as a double can be; outside of the box */
     static const double set[] = {0.5 + 1e-8, 0.5 - 1e-8, -0.1, 1, 1.1};
     for (int i = 0; i <= N; i++) {
         const double part =
             i < (start->mode.layer.periodic ? 2 : 5) ? set[i] : fmod(0.7548776662 * i + 0.01, 1);
         made->x[0][i] =
             p->domain.lo[0] + fmod(0.6180339887 * i, 1) * (p->domain.hi[0] - p->domain.lo[0]);
-        /* nobody is in the 5th of the 32 parts */
+        /* no point is in the 5th of the 32 parts */
         made->x[1][i] = p->domain.lo[1] + (part >= 4. / BINS && part < 5. / BINS ? 0.5 : part) *
                                               (p->domain.hi[1] - p->domain.lo[1]);
         made->volume[i] = 0.001 * (2 + sin(5 * i));
@@ -137,7 +137,7 @@ static void measure(const struct prepared *p, const struct made_state *made, dou
         const double vy = made->v[1][i] - p->boost[1], V = made->volume[i];
         const double complex f = layer_mode_amplitude(&start->mode, Y).v,
                              back = cexp(-LAYER_I * start->mode.layer.k * X);
-        /* the image layer lies at 1/2 */
+        /* the image of the layer begins at 1/2 */
         const bool image = start->mode.layer.periodic && Y > 0.25;
         const double part = (made->x[1][i] - p->domain.lo[1]) / (p->domain.hi[1] - p->domain.lo[1]);
         const int b = part < 0 ? 0 : part < 1 ? (int)(part * BINS) : BINS - 1;
@@ -173,7 +173,7 @@ TEST(measured_as_defined)
             double want[4];
             make_state(&made_state, &p, 0.05 * scattered);
             measure(&p, &made_state, want);
-            near_relative(want[0], hypot(0.3, 0.2), 0.1); /* the state has it */
+            near_relative(want[0], hypot(0.3, 0.2), 0.1); /* the state contains it */
             assert_true(want[1] > 0.01 && want[2] > 0.01);
             for (int i = 0; i < 4; i++)
                 near_relative(f[i]->measure(&p, &made_state.snapshot), want[i], 1e-10);
@@ -182,9 +182,9 @@ TEST(measured_as_defined)
     }
 }
 
-/* On a regular grid waves are orthogonal: if the state is the mode alone, nothing but the mode is
- * found, and a wave of another length is all noise. The other parity is told apart from the mode's
- * own. */
+/* On a regular grid waves are orthogonal: if the velocity is the mode alone, the measured amplitude
+ * is the mode's, and a wave of another length is all noise. The other parity is distinguished from
+ * the mode's own. */
 TEST(grid_knows_the_mode_alone)
 {
     enum { SIDE = 64 };
@@ -215,12 +215,12 @@ TEST(grid_knows_the_mode_alone)
     near_relative(mode_amplitude.measure(&p, &s), 3, 1e-12);
     near_below(mode_error.measure(&p, &s), 1e-12);
     near_relative(mode_noise.measure(&p, &s), sqrt(noise / squares), 1e-10);
-    for (int i = 0; i < SIDE * SIDE; i++) /* a single layer: both parities are equally strong */
+    for (int i = 0; i < SIDE * SIDE; i++) /* in a single layer both parities are equally strong */
         if (i / SIDE >= SIDE / 2) v[1][i] = p.boost[1];
     near_relative(mode_other_parity.measure(&p, &s), 1, 1e-10);
 }
 
-/* Sides that differ by 1e-12 count as equal; one bit more and they do not. */
+/* Sides that differ by 1e-12 count as equal, and with one more bit they do not. */
 TEST(boxes_are_square)
 {
     const double bit = 0x1p-52;
@@ -283,7 +283,7 @@ TEST(amplitudes_leave_room_to_grow)
     }
 }
 
-/* Sides of a box that differ by rounding alone are the same. */
+/* Sides of a box that differ by rounding count as equal. */
 TEST(layers_need_a_square)
 {
     for (int part = -3; part <= 3; part += 2) {
@@ -295,11 +295,11 @@ TEST(layers_need_a_square)
         else
             made(keys);
     }
-    /* by 1e-12 of a side exactly, which few doubles can */
+    /* exactly 1e-12 of a side, which few doubles can be */
     made("kind=kelvin_helmholtz_mode|lo=0|hi=1.000088900582341 1.000088900583341");
 }
 
-/* Sinuous and varicose modes differ. Gravity that is not given is that of the layer. */
+/* Sinuous and varicose modes differ. Without the key gravity is that of the layer. */
 TEST(keys_choose_the_mode)
 {
     const struct prepared one = made("kind=kelvin_helmholtz_mode|parity=sinuous"),

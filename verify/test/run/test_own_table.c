@@ -15,7 +15,7 @@ static double field(double x, double y, const double c[3])
 
 enum shape { LINE, GRID_X_FAST, GRID_Y_FAST, RADIUS };
 
-/* n rising places from 0 to 1, nearly; all but the last in steps that differ. */
+/* n ascending positions between 0 and 1, unevenly spaced. */
 static void places(size_t n, double *x)
 {
     double sum = 0;
@@ -84,7 +84,7 @@ TEST(linear_fields_are_exact)
     }
 }
 
-/* Largest error over the box, and what the table says of itself. */
+/* Largest error over the box; *miss is the error that the table estimates. */
 static double worst(size_t n, enum boundary boundary, double *miss)
 {
     static const double c[3] = {0, 0, 1};
@@ -109,7 +109,7 @@ TEST(smooth_fields_to_their_order)
     double miss[2];
     const double coarse = worst(20, BOUNDARY_PERIODIC, &miss[0]);
     const double fine = worst(320, BOUNDARY_PERIODIC, &miss[1]);
-    assert_true(coarse < 0.3 && fine < coarse / 100); /* linear round the box: order 2 */
+    assert_true(coarse < 0.3 && fine < coarse / 100); /* linear across the ends: order 2 */
     assert_true(miss[1] < miss[0] / 50 && miss[0] > 0.003 && miss[1] > 1e-6);
 }
 
@@ -126,7 +126,7 @@ TEST(the_gap_of_a_periodic_box)
         near_below(fabs(in.rho - field(x[0], 0, c)), 2e-3);
         near_below(fabs(in.rho - (out.rho)), 1e-12);
     }
-    /* nothing is known two spacings beyond the ends of a box that is not periodic */
+    /* nothing is known beyond two spacings from the ends of a box that is not periodic */
     p.boundary[0] = BOUNDARY_OPEN;
     own_table_sample(table, &p, (double[3]){-0.1}, &out);
     assert_true(isnan(out.rho) && isnan(out.v[0]) && isnan(out.u));

@@ -21,7 +21,7 @@ static const char *written(const char *text)
     return path;
 }
 
-/* Asserts that the message ends so, behind the path. */
+/* Fails unless the message ends with these words after the path. */
 static void says(const struct error *error, const char *words)
 {
     assert_int_equal(error->status, STATUS_BAD_INPUT);
@@ -130,7 +130,7 @@ TEST(setups_get_a_box)
     near_relative(setup.hi[0], 5.08, 1e-15);
     particle_file_free(&file);
     assert_int_equal(particle_file_read(written(text), &file, &error), STATUS_OK);
-    /* a box that is there stays; both its ends are inside */
+    /* a given box is kept; both its ends are inside */
     setup = (struct setup){
         .lo = {-5, 6.5}, .hi = {3, 7}, .boundary = {BOUNDARY_OPEN, BOUNDARY_PERIODIC}};
     assert_int_equal(particle_file_fill(&file, path, &setup, &error), STATUS_OK);
@@ -141,10 +141,10 @@ TEST(setups_get_a_box)
     setup.hi[0] = 3, setup.lo[1] = 7.5, setup.hi[1] = 9;
     assert_int_equal(particle_file_fill(&file, path, &setup, &error), STATUS_BAD_INPUT);
     says(&error, ":2: y = 7: allowed: inside of the box, 7.5 to 9");
-    setup = (struct setup){.boundary = {BOUNDARY_PERIODIC, BOUNDARY_OPEN}}; /* none is made */
+    setup = (struct setup){.boundary = {BOUNDARY_PERIODIC, BOUNDARY_OPEN}}; /* no box is derived */
     assert_int_equal(particle_file_fill(&file, path, &setup, &error), STATUS_BAD_INPUT);
     says(&error, ":2: x = -5: allowed: inside of the box, 0 to 0");
-    for (int open = 0; open < 2; open++) { /* one direction has a box, the other one gets it */
+    for (int open = 0; open < 2; open++) { /* one direction has a box, one derives it */
         setup = (struct setup){.boundary = {open ? BOUNDARY_PERIODIC : BOUNDARY_OPEN,
                                             open ? BOUNDARY_OPEN : BOUNDARY_PERIODIC}};
         setup.lo[!open] = -9, setup.hi[!open] = 9;
@@ -176,7 +176,7 @@ TEST(starts_of_runs)
         .problem = &problem, .domain = {2, {0, 0}, {2, 4}}, .boost = {0.5, 0.25}};
     struct initial initial;
     struct error error = {0};
-    /* what the problem knows, else the file, else the mean */
+    /* the density that the problem knows, else the file's, else the mean */
     for (int kind = 0; kind < 3; kind++) {
         const char *text = kind < 2 ? PLANE
                                ",rho,P\n1,2,3,4,5,6,7,0\n0,3,8,9,10,11,12,0\n1,1,1,1,1,1,1,0\n"
@@ -195,13 +195,13 @@ TEST(starts_of_runs)
         assert_string_equal(initial.ignored, "P");
         initial_free(&initial);
     }
-    known_density = 0; /* all are read */
+    known_density = 0; /* all columns are read */
     assert_int_equal(particle_file_start(written(PLANE ",rho\n1,2,3,4,5,6,7\n0,3,8,9,10,11,12\n"),
                                          &p, &initial, &error),
                      STATUS_OK);
     assert_string_equal(initial.ignored, "");
     initial_free(&initial);
-    /* as the settings ask: they move along, nothing shakes them */
+    /* settings apply: a boost, but no jitter */
     char keys[96];
     snprintf(keys, sizeof keys, "file=%s jitter=0.3 lattice=random",
              written(PLANE "\n1,2,3,4,5,6\n0,3,8,9,10,11\n"));

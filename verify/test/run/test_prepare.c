@@ -107,7 +107,7 @@ TEST(what_cannot_be_is_refused)
         {2, "kind=yee|equal_masses=yes|lattice=random", NULL},
         {2, "kind=yee|equal_masses=yes|lattice=glass", NULL},
         {2, "kind=yee|equal_masses=no|lattice=square", NULL},
-        {2, "kind=square|equal_masses=yes|lattice=square", NULL}, /* has lattices of its own */
+        {2, "kind=square|equal_masses=yes|lattice=square", NULL}, /* it has lattices of its own */
         /* files */
         {2, "kind=yee|file=p.csv|n=100",
          "key n and file=p.csv exclude each other: its particles are as they are"},
@@ -128,7 +128,7 @@ TEST(what_cannot_be_is_refused)
         const enum status status = prepared_try(&p, &settings, rows[k].dim, rows[k].keys, &error);
         if (!rows[k].words && status) fail_msg("%s: %s", rows[k].keys, error.message);
         if (!rows[k].words) continue;
-        strcat(error.message, "|"); /* its end */
+        strcat(error.message, "|"); /* marks the end */
         if (status != STATUS_BAD_INPUT || !strstr(error.message, rows[k].words))
             fail_msg("%s: '%s' expected, said: %s", rows[k].keys, rows[k].words, error.message);
     }
@@ -189,7 +189,7 @@ TEST(what_is_left_open_is_chosen)
     p = prepared_of(&s, 2, "kind=square|equal_masses=yes");
     assert_int_equal(settings_choice(&s, SETTING_lattice), LATTICE_SQUARE);
 
-    /* ends of each direction; one word where they are alike */
+    /* ends of each direction; one word if they are the same */
     p = prepared_of(&s, 3, "kind=rest|boundary=fixed periodic reflecting");
     const struct setting_value *ends = &s.value[SETTING_boundary];
     assert_true(p.boundary[0] == BOUNDARY_FIXED && p.boundary[1] == BOUNDARY_PERIODIC &&
@@ -219,7 +219,7 @@ TEST(what_is_left_open_is_chosen)
     assert_true(p.boundary[1] == BOUNDARY_FIXED && p.boundary[2] == BOUNDARY_PERIODIC);
 }
 
-/* Choices that a problem makes are written where the setting was `auto`. */
+/* Choices that a problem makes are written to settings that were `auto`. */
 TEST(choices_are_written_back)
 {
     struct settings s;
@@ -234,7 +234,7 @@ TEST(choices_are_written_back)
     assert_true(p.window.radius > 0 && s.value[SETTING_window_radius].real[0] == p.window.radius);
     assert_true(s.value[SETTING_window].real[0] == p.window.lo[0] && p.window.lo[0] > -1);
     prepared_of(&s, 2, "kind=rest");
-    gravity->real[0] = gravity->real[1] = 5; /* of another problem before */
+    gravity->real[0] = gravity->real[1] = 5; /* from another problem */
     struct problem closed = *(const struct problem *)family_find(&problem_family, "rest");
     closed.ends[0].usual = BOUNDARY_FIXED;
     assert_int_equal(problem_prepare_as(&p, &closed, &s, 2, &error), STATUS_OK);
@@ -244,7 +244,7 @@ TEST(choices_are_written_back)
                 ends->choices[1] == BOUNDARY_PERIODIC);
 }
 
-/* ---- what problems share ---- */
+/* ---- functions that problems share ---- */
 
 static double longest_seen, last = 0.625;
 

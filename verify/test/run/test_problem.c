@@ -12,19 +12,19 @@
 #include "problem_prepare.h"
 #include "run.h"
 
-/* What a walk is about, and where it stopped. */
+/* The subject of a walk through the properties of a problem, and the first fault. */
 struct walk {
     const struct problem *problem;
     struct settings settings;
     struct prepared p;
     struct initial initial;
-    double sums; /* allowed of sums over particles, relative: their quadrature has an error */
+    double sums; /* relative tolerance of sums over particles: their quadrature has an error */
     char fault[600];
 };
 
 static bool fault(struct walk *walk, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Notes the first fault; always false. */
+/* Records the first fault; always returns false. */
 static bool fault(struct walk *walk, const char *format, ...)
 {
     va_list list;
@@ -80,7 +80,7 @@ static bool differ(double a, double b, double scale)
     return !(fabs(a - b) <= 1e-13 * (fabs(a) + fabs(b) + scale));
 }
 
-/* Each particle lies in the domain and carries the sample of its place. */
+/* Each particle lies in the domain and has the sample of its position. */
 static bool particles_are_samples(struct walk *walk)
 {
     const struct prepared *p = &walk->p;
@@ -122,7 +122,7 @@ static void add_sums(double sums[SUMS], double mass, const double v[3], double u
     sums[ENERGY] += mass * u;
 }
 
-/* Integrals of the sample at t = 0, by midpoints: jumps lie between cells. */
+/* Integrals of the sample at t = 0, by midpoints; no jump lies inside of a cell. */
 static void integrate(const struct prepared *p, double sums[SUMS])
 {
     const int dim = p->domain.dim;
@@ -188,7 +188,7 @@ static bool start_is_random_as_said(struct walk *walk)
     return true;
 }
 
-/* ---- what it is judged by ---- */
+/* ---- gates ---- */
 
 static bool window_is_free(struct walk *walk)
 {
@@ -208,7 +208,7 @@ static bool window_is_free(struct walk *walk)
     return true;
 }
 
-/* Functionals and regions of the particles at t = 0, where all is known. */
+/* Functionals and regions at t = 0, where all values are known. */
 static bool start_is_measured(struct walk *walk)
 {
     const struct prepared *p = &walk->p;
@@ -237,7 +237,7 @@ static bool start_is_measured(struct walk *walk)
     for (const struct functional *const *f = walk->problem->functionals; *f; f++) {
         if (((*f)->present && !(*f)->present(p)) || !(*f)->exact) continue;
         const double exact = (*f)->exact(p, 0), value = (*f)->measure(p, &s);
-        if (isnan(exact)) continue; /* of this start nothing is known */
+        if (isnan(exact)) continue; /* the exact value is unknown */
         if (!(fabs(value - exact) <= (exact == 0 ? widest : fmax(0.05, walk->sums) * fabs(exact))))
             fault(walk, "functional %s: %g of the particles, %g exactly", (*f)->name, value, exact);
     }
@@ -269,10 +269,10 @@ static void walk_all(struct walk *walk, int dim)
     initial_free(&walk->initial);
 }
 
-/* ---- the list ---- */
+/* ---- every problem ---- */
 
-/* The walk of a case with these keys (separated by |; foreign ones are left out), its problem
- * replaced by another descriptor unless that is NULL. */
+/* The walk of a case with these keys (separated by |; keys of other problems are skipped).
+ * `instead`, unless NULL, replaces its problem. */
 static struct walk walk_case(const char *name, const char *keys, const struct problem *instead)
 {
     struct walk walk = {.sums = 1e-12};
@@ -282,7 +282,7 @@ static struct walk walk_case(const char *name, const char *keys, const struct pr
     if (case_load(&file, name, &error)) fail_msg("%s", error.message);
     walk.settings = file.settings;
     if (file.dimension > 1) walk.sums = 0.02; /* few points, kinks, masses of whole particles */
-    if (strcmp(name, "noh_1d") == 0) walk.sums = 0.01; /* of an odd number one is at rest */
+    if (strcmp(name, "noh_1d") == 0) walk.sums = 0.01; /* odd n: one is at rest */
     if (strcmp(name, "leblanc") == 0) walk.sums = 0.5; /* its light gas is half a particle */
     walk.problem = instead ? instead : problem_of(&walk.settings);
     snprintf(text, sizeof text, "%s", keys);
@@ -321,7 +321,7 @@ TEST(every_problem_of_every_case)
     }
 }
 
-/* Also problems that no case has: with all keys at their fallbacks. */
+/* Also problems without a case, with all keys at their defaults. */
 TEST(every_problem_by_itself)
 {
     assert_int_equal(setting_keys[SETTING_kind].family->n, problem_family.n);
@@ -329,7 +329,7 @@ TEST(every_problem_by_itself)
         const struct problem *problem = (const struct problem *)problem_family.members[i];
         struct walk walk = {.problem = problem, .sums = problem->least_dim > 1 ? 0.02 : 1e-12};
         struct error error;
-        /* the word that the settings know it by */
+        /* the word in settings */
         assert_string_equal(problem->member.name,
                             setting_keys[SETTING_kind].family->members[i]->name);
         if (problem->filed) continue; /* it has no particles of its own */
@@ -337,7 +337,7 @@ TEST(every_problem_by_itself)
         assert_int_equal(settings_set(&walk.settings, SETTING_kind, problem->member.name,
                                       SOURCE_USER, NULL, &error),
                          STATUS_OK);
-        /* of the gas that references are for */
+        /* gas that has a reference solution */
         const bool flat = strcmp(problem->member.name, "rotation") == 0;
         assert_int_equal(settings_set(&walk.settings, SETTING_gamma,
                                       flat ? "2" : "1.6666666666666667", SOURCE_USER, NULL, &error),
@@ -354,7 +354,7 @@ TEST(every_problem_by_itself)
 
 /* ---- planted faults ---- */
 
-static const struct problem *tube, *gresho; /* the right ones */
+static const struct problem *tube, *gresho; /* the correct ones */
 
 static enum status heavy(const struct prepared *p, const struct settings *settings,
                          struct initial *initial, struct error *error)
@@ -376,7 +376,7 @@ static enum status one_too_far(const struct prepared *p, const struct settings *
     return status;
 }
 
-/* Turns the other way round, with the same sums. */
+/* Rotates in the opposite direction, with the same sums. */
 static enum status backwards(const struct prepared *p, const struct settings *settings,
                              struct initial *initial, struct error *error)
 {

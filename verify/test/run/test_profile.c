@@ -10,7 +10,7 @@
 enum { N = 4 };
 static double curvature; /* of the velocity, over its size */
 
-/* Straight lines with a bend each: rho at 0.25, v at 0.4, P at 0.625 and beyond the window, u at
+/* Straight lines with one bend each: rho at 0.25, v at 0.4, P at 0.625 and beyond the window, u at
  * 0.5. */
 static void sample(const struct prepared *p, const double at[3], double t, struct problem_state *s)
 {
@@ -63,7 +63,7 @@ TEST(bends)
         near_relative(at(exact, "pressure", i), s.P, 1e-12);
     }
     assert_int_equal(json_object_size(exact), 4);
-    static const size_t shown[] = {0, 1, 3}; /* the window's, its end included */
+    static const size_t shown[] = {0, 1, 3}; /* those in the window, its end included */
     assert_int_equal(json_array_size(json_object_get(profile, "x")), 3);
     for (size_t i = 0; i < 3; i++) {
         struct problem_state s;

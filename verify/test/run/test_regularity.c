@@ -16,7 +16,7 @@ static struct kernel kernel_named(const char *name)
     return kernel;
 }
 
-/* From the definitions. Two images a side are enough: h is less than half a side. */
+/* Computed from the definitions. Two images a side suffice: h is less than half a side. */
 static struct regularity directly(const struct regularity_cloud *cloud)
 {
     const int dim = cloud->box.dim;
@@ -93,7 +93,7 @@ TEST(as_defined)
                 volume[i] = whole / N * (1 + 0.3 * sin(7 * i));
                 h[i] = (dim == 1 ? 4 : dim == 2 ? 2.2 : 1.4) * pow(volume[i], 1. / dim);
             }
-            /* a pair, another one at one place, and on a line one that is wide */
+            /* a pair, two coincident points, and in 1D a wide one */
             for (int d = 0; d < dim; d++) {
                 x[d][3] = x[d][2] + 0.001 * (d + 1);
                 x[d][41] = x[d][40];
@@ -111,8 +111,9 @@ TEST(as_defined)
         }
 }
 
-/* A row in an open box: those whose h ends exactly at an end are whole; a neighbour half a spacing
- * away is none of a pair; one further away than every h counts as if it were there. */
+/* A row in an open box: points whose support ends exactly at an end are complete; a neighbour half
+ * a spacing away is not a pair; a neighbour further away than every h counts as if it were at that
+ * distance. */
 TEST(what_lies_on_a_limit)
 {
     const struct kernel kernel = kernel_named("cubic_spline");
@@ -126,7 +127,7 @@ TEST(what_lies_on_a_limit)
     near_relative(found.nearest, (0.5 + 0.5 + 0.75 + 1) / 4, 1e-15); /* the widest h is 1 */
     assert_true(found.paired == 0);
     double density = 0, gradient = 0;
-    for (int i = 0; i < 4; i++) { /* all are whole; only the second one has neighbours */
+    for (int i = 0; i < 4; i++) { /* all are complete; only the second one has neighbours */
         double sum = kernel_value(&kernel, 0, h[i], 1), to = 0;
         if (i == 1) {
             sum += kernel_value(&kernel, 0.5, 1, 1) + kernel_value(&kernel, 0.75, 1, 1);
@@ -137,7 +138,7 @@ TEST(what_lies_on_a_limit)
     }
     near_relative(found.density, sqrt(density), 1e-14);
     near_relative(found.gradient, sqrt(gradient), 1e-14);
-    /* in a plane one that is out by its last bit has no say */
+    /* in 2D a point whose support ends one bit outside does not count */
     static const double px[] = {1, 1, 3, 3}, py[] = {1, 1.5, 1, 3}, one[] = {1, 1, 1, 1};
     for (int end = 0; end < 5; end++) {
         struct regularity_cloud plane = {.box = {2, {0, 0}, {4, 4}},
@@ -149,7 +150,7 @@ TEST(what_lies_on_a_limit)
         if (end == 1 || end == 2) plane.box.lo[end - 1] = 1e-15;
         if (end == 3 || end == 4) plane.box.hi[end - 3] = nextafter(4, 0);
         assert_int_equal(regularity_measure(&plane, &found, &error), STATUS_OK);
-        /* who is left, of the two that are half a spacing apart and of the others */
+        /* the number of points that count, of the two half a spacing apart and of the others */
         static const int near[] = {2, 0, 1, 2, 2}, alone[] = {2, 2, 1, 0, 1};
         const double self = kernel_value(&kernel, 0, 1, 2), all = near[end] + alone[end],
                      two = self + kernel_value(&kernel, 0.5, 1, 2);
@@ -164,7 +165,7 @@ TEST(what_lies_on_a_limit)
     }
 }
 
-/* More points than are looked at in one go: a lattice, and some that stand beside one of it. */
+/* More points than are processed at once: a lattice, and some points beside lattice points. */
 TEST(blocks_of_points)
 {
     enum { SIDE = 256, EXTRA = 64, N = SIDE * SIDE + EXTRA };
@@ -190,14 +191,13 @@ TEST(blocks_of_points)
     cloud.threads = 3;
     assert_int_equal(regularity_measure(&cloud, &shared, &error), STATUS_OK);
     assert_memory_equal(&found, &shared, sizeof found);
-    /* a pair is an eighth apart; the next of the lattice is nearer to the other one */
+    /* a pair is an eighth apart; the next lattice point is nearer to the other one */
     near_relative(found.paired, 2. * EXTRA / N, 1e-14);
     near_relative(found.nearest, (N - 3. * EXTRA + EXTRA * (2 * 0.125 + 0.875)) / N, 1e-12);
     free(x);
 }
 
-/* States of runs have the widths and volumes that they have; of none there is nothing to be said.
- */
+/* States of runs use their widths and volumes; an empty state has no regularity. */
 TEST(of_a_run)
 {
     const struct kernel kernel = kernel_named("cubic_spline");
@@ -221,9 +221,9 @@ TEST(of_a_run)
             near_relative(found.density, want.density, 1e-14);
             near_relative(found.gradient, want.gradient, 1e-14);
         } else
-            assert_true(isnan(found.density) && isnan(found.gradient)); /* nobody is whole */
+            assert_true(isnan(found.density) && isnan(found.gradient)); /* no point is complete */
     }
-    for (int dim = 2; dim <= 3; dim++) { /* each direction has its ends */
+    for (int dim = 2; dim <= 3; dim++) { /* ends along each direction */
         static const double y[] = {0.5, 0.875, 1}, z[] = {1, 0.75, 0.5};
         s.x[1] = y;
         s.x[2] = z;

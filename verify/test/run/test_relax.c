@@ -84,7 +84,8 @@ TEST(glasses_are_pushed_apart)
                     room.box.lo[d] +
                     (room.box.hi[d] - room.box.lo[d]) *
                         fmod((0.7548776662 + 0.0629 * d * d) * (double)(i + 1) + 0.1 * d, 1);
-        /* two of them at nearly one place are pushed as far as is allowed; two at one place not */
+        /* two that nearly coincide are pushed by the largest step; two that coincide are not
+         * pushed */
         for (int d = 0; d < 3; d++) {
             x[d][1] = y[d][1] = x[d][0] + 1e-5 * (d + 1);
             x[d][3] = y[d][3] = x[d][2];
@@ -102,7 +103,7 @@ TEST(glasses_are_pushed_apart)
     }
 }
 
-/* As the regularity of a cloud with this width says. */
+/* The quality is the regularity of a cloud with this width. */
 TEST(quality_of_a_cloud)
 {
     enum { N = 500 };
@@ -136,8 +137,8 @@ TEST(quality_of_a_cloud)
     assert_int_equal(relax_measure(&box, 3, places, volume, &quality, &error), STATUS_BAD_INPUT);
 }
 
-/* A glass: the random start, pushed apart with the room that each has; with masses alike as the
- * density leaves it. */
+/* A glass: random points that are pushed apart according to the volume of each; with equal masses
+ * the volume follows from the density. */
 static double room_of_mass(const void *context, const double x[3])
 {
     return *(const double *)context / gas_density(x);
@@ -178,7 +179,7 @@ TEST(glasses_of_random_points)
     }
 }
 
-/* The same everywhere, or as much where x or y is 0. */
+/* A uniform volume, or one that rises from x = 0 or y = 0. */
 struct plain_room {
     double volume, rise;
 };
@@ -190,7 +191,8 @@ static double plain_room_at(const void *context, const double x[3])
     return room->volume * (1 + room->rise * x[0] * x[1]);
 }
 
-/* Large glasses are kept: read again where all is the same that decides where points end. */
+/* Large glasses are kept, and are read again if everything is the same that determines the
+ * points. */
 TEST(large_glasses_are_kept)
 {
     enum { N = 1000 };

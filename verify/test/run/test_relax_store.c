@@ -20,7 +20,7 @@ static bool is_there(const char *name)
     return access(path_of(name), F_OK) == 0;
 }
 
-/* NULL: not set. */
+/* Sets an environment variable; NULL: removes it. */
 static void set(const char *name, const char *value)
 {
     if (value)
@@ -43,7 +43,7 @@ TEST(they_come_back)
         assert_false(relax_store_find(7, dim, N, all));
         relax_store_keep(7, dim, N, all);
         memset(points, 0, sizeof points);
-        /* another content, another number of points, another dimension */
+        /* another content, number of points or dimension */
         assert_false(relax_store_find(8, dim, N, all));
         assert_false(relax_store_find(7, dim, N + 1, all));
         assert_int_equal(relax_store_find(7, 5 - dim, N, all), dim == 3);
@@ -60,7 +60,7 @@ TEST(they_come_back)
     assert_true(is_there("xdg/sphproof/glass") && !is_there("home"));
 }
 
-/* The folder for caches, if it is a whole path, else that of the user's own folder, else none. */
+/* The folder for caches, if its path is absolute, else that in the user's home, else none. */
 TEST(folders)
 {
     char home[4500];
@@ -83,8 +83,8 @@ TEST(folders)
     assert_false(access("xdg2", F_OK) == 0 || access("own2", F_OK) == 0);
 }
 
-/* Glasses of few points are not kept because they are cheap, and glasses of too many because they
- * are large. */
+/* Glasses of few points are not kept because they are cheap, and those of too many because they are
+ * large. */
 TEST(numbers)
 {
     static const struct {
@@ -101,7 +101,7 @@ TEST(numbers)
     }
 }
 
-/* A glass that was not used for a month is removed when another one is kept. */
+/* Keeping a glass removes those that were not used for a month. */
 TEST(old_ones_go)
 {
     static const char old[] = "old/sphproof/glass/00/1.entry";

@@ -10,7 +10,7 @@
 #include "keyed.h"
 #include "run_part.h"
 
-/* ---- before ---- */
+/* ---- before the run ---- */
 
 TEST(setups)
 {
@@ -61,7 +61,7 @@ static struct run_result explained(const struct run *run)
     return result;
 }
 
-/* Snapshots on the way take memory, too; a glass says how good it is, where a box is periodic. */
+/* Snapshots during the run take memory, too; a glass reports its quality if the box is periodic. */
 TEST(explanations)
 {
     struct snapshots snapshots = {.path = "a.csv", .every = 0.1};
@@ -101,7 +101,7 @@ TEST(explanations)
     }
 }
 
-/* The exact solution shall hold up to the end, unless somebody says that any window will do. */
+/* The exact solution must hold until the end, unless the user allows any window. */
 TEST(any_window)
 {
     struct run run = keyed_run("sod", "n=40 t_end=5");
@@ -113,7 +113,7 @@ TEST(any_window)
     assert_int_equal(run_explain(&run, &result, &error), STATUS_OK);
 }
 
-/* What is larger than the memory that there is is refused before there is an array of its size. */
+/* A run larger than the available memory is refused before any array of its size is allocated. */
 TEST(too_large)
 {
     struct run_result result;
@@ -130,14 +130,14 @@ TEST(too_large)
     assert_non_null(strstr(error.message, "9938375"));
 }
 
-/* Of a file: as many particles as it has, and what of it is not read. */
+/* A run of a file has the file's number of particles, and reports columns that are not read. */
 TEST(from_a_file)
 {
     char folder[] = "run.XXXXXX", path[64], words[192];
     struct run_result result;
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/p.csv", folder);
-    /* beside other warnings, or alone; of a column of one letter */
+    /* besides other warnings, or alone; a column of one letter */
     static const char *const more[] = {"colour,age", "q,q2", "q"}, *const ignored[] = {"colour age",
                                                                                        "q q2", "q"};
     static const char *const keys[] = {"", "energy=total viscosity=none", ""};
@@ -172,11 +172,11 @@ TEST(from_a_file)
 
 enum { N = 8 };
 
-/* On a line the positions rise, whoever was carried through the end; it is said how many neighbours
- * are no longer next to each other. */
+/* In 1D particles are sorted by position, also those carried across the end; the number of
+ * neighbours that are no longer adjacent is reported. */
 TEST(a_line_rises)
 {
-    /* two at one place; the first ones of the order have come through the end */
+    /* two coincident particles; the first ones in the order have crossed the end */
     static const double rising[N] = {-0.9, -0.7, -0.5, -0.2, 0, 0.3, 0.3, 0.9};
     static const int through[] = {0, 1, 5};
     double x[N];
@@ -224,7 +224,8 @@ TEST(a_line_rises)
     }
 }
 
-/* In 2D and 3D by their numbers; errors are those of the particles in the window, by volume. */
+/* In 2D and 3D they are sorted by number; errors are those of the particles in the window, by
+ * volume. */
 TEST(clouds_by_number)
 {
     static const size_t id[N] = {3, 0, 7, 1, 2, 6, 5, 4};
@@ -259,7 +260,7 @@ TEST(clouds_by_number)
             assert_true(kept->m[id[i]] == rest[0][i] && kept->rho[id[i]] == rest[1][i] &&
                         kept->u[id[i]] == rest[2][i] && kept->P[id[i]] == rest[3][i] &&
                         kept->h[id[i]] == rest[4][i] && kept->volume[id[i]] == rest[5][i]);
-            /* by hand: against the exact state where the particle is */
+            /* against the exact state at the particle's position */
             struct problem_state exact;
             double place[3] = {x[0][i], x[1][i], dim > 2 ? x[2][i] : 0}, squares = 0;
             problem_sample(&run.problem, place, 0.1, &exact);
@@ -296,7 +297,7 @@ TEST(clouds_by_number)
     }
 }
 
-/* A state later than the exact solution holds is none that can be judged. */
+/* A state at a time when the exact solution no longer holds cannot be judged. */
 TEST(too_late)
 {
     const struct run run = keyed_run("sod", "t_end=0.1");
@@ -317,7 +318,7 @@ TEST(too_late)
     assert_true(!result.storage && !result.snapshot.n);
 }
 
-/* ---- on the way ---- */
+/* ---- during the run ---- */
 
 struct told {
     size_t calls;
@@ -353,14 +354,14 @@ TEST(who_is_told)
         }
         run_free(&result);
     }
-    told = (struct told){.stop = 5}; /* who says no stops it */
+    told = (struct told){.stop = 5}; /* a callback that returns false stops the run */
     struct run_result result = keyed_result(&run);
     assert_true(result.cost.steps == 5 && result.time < 0.2 && result.time == told.time[4]);
     run_free(&result);
 }
 
-/* Of every step the sums, and a word about it, also where a snapshot is due; a snapshot at each
- * time before the end. What cannot be written is told, and the run is the same. */
+/* Every step reports sums and progress, also when a snapshot is due; there is a snapshot at each
+ * time before the end. A snapshot that cannot be written is reported, and the run is the same. */
 TEST(what_is_left_on_the_way)
 {
     static struct trace trace;
@@ -388,7 +389,7 @@ TEST(what_is_left_on_the_way)
         assert_true(result.snapshot.x[0][i] == plain.snapshot.x[0][i] &&
                     result.snapshot.u[i] == plain.snapshot.u[i]);
     run_free(&result);
-    for (int k = 0; k <= 32; k++) { /* the last would be that of the end */
+    for (int k = 0; k <= 32; k++) { /* the last would be at the end */
         snprintf(file, sizeof file, "%s/a_%04d.csv", folder, k);
         assert_int_equal(unlink(file), k < 32 ? 0 : -1);
     }
@@ -402,8 +403,7 @@ TEST(what_is_left_on_the_way)
     assert_int_equal(rmdir(folder), 0);
 }
 
-/* The most memory that the process has had so far; on Linux also that of the one which started it.
- */
+/* The peak memory of the process; on Linux it includes the process that started it. */
 TEST(peaks)
 {
     struct rusage after;
@@ -423,7 +423,7 @@ TEST(peaks)
     run_free(&result);
 }
 
-/* Momentum is not kept along directions where walls push, and is along others. */
+/* Momentum is not conserved along directions where walls push, and is along others. */
 TEST(walls_push)
 {
     static const struct {
@@ -449,7 +449,7 @@ TEST(walls_push)
                 near_below(fabs(p[d]), 1e-14);
         }
         near_below(result.momentum, 1e-11);
-        if (k == 0) assert_true(result.momentum > 0); /* round-off: it was looked at */
+        if (k == 0) assert_true(result.momentum > 0); /* round-off, so it was measured */
         near_below(result.mass, 1e-13);
         run_free(&result);
     }

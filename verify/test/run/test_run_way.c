@@ -23,7 +23,7 @@ static int end(void **state)
     return rmdir(folder);
 }
 
-/* Sums of the start and of the end, by hand; errors are measured, and so are functionals. */
+/* Sums at the start and at the end agree with direct ones; errors and functionals are measured. */
 TEST(what_is_conserved)
 {
     for (int plain = 0; plain < 2; plain++) {
@@ -41,7 +41,7 @@ TEST(what_is_conserved)
         }
         initial_free(&initial);
         if (plain) {
-            /* the plain solver knows one scheme, and says so of others */
+            /* the plain solver has one scheme, and refuses others */
             struct run_result none = {0};
             assert_int_equal(run_execute(&run, &none, &error), STATUS_BAD_INPUT);
             assert_ptr_equal(strstr(error.message, "plain: only"), error.message);
@@ -70,7 +70,8 @@ TEST(what_is_conserved)
     }
 }
 
-/* What breaks down says so, in the result and as an error, and leaves its last sound state. */
+/* A run that breaks down reports that in its result and as an error, and leaves its last valid
+ * state. */
 TEST(breakdowns)
 {
     const struct run run = keyed_run("two_rarefactions", "n=40 cfl=50");
@@ -94,7 +95,7 @@ static size_t text_of(const char *path, char *text, size_t most)
     return n;
 }
 
-/* Blocks of local steps do not go over the time of a snapshot. */
+/* Blocks of local steps do not step over the time of a snapshot. */
 TEST(snapshots_are_in_time)
 {
     static char text[1024];
@@ -120,7 +121,7 @@ TEST(snapshots_are_in_time)
     }
 }
 
-/* While it grows the amplitude is seen 17 times, no more often than the run lasts. */
+/* The amplitude is sampled 17 times while it grows, within the time of the run. */
 TEST(growth)
 {
     struct run run = keyed_run("kelvin_helmholtz_mode", "n=12^2 t_end=1.84");
@@ -129,7 +130,7 @@ TEST(growth)
     assert_true(times[0] > 0 && times[1] < 1.84 + 1e-2 && times[0] < times[1]);
     for (int parts = 4; parts <= 16; parts += 6) {
         char words[64];
-        /* between two stops */
+        /* between two samples */
         snprintf(words, sizeof words, "n=12^2 t_end=%.17g",
                  times[0] + (times[1] - times[0]) * (parts - 0.5) / 16);
         run = keyed_run("kelvin_helmholtz_mode", words);

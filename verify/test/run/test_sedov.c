@@ -35,7 +35,7 @@ static void check_hot_spot(int dim, const char *keys)
     near_relative(energy, 1 + volume * 1e-6 / 0.6, 1e-12);
     assert_true(hot >= 4 && hot < 100);
     free(initial.storage);
-    struct initial none = {.n = 3}; /* of before */
+    struct initial none = {.n = 3}; /* from before */
     struct error error;
     s.value[SETTING_n].real[0] = 0x1p53;
     assert_int_equal(p.problem->fill(&p, &s, &none, &error), STATUS_ENVIRONMENT);
@@ -45,14 +45,15 @@ TEST(blasts_start_from_a_hot_spot)
 {
     check_hot_spot(2, "kind=sedov|gamma=1.6|lo=-1 0|hi=2 2|n=400");
     check_hot_spot(3, "kind=sedov|gamma=1.6|lo=-1 0 0|hi=2 2 2|n=900");
-    /* a cell of a by 1/a: the place 5 a/2, 1/(2 a) is 2.5 (1 + 5e-7) from the middle */
+    /* a cell of a by 1/a: the position 5 a/2, 1/(2 a) is 2.5 (1 + 5e-7) from the middle */
     const double far = 6.25 * (1 + 1e-6), a = sqrt((far + sqrt(far * far - 6.25)) / 12.5);
     char keys[128];
     snprintf(keys, sizeof keys, "kind=sedov|gamma=1.6|lo=0|hi=%.17g %.17g|n=400", 20 * a, 20 / a);
     check_hot_spot(2, keys);
 }
 
-/* Too few particles smear the front into its images: what the message allows is allowed. */
+/* With too few particles the front reaches its images: the run that the message allows is
+ * allowed. */
 TEST(blasts_that_meet_their_images)
 {
     for (int dim = 2; dim <= 3; dim++) {
@@ -60,7 +61,7 @@ TEST(blasts_that_meet_their_images)
         struct error error;
         const struct prepared p = prepared_of(&s, dim, "kind=sedov|gamma=1.6|lo=-1|hi=2");
         double *t = s.value[SETTING_t_end].real, *n = s.value[SETTING_n].real, side, power, longest;
-        const double shock = 1.2; /* room for four spacings of 0.3: ten along an axis */
+        const double shock = 1.2; /* four spacings of 0.3 remain: ten along an axis */
         *t = last_time(&p) * pow(shock / 1.35, 0.5 * dim + 1);
         for (int k = 4; k <= 12; k++) {
             struct initial initial = {0};
@@ -110,9 +111,9 @@ TEST(blasts_run_outwards)
                 for (int d = 0; d < 3; d++)
                     near_absolute(have.v[d] - want.v * n[d], 0, 1e-8 * (1 + fabs(want.v)));
                 if (i == 0) assert_true(have.v[0] == 0);
-                if (i == 0 && j) assert_true(have.rho == 0); /* too thin for a number */
+                if (i == 0 && j) assert_true(have.rho == 0); /* the density underflows */
             }
-        /* as long as the shock is within 9/10 of the way to the nearest end */
+        /* while the shock is within 9/10 of the distance to the nearest end */
         const double last = last_time(&p);
         const double half = dim == 2 ? 0.75 : 1;
         assert_true(sedov_shock(&blast, last) <= 0.9 * half &&
@@ -145,7 +146,7 @@ TEST(blasts_are_measured)
             near_relative(exactly(&p, "peak_density", t), k ? 2.6 / 0.6 : 1, 1e-14);
             if (k) {
                 assert_true(shells_crossing(&shells, 0.5 * (1 + top)) > 0);
-                struct snapshot other = cloud.snapshot; /* is not remembered */
+                struct snapshot other = cloud.snapshot; /* values are not cached */
                 other.m = cloud.volume;
                 measured(&p, "peak_density", &other);
                 same(measured(&p, "shock_radius", &cloud.snapshot),
@@ -158,8 +159,8 @@ TEST(blasts_are_measured)
         }
 }
 
-/* Of what r^(d - 1) times the integrand is, by midpoints in (r/R)^(1/2), which resolve the front.
- */
+/* The integral of r^(d - 1) times the integrand, by midpoints in (r/R)^(1/2), which resolve the
+ * front. */
 static double behind(const struct sedov *blast, int what, double t)
 {
     const double R = sedov_shock(blast, t), unit = blast->d == 2 ? 2 * M_PI : 4 * M_PI;
@@ -179,8 +180,8 @@ static double of_motion(double r, const struct sedov_state *s)
     return s->rho * s->v * s->v / 2;
 }
 
-/* Sums over all gas: energy of motion, momentum outwards, where the heat is, what is not alike in
- * all directions. */
+/* Sums over all gas: kinetic energy, outward momentum, position of the heat, asymmetry between
+ * directions. */
 TEST(blasts_are_summed)
 {
     for (int dim = 2; dim <= 3; dim++) {
@@ -246,7 +247,7 @@ static double pressure_alone(double r, const struct sedov_state *s)
     return s->P;
 }
 
-/* The energy that a mass has in a ball round the middle: before the blast that of the cold gas. */
+/* The energy of a given mass in a ball around the middle: before the blast that of the cold gas. */
 TEST(energy_of_a_ball)
 {
     for (int dim = 2; dim <= 3; dim++) {
@@ -262,8 +263,8 @@ TEST(energy_of_a_ball)
     }
 }
 
-/* One particle on either side of the middle along every axis, the light one twice as fast: as much
- * momentum flies outwards everywhere, but energy of motion lies more on one side. */
+/* One particle on either side of the middle along every axis, the light one twice as fast: outward
+ * momentum is the same everywhere, but one side has more kinetic energy. */
 TEST(one_side_is_faster)
 {
     for (int dim = 2; dim <= 3; dim++) {
@@ -294,7 +295,7 @@ TEST(one_side_is_faster)
     }
 }
 
-/* Where a start prefers no direction none may come. */
+/* If the initial state prefers no direction, asymmetry is an error. */
 TEST(symmetry_is_known)
 {
     static const struct {

@@ -55,7 +55,8 @@ static enum status set(enum setting key, double value, int count, struct setting
     return settings_set(settings, key, text, SOURCE_USER, NULL, &error);
 }
 
-/* A key takes both ends of what it says is allowed, unless it says above, and nothing beyond. */
+/* A key accepts both ends of its allowed range, unless the range says "above", and nothing
+ * beyond. */
 TEST(keys_take_their_ends)
 {
     for (int i = 0; i < SETTINGS; i++) {
@@ -89,7 +90,7 @@ TEST(keys_take_their_ends)
     }
 }
 
-/* What a key may be, in words; a list that has no room ends in dots, not in silence. */
+/* The allowed values of a key in words; a list that does not fit ends in dots. */
 TEST(keys_say_what_they_allow)
 {
     static const struct {
@@ -123,7 +124,7 @@ TEST(keys_say_what_they_allow)
                 {23, "one of sinuous var ..."},
                 {10, "one o ..."},
                 {5, " ..."},
-                {4, "one"}}; /* no room for dots */
+                {4, "one"}}; /* too small for dots */
     for (size_t k = 0; k < sizeof cuts / sizeof *cuts; k++) {
         memset(cut, '!', sizeof cut);
         setting_allowed(&setting_keys[SETTING_parity], cut, cuts[k].size);
@@ -150,7 +151,7 @@ TEST(messages)
 {
     char word[400], want[400];
     refused("eta=~ }\x7f\x1f\x80", "eta=~ }???: allowed: a number above 0 up to 100, or auto");
-    for (int n = 63; n <= 64; n++) { /* of a long word its beginning */
+    for (int n = 63; n <= 64; n++) { /* long words are cut */
         snprintf(word, sizeof word, "eta=%.*s", n,
                  "zyxwvutsrqponmlkjihgfedcbazyxwvutsrqponmlkjihg"
                  "fedcbazyxwvutsrqponmlkjihgfedcba");
@@ -161,7 +162,7 @@ TEST(messages)
     refused("eta=2 ", "eta=2 : allowed: a number above 0 up to 100, or auto");
     refused("seed=1.5", "seed=1.5: allowed: an integer from 0");
     refused("n=64.5", "n=64.5: allowed: an integer, or 64^2,");
-    for (int i = 0; i < SETTINGS; i++) { /* of choices all that is allowed */
+    for (int i = 0; i < SETTINGS; i++) { /* for choices the message lists all allowed values */
         if (!setting_keys[i].family) continue;
         setting_allowed(&setting_keys[i], word, sizeof word);
         snprintf(want, sizeof want, "no %s './x.Q'; allowed:%s", setting_keys[i].name,
@@ -188,7 +189,7 @@ TEST(messages)
     refused("left=1 0 1e31", "left=1 0 1e31: allowed: 3 numbers (rho v P) from -1e+30 to 1e+30");
     refused("left=1 0", "left=1 0: allowed: 3 numbers (rho v P) from -1e+30 to 1e+30");
     refused("skip=", "no skip ''; allowed: auto none");
-    /* a list of words that has no room */
+    /* a list of words that does not fit */
     memset(word, ' ', sizeof word);
     memcpy(word, "boundary=open", 13);
     for (int n = SETTING_TEXT_MAX - 1; n <= SETTING_TEXT_MAX; n++) {
@@ -216,7 +217,7 @@ TEST(messages)
     }
 }
 
-/* Every key of a scheme gets there, and what it leaves open comes back as it is used. */
+/* Every key of a scheme is stored, and defaults are written back as they are used. */
 TEST(schemes)
 {
     char *const words[] = {"kernel=sinc",
@@ -296,7 +297,7 @@ TEST(schemes)
     }
 }
 
-/* As one types it, and as a document has it. */
+/* As typed, and as in a document. */
 TEST(written)
 {
     static const struct {
@@ -337,7 +338,7 @@ TEST(written)
     }
 }
 
-/* A document has the keys that say something for the problem in so many dimensions. */
+/* A document has the keys that have an effect on the problem in this number of dimensions. */
 TEST(documents_have_what_is_read)
 {
     struct settings settings;
@@ -354,7 +355,8 @@ TEST(documents_have_what_is_read)
     }
 }
 
-/* A user's key that the value of another leaves without effect is refused; nobody else's is. */
+/* A user's key that has no effect because of another key's value is refused; keys from other
+ * sources are not. */
 TEST(keys_without_effect_are_refused)
 {
     static const struct {
@@ -377,7 +379,7 @@ TEST(keys_without_effect_are_refused)
          {"viscosity=time_dependent", "alpha=3"},
          "alpha=3 and viscosity=time_dependent exclude each other: alpha is of viscosity constant "
          "reconstructed fading projected"},
-        {2, {"viscosity=cullen_dehnen", "beta=3"}, NULL}, /* over the default of alpha */
+        {2, {"viscosity=cullen_dehnen", "beta=3"}, NULL}, /* beside the default alpha */
         {1, {"alpha=1", "beta=3"}, NULL},
         {2,
          {"viscosity=constant", "noise=2"},

@@ -17,7 +17,7 @@ static struct bench_shares shares_of(const char *name, const char *words)
     return shares;
 }
 
-/* At least four fifths of the allowed particles sleep, and no others do. */
+/* At least four fifths of the particles that may be inactive are, and no others. */
 TEST(test_shares)
 {
     static const struct {
@@ -33,14 +33,15 @@ TEST(test_shares)
         assert_true(bench_shares_enough(&shares));
         assert_true((shares.spacing > 0) == !strpbrk(cases[k].name, "23")); /* 1D alone */
         near_inside(shares.skipped / shares.allowed, 0.8, 1.05);
-        /* what could sleep does, or it is told why not (a step sees who sleeps after it) */
+        /* particles that may be inactive are, or the reason is counted (a step counts particles
+         * after it) */
         assert_true(shares.reached >= 0 && shares.layers >= 0);
         near_inside(shares.possible - shares.reached - shares.layers, 0, shares.skipped + 0.03);
     }
 }
 
-/* The bound itself: half of what is allowed is too little, unless layers of few particles explain
- * it; a hundredth of all updates is nothing. */
+/* The bound itself: half of the possible share is too little, unless layers of few particles
+ * explain it; a hundredth of all updates does not count. */
 TEST(test_enough)
 {
     static const struct {
@@ -57,7 +58,7 @@ TEST(test_enough)
                  {0.265, 0.456, 0.204, 0.005, true},
                  {0.265, 0.456, 0.07, 0.005, false},
                  {0.265, 0.456, 0.204, 0.001, false},
-                 /* nothing sleeps, or far too little */
+                 /* no particles, or far too few, are inactive */
                  {0, 0.456, 0.456, 0.005, false},
                  {0.1, 0.456, 0.356, 0.005, false}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
@@ -69,8 +70,7 @@ TEST(test_enough)
     }
 }
 
-/* The map has no stripes where no particle is: 20 of 20^2 and 12 of 12^3 particles stand along x.
- */
+/* The map has no empty stripes: 20 of 20^2 and 12 of 12^3 particles lie along x. */
 TEST(test_columns)
 {
     static const struct {
@@ -87,8 +87,8 @@ TEST(test_columns)
     }
 }
 
-/* Without an exact front, gas that hardly changes could sleep: in a box at rest all of it, in an
- * inflow that converges none. The map then shows every particle asleep, or none. */
+/* Without an exact front, gas that hardly changes could be inactive: in a box at rest all of it, in
+ * a converging flow none. The map then shows every particle inactive, or none. */
 TEST(test_coarse)
 {
     static const struct {

@@ -10,11 +10,11 @@
 enum { MOST = 5000, FIELDS_SEEN = 9 };
 enum kind { BLAST, TUBE, PULSE, KINDS };
 
-/* Of the setup drawn last: how far the hot gas reaches from its middle, in units of the box. */
+/* Distance of the hot gas from its middle in the last setup drawn, in units of the box. */
 static double width;
 static double x[3][MOST], v[3][MOST], m[MOST], u[MOST];
 
-/* What is compared of a run, by id, and what it keeps. */
+/* The results of a run that are compared, by id, and conserved sums. */
 struct end {
     double fields[FIELDS_SEEN][MOST];
     struct conservation sums;
@@ -81,7 +81,7 @@ static void run(struct setup *setup, bool skip, struct end *end)
     simulation_destroy(simulation);
 }
 
-/* Mean difference over the largest value, which of velocities is at least the sound's. */
+/* Mean difference over the largest value; for velocities the latter is at least the sound speed. */
 static double difference(const struct setup *setup, int field)
 {
     double sum = 0, largest = 0;
@@ -159,8 +159,8 @@ TEST(test_same_figures_with_shifting)
     same_figures(3, SHIFTING_CLOSED, 4);
 }
 
-/* Cold gas in disorder beside a blast: no force on it is seen in the blast's time, but it shifts.
- */
+/* Cold disordered gas beside a blast: forces on it are too small to matter during the blast, but it
+ * shifts. */
 TEST(test_cold_gas_shifts)
 {
     for (enum shifting shifting = SHIFTING_NONE; shifting <= SHIFTING_CLOSED; shifting++) {
@@ -176,7 +176,7 @@ TEST(test_cold_gas_shifts)
     }
 }
 
-/* Gas that moves as one sleeps like gas at rest. */
+/* Gas in uniform motion is inactive like gas at rest. */
 TEST(test_boosted)
 {
     for (int dim = 1; dim <= 3; dim++) {
@@ -192,8 +192,8 @@ TEST(test_boosted)
     }
 }
 
-/* The halves of cold gas stream apart: no force acts, but the density changes where they part, so
- * that gas is active there, with the same figures. */
+/* Two halves of cold gas move apart: no force acts, but the density changes between them, so that
+ * gas is active there, with the same results. */
 TEST(test_cold_streams)
 {
     struct setup setup = draw_setup(1, TUBE, 1, true);
@@ -207,10 +207,10 @@ TEST(test_cold_streams)
     compare(&setup);
 }
 
-/* Hot gas in disorder among gas that moves as one: pairs of the latter have no viscosity and, but
- * for `projected`, no velocity gradients, and the answer is the same. Under gravity nobody sleeps,
- * and this one moves nobody. In 1D, gas that expands in stretches of three ranges, which collide:
- * what is left out is exactly 0, and the bits are the same. */
+/* Hot disordered gas within gas in uniform motion: pairs of the latter have no viscosity and,
+ * except for `projected`, no velocity gradients, and the result is the same. With gravity no
+ * particle may be inactive; here it is too weak to move any. In 1D, gas that expands in stretches
+ * of three ranges, which collide: the omitted terms are exactly 0, and the bits are the same. */
 static void compare_pairs(struct setup *setup, bool slope)
 {
     run(setup, false, &plain);
@@ -259,8 +259,8 @@ TEST(test_pairs)
     }
 }
 
-/* Gas of which some neighbours' pressures differ by enough for the conductivity of shocks, and most
- * do not: a particle without such neighbours is left out, unless alpha_u conducts as well. */
+/* Gas in which some neighbours' pressures differ enough for the conductivity of shocks, and most do
+ * not: particles without such neighbours are skipped, unless alpha_u conducts as well. */
 TEST(test_conduction)
 {
     for (int k = 0; k < 6; k++) {
@@ -281,7 +281,7 @@ TEST(test_conduction)
         run(&setup, false, &plain);
         assert_memory_equal(plain.fields, skipping.fields, sizeof plain.fields);
         assert_int_equal(plain.cost.without_conductivity, 0);
-        /* no pressure is 1.5 times another one */
+        /* no two pressures differ by a factor of 1.5 */
         setup.scheme.alpha_u = 0;
         for (size_t i = 0; i < setup.n; i++) u[i] = 1 + draw(-0.1, 0.1);
         run(&setup, false, &skipping);

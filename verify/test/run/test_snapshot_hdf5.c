@@ -31,7 +31,7 @@ TEST(names)
 
 /* ---- calls that fail ---- */
 
-static long calls, refused; /* of the calls below one; 0: none */
+static long calls, refused; /* calls below, number of the failing one; 0: none */
 
 #define WRAP(type, name, parameters, arguments, failure)                                           \
     type __real_##name parameters;                                                                 \
@@ -66,7 +66,7 @@ FAIL(herr_t, Fflush, (hid_t a, H5F_scope_t b), (a, b))
 FAIL(ssize_t, Fget_file_image, (hid_t a, void *b, size_t c), (a, b, c))
 FAIL(hid_t, Gcreate2, (hid_t a, const char *b, hid_t c, hid_t d, hid_t e), (a, b, c, d, e))
 
-static long unclosed; /* shapes and lists of properties, of which the library keeps no number */
+static long unclosed; /* dataspaces and property lists, which the library does not count */
 
 #define COUNT(type, name, parameters, arguments, step)                                             \
     static type name##_counts parameters                                                           \
@@ -80,7 +80,7 @@ COUNT(herr_t, Sclose, (hid_t a), (a), -1)
 COUNT(hid_t, Pcreate, (hid_t a), (a), 1)
 COUNT(herr_t, Pclose, (hid_t a), (a), -1)
 
-/* In place of the calls of the library. */
+/* Replaces the library's functions. */
 static void take_their_place(void)
 {
     h5.Acreate2 = Acreate2_fails;
@@ -107,7 +107,7 @@ static long open_things(void)
 /* ---- a state ---- */
 
 enum { N = 5 };
-static double of[11][N + 1]; /* x, v, m, rho, u, P, h; one behind them */
+static double of[11][N + 1]; /* x, v, m, rho, u, P, h; one more after the last */
 
 static struct run_result made(int dim, bool cube)
 {
@@ -129,9 +129,9 @@ static struct run_result made(int dim, bool cube)
     return result;
 }
 
-/* ---- what stands in the file ---- */
+/* ---- contents of the file ---- */
 
-/* count: 0 of one that is no list. */
+/* count: 0 for an attribute that is not an array. */
 static void attribute(hid_t file, const char *name, H5T_class_t class, size_t bytes, int count,
                       const double *want)
 {
@@ -160,7 +160,7 @@ static void flag(hid_t file, const char *name, double want)
     attribute(file, name, H5T_INTEGER, 4, 0, &want);
 }
 
-/* An array of so many columns, 1 or 3; columns[d] NULL: of zeros. */
+/* An array of `width` columns, 1 or 3; columns[d] NULL: zeros. */
 static void array(hid_t file, const char *name, H5T_class_t class, int width,
                   const double *const columns[3], const double lo[3])
 {
@@ -245,7 +245,7 @@ TEST(whole_files)
     }
 }
 
-/* Whichever call fails: there is no file, and nothing stays open. */
+/* If any call fails there is no file, and nothing stays open. */
 TEST(failures)
 {
     const struct run_result result = made(2, false);

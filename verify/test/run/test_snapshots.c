@@ -7,7 +7,7 @@
 #include "snapshot_writer.h"
 #include "snapshots.h"
 
-/* From a ten thousandth of the run to all of it, both included. */
+/* Intervals from 1e-4 of the run to all of it, both included. */
 TEST(intervals)
 {
     const double least = 1. / 1024, t_end = SNAPSHOTS_MOST * least;
@@ -29,8 +29,8 @@ TEST(intervals)
     }
 }
 
-/* One at the start and at each multiple before the end, which has its own: no nearer to it than a
- * billionth of the run. */
+/* There is one at the start and at each multiple before the end, no nearer to it than 1e-9 of the
+ * run; the end has its own. */
 TEST(how_many)
 {
     const struct snapshots quarter = {.every = 0.25}, third = {.every = 0.3};
@@ -73,7 +73,7 @@ TEST(memory)
     assert_true(snapshot_writer_memory("a.vtu") == 90 && snapshot_writer_memory("a.") == 0);
 }
 
-/* Those up to now are over, and those that were made before the process began. */
+/* Snapshots up to the present time are over, and so are those made before the process began. */
 TEST(begins)
 {
     static const struct {
@@ -107,8 +107,8 @@ static double step_of(const struct simulation *simulation)
     return rates.time_step;
 }
 
-/* The state is kept where one is due within four steps and before the stop, and is put back to the
- * last bit, as often as anybody asks. */
+/* The state is kept if a snapshot is due within four steps and before the next stop, and can be
+ * restored to the last bit any number of times. */
 TEST(aside_and_back)
 {
     struct simulation *self = made_simulation(40), *other = made_simulation(40);

@@ -35,7 +35,7 @@ TEST(ends_with_the_run)
     same(end->nearest, result.regularity.nearest);
     same(end->spread, result.regularity.spread);
     same(end->gradient, result.regularity.gradient);
-    /* the displacements by the jitter of 0.2 have gone */
+    /* relaxation has removed the jitter of 0.2 */
     assert_true(start->spread > 0.1 && end->spread < 0.5 * start->spread);
     json_t *through = trace_json(&trace, 2);
     same(last(json_object_get(through, "angular_momentum")), result.angular_momentum);
@@ -51,14 +51,14 @@ TEST(on_a_line)
     struct run_result result = traced(&trace, "sod", "n=40 t_end=0.02");
     json_t *through = trace_json(&trace, 1);
     assert_true(json_is_null(json_object_get(through, "angular_momentum")));
-    /* of few steps each is seen once */
+    /* with few steps each is sampled once */
     assert_true(trace.looks >= 2 && trace.looks <= result.cost.steps + 1);
     for (size_t k = 1; k < trace.looks; k++) assert_true(trace.looked[k] > trace.looked[k - 1]);
     json_decref(through);
     run_free(&result);
 }
 
-/* ---- on sums that are made here ---- */
+/* ---- artificial sums ---- */
 
 static struct conservation sums_at(double k)
 {
@@ -74,7 +74,7 @@ static struct conservation sums_at(double k)
 }
 
 /* At first every step is kept, then every second one, and so on. Entries are evenly spaced, begin
- * with the start, and keep together what belongs to one time. */
+ * with the start, and keep values of the same time together. */
 TEST(thins_evenly)
 {
     static struct trace trace;
@@ -102,7 +102,7 @@ TEST(thins_evenly)
     assert_int_equal(trace.count, 5 * TRACE_MAX / 8 + 1);
 }
 
-/* The end replaces an entry of the same time, but no other one. */
+/* The end replaces an entry of the same time, and no other one. */
 TEST(ends_once)
 {
     static struct trace trace;
@@ -136,7 +136,7 @@ TEST(looks_at_even_times)
         trace_see(&trace, due, &any);
     }
     assert_false(trace_looks(&trace, 2, 2) || trace_looks(&trace, 100, 2));
-    trace_see(&trace, 3, &any); /* room for the end */
+    trace_see(&trace, 3, &any); /* the end has an entry of its own */
     assert_int_equal(trace.looks, TRACE_LOOKS + 2);
 }
 
@@ -144,14 +144,14 @@ TEST(drifts)
 {
     struct conservation start = sums_at(0), now = sums_at(1), end = sums_at(2);
     struct trace_drift drift;
-    now.momentum[1] = 4, now.momentum[2] = 5; /* by 1, 2, 2 */
+    now.momentum[1] = 4, now.momentum[2] = 5; /* changes of 1, 2, 2 */
     now.angular_momentum[0] = 2, now.angular_momentum[1] = 4, now.angular_momentum[2] = 4;
     drift = trace_drift(&start, &now, &end);
     near_relative(drift.mass, 0.125, 1e-15);
     near_relative(drift.momentum, 3 / 102., 1e-15);
     near_relative(drift.angular_momentum, 3 / 1000., 1e-15);
     near_relative(drift.energy, 0.25, 1e-15);
-    /* on a line the difference itself, of either sign, however small */
+    /* in 1D the difference itself, of either sign, however small */
     for (int sign = -1; sign <= 1; sign += 2) {
         now.momentum[0] = start.momentum[0] + sign * 0.5;
         now.momentum[1] = start.momentum[1], now.momentum[2] = start.momentum[2];
@@ -159,7 +159,7 @@ TEST(drifts)
     }
     start.momentum[0] = 0, now.momentum[0] = 1e-200;
     near_relative(trace_drift(&start, &now, &end).momentum, 1e-200 / 102, 1e-15);
-    /* the other scale where the first one vanishes beside it */
+    /* the other scale if the first one is negligible */
     end.momentum_scale = nextafter(1e-12 * end.sound_scale, 1);
     near_relative(trace_drift(&start, &now, &end).momentum, 1e-200 / 7e-12, 1e-12);
     end.momentum_scale = 1e-12 * end.sound_scale;
@@ -175,16 +175,16 @@ static void is(const json_t *lists, const char *name, size_t k, double value)
         fail_msg("%s %zu: %.17g, not %.17g", name, k, got, value);
 }
 
-/* Kinetic energies and momenta at uneven times, beside what follows from them by hand. */
+/* Kinetic energies and momenta at uneven times, and the figures computed from them by hand. */
 TEST(motion_is_told)
 {
     static const struct {
         double kinetic[5], momentum[5], rebound, asymmetry, centre;
     } rows[] = {
         {{8, 8, 8, 8, 8}, {1, 1, 1, 1, 1}, 0, 0, 0},
-        {{8, 7, 6, 5, 4}, {0, 0, 0, 0, 0}, 0, 0.5, 0}, /* what is dissipated is no rebound */
+        {{8, 7, 6, 5, 4}, {0, 0, 0, 0, 0}, 0, 0.5, 0}, /* dissipation is not a rebound */
         {{8, 6, 7, 5, 5.5}, {1, 1, 1, 1, 1}, 0.125, 0.3125, 0},
-        {{8, 9, 10, 9, 8}, {0, 2, 0, -2, 0}, 0.25, 0, 1}, /* there and back */
+        {{8, 9, 10, 9, 8}, {0, 2, 0, -2, 0}, 0.25, 0, 1}, /* forth and back */
         {{8, 8, 8, 8, 9}, {2, 2, 2, 2, 3}, 0.125, 0.125, 0.25},
         {{0, 1, 2, 3, 4}, {0, 1, 2, 3, 4}, (double)NAN, (double)NAN, 4},
     };
@@ -209,14 +209,14 @@ TEST(motion_is_told)
             near_absolute(motion.asymmetry, rows[r].asymmetry, 1e-14);
         }
         near_absolute(motion.centre, rows[r].centre, 1e-14);
-        /* of all entries, not of the last */
+        /* of all entries, not only of the last */
         near_relative(trace_worst(&trace).energy, 1e-4, 1e-10);
         assert_true(trace_worst(&trace).mass == 0);
     }
 }
 
-/* A run of a steady vortex says how its motion fades. A boost does not count as motion, and a tube
- * has no such figures. */
+/* A run of a steady vortex reports how its motion decays. A boost does not count as motion, and a
+ * tube has no such figures. */
 TEST(a_run_tells_its_motion)
 {
     struct run_result result = traced(NULL, "gresho", "n=12^2 t_end=0.5"),
@@ -224,7 +224,7 @@ TEST(a_run_tells_its_motion)
                       tube = traced(NULL, "sod", "n=40");
     assert_true(result.motion.rebound >= 0 && result.motion.asymmetry > 1e-4);
     assert_true(result.motion.centre < 1e-12 && result.motion.asymmetry < 1);
-    /* the boost is no motion of the flow */
+    /* the boost is not motion of the flow */
     assert_true(fabs(moving.motion.asymmetry / result.motion.asymmetry - 1) < 0.2);
     assert_true(isnan(tube.motion.rebound));
     run_free(&result);

@@ -30,7 +30,7 @@ TEST(gases_meet_in_the_middle)
             else
                 assert_true(have.u == 0);
         }
-        const double none[3] = {0.5 - 0.125}; /* in the vacuum of the second */
+        const double none[3] = {0.5 - 0.125}; /* in the vacuum of the second tube */
         struct problem_state have;
         p.problem->sample(&p, none, 0.125, &have);
         assert_true((have.rho == 0) == (k == 1));
@@ -42,7 +42,7 @@ TEST(gases_meet_in_the_middle)
     assert_true(prepared_of(&s, 1, "window=-0.75 0.5").window.lo[0] == -0.75);
 }
 
-/* With graded masses spacings are equal either side of the contact, within 2/3 and 3/2. */
+/* With graded masses spacings on both sides of the contact are equal within 2/3 and 3/2. */
 TEST(masses_follow_the_contact)
 {
     static const struct {
@@ -70,7 +70,7 @@ TEST(masses_follow_the_contact)
     }
 }
 
-/* ---- particles on a line ---- */
+/* ---- particles in 1D ---- */
 
 static double weight(size_t i, size_t n, double g, double q)
 {
@@ -85,7 +85,7 @@ static double weights(size_t n, double g, double q)
     return sum;
 }
 
-/* Tried one after the other. */
+/* The number of particles on the left, by trial of all. */
 static size_t share(size_t n, double g, double q, double fraction)
 {
     double miss[2];
@@ -147,15 +147,15 @@ TEST(particles_stand_on_a_line)
             for (int n = 4; n < 60; n += n < 12 ? 1 : 7) {
                 char keys[200];
                 struct settings s;
-                if (k == 3 && n % 2) continue; /* two are as near */
+                if (k == 3 && n % 2) continue; /* two are equally near */
                 snprintf(keys, sizeof keys,
                          "lo=-0.5|hi=2.5|gamma=1.3|n=%d|grade=%g|grade_ratio=%g|%s", n, grades[j].g,
                          grades[j].q, gases[k]);
                 const struct prepared p = prepared_of(&s, 1, keys);
                 check_line(&p, &s, grades[j].g, grades[j].q);
             }
-    /* Half of five, all alike, goes up; of two that are as near, graded, the lesser stands: of
-     * nine with weights 1/4, 1/2, 1 ... four have the share 3/8 and five 5/8. */
+    /* Half of five equal particles is rounded up; of two graded choices equally near the lesser
+     * counts: of nine with weights 1/4, 1/2, 1 ... four have the share 3/8 and five 5/8. */
     for (int graded = 0; graded < 2; graded++) {
         struct settings s;
         const struct prepared p =

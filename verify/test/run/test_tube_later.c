@@ -37,7 +37,7 @@ static struct prepared drawn(gsl_rng *random, struct settings *settings)
     r.v = l.v + between(random, -3, 3);
     if (kind == APART) r.v = l.v + between(random, 5, 20);
     if (kind == EQUAL) r = l;
-    if (kind == THIN) { /* and as warm */
+    if (kind == THIN) { /* and of the same temperature */
         const double part = pow(10, between(random, -4, 4));
         r.rho = l.rho * part;
         r.P = l.P * part;
@@ -50,10 +50,10 @@ static struct prepared drawn(gsl_rng *random, struct settings *settings)
     return prepared_of(settings, 1, keys);
 }
 
-/* ---- how long the window is free ---- */
+/* ---- time until waves reach the window ---- */
 
-/* When what starts in the mirrored tube at the left end of l | r, a length before its middle, may
- * have come `way` far; infinite: never. */
+/* The earliest time at which waves from the mirrored tube at the left end of l | r, `length` before
+ * its middle, may have travelled a distance of `way`; infinite: never. */
 static double arrival(double gamma, const struct riemann_state *l, const struct riemann_state *r,
                       double length, double way)
 {
@@ -65,7 +65,7 @@ static double arrival(double gamma, const struct riemann_state *l, const struct 
     const double speed = mirror.right_head, other = -main.left_head;
     const double meet = speed + other > 0 ? length / (speed + other) : HUGE_VAL;
     if (way <= speed * meet) return speed > 0 ? way / speed : HUGE_VAL;
-    /* as strong in all other gas as it is in l */
+    /* it has the same Mach number in all other gas as in l */
     const double mach = fmax(1, (speed - l->v) / c);
     const struct riemann_state stars[2] = {{main.rho_star_left, main.v_star, main.p_star},
                                            {main.rho_star_right, main.v_star, main.p_star}};
@@ -77,11 +77,11 @@ static double arrival(double gamma, const struct riemann_state *l, const struct 
     return meet + (way - speed * meet) / fast;
 }
 
-/* Until when the window of a tube is free. */
+/* The time until waves from the ends reach the window of a tube. */
 static double free_until(const struct prepared *p, const struct settings *settings)
 {
     const struct gases gases = gases_of(p->gamma, settings);
-    struct riemann_state l = gases.right, r = gases.left; /* turned about */
+    struct riemann_state l = gases.right, r = gases.left; /* mirrored */
     l.v = -l.v;
     r.v = -r.v;
     const double length = 0.5 * domain_length(&p->domain, 0);
@@ -110,8 +110,8 @@ TEST(windows_are_free_until_waves_come)
     struct settings s;
     const struct prepared all = prepared_of(&s, 1, "window=-1 1|left=1 0 1");
     assert_true(all.problem->holds(&all, 0) && !all.problem->holds(&all, 1e-9));
-    /* the gas leaves the left end a little faster than sound: nothing ever enters there, and from
-     * the right end waves come at twice the speed of sound */
+    /* the gas leaves the left end a little faster than sound: no wave enters there, and from the
+     * right end waves come at twice the speed of sound */
     char keys[128];
     const double c = sqrt(1.4);
     snprintf(keys, sizeof keys, "left=1 %.17g 1|right=1 %.17g 1|window=-1 -0.75", -c * (1 + 1e-9),
@@ -139,7 +139,7 @@ TEST(shocks_are_found_from_the_right)
     } rows[] = {
         {5, {0, 0.25, 0.75, 1, 1.5}, {2, 2, 1.5, 0.5, 0.25}, 0.875},
         {5, {0, 0.25, 0.75, 1, 1.5}, {2, 0.5, 1.5, 0.75, 0.25}, 0.75 + 0.25 * 2 / 3},
-        {5, {0, 0.25, 0.75, 1, 1.5}, {0, 1, 0.5, 0.25, 0}, 0.25},    /* at the level itself */
+        {5, {0, 0.25, 0.75, 1, 1.5}, {0, 1, 0.5, 0.25, 0}, 0.25},    /* exactly at the level */
         {5, {0, 0.25, 0.75, 1, 1.5}, {2, 1.5, 1, 1, 0.25}, 1},       /* not before it */
         {5, {0, 0.25, 0.75, 2, 2.5}, {2, 2, 1.5, 0.5, 0.25}, 1.375}, /* up to the window's end */
         {5, {0, 0.25, 0.75, 2.000001, 2.5}, {3, 0.5, 1.5, 0.5, 2}, 0.2},
@@ -151,7 +151,7 @@ TEST(shocks_are_found_from_the_right)
         {0, {0, 0.25, 0.75, 1, 1.5}, {2, 0, 0, 0, 0}, (double)NAN},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        double x[6] = {-9}, P[6] = {9}; /* one before them is no part of them */
+        double x[6] = {-9}, P[6] = {9}; /* the element before the first must not count */
         for (int i = 0; i < 5; i++) x[i + 1] = rows[k].x[i], P[i + 1] = level * rows[k].P[i];
         const struct snapshot of = {.n = rows[k].n, .x = {x + 1}, .P = P + 1};
         const double found = place->measure(&p, &of);
@@ -168,7 +168,7 @@ TEST(shocks_are_found_from_the_right)
     assert_false(place->present(&wide_fan));
 }
 
-/* ---- what moves across ---- */
+/* ---- transverse motion ---- */
 
 TEST(noise_is_that_of_disturbed_gas)
 {
@@ -181,8 +181,8 @@ TEST(noise_is_that_of_disturbed_gas)
                                     : "lo=-1|hi=1|left=1 0 1|right=0.125 0 0.1");
             const struct functional *noise = prepared_functional(&p, "transverse_noise");
             const struct riemann_solution tube = gases_of(1.4, &s).main;
-            /* at t = 1/2: on the head and on the shock is not between them (where places are exact,
-             * round x = 0); one behind the last */
+            /* at t = 1/2: positions on the head and on the shock are not between them (exact for x
+             * near 0); one more after the last */
             const double x0 = 0.25 * shifted, head = 0.5 * tube.left_head,
                          shock = 0.5 * tube.right_head, off = 1e-9, out = shifted ? 1e-9 : 0;
             const double x[] = {x0 + head * (1 - off),
@@ -202,7 +202,7 @@ TEST(noise_is_that_of_disturbed_gas)
             near_relative(noise->measure(&p, &of), sqrt(across / 7), 1e-14);
             assert_true(noise->exact(&p, 0.5) == 0 && noise->present(&p));
             of.n = 0;
-            assert_true(noise->measure(&p, &of) == 0); /* nobody is there */
+            assert_true(noise->measure(&p, &of) == 0); /* no particles */
         }
     struct settings s;
     const struct prepared line = prepared_of(&s, 1, "left=1 0 1");
@@ -213,7 +213,7 @@ TEST(noise_is_that_of_disturbed_gas)
 
 static bool is_near(double x, double place, double reach)
 {
-    return x >= place - reach && x <= place + reach; /* false of NaN */
+    return x >= place - reach && x <= place + reach; /* false for NaN */
 }
 
 static const char *region_of(const struct riemann_solution *tube, double x, double reach, double t)
@@ -244,7 +244,7 @@ TEST(regions_lie_between_waves)
                                          tube.right_tail, tube.right_head};
         for (int k = 0; k < 40; k++) {
             const double reach = k % 4 ? 0.1 * gsl_rng_uniform(random) : 0;
-            /* near waves, too: on either side, by a millionth of the reach */
+            /* also near waves: on either side, off by a millionth of the reach */
             const double wave = waves[k % 5] * t, side = k % 2 ? -1 : 1, off = k % 3 ? 1e-6 : -1e-6;
             const double x = k < 20 || isnan(wave) ? between(random, -1, 1)
                                                    : wave + side * (reach + off * (reach + 1e-3));
@@ -256,7 +256,7 @@ TEST(regions_lie_between_waves)
     }
     gsl_rng_free(random);
     for (int k = 0; k < 5; k++) assert_true(seen[k] > 100);
-    /* exactly on waves, in boxes whose middle is 0: they belong to what they bound */
+    /* exactly on waves, in boxes around 0: they belong to the region that they bound */
     for (int turned = 0; turned < 2; turned++) {
         struct settings s;
         const struct prepared p =
@@ -284,9 +284,9 @@ TEST(regions_lie_between_waves)
     }
 }
 
-/* ---- gas that is still ---- */
+/* ---- undisturbed gas ---- */
 
-/* A particle exactly at the limit is not far enough, and one a little further on is. */
+/* A particle exactly at the limit is too near, and one a little further away is not. */
 TEST(still_gas_begins_at_its_limits)
 {
     struct settings s;
@@ -294,7 +294,7 @@ TEST(still_gas_begins_at_its_limits)
     const struct gases gases = gases_of(1.4, &s);
     const double way = gases.main.right_head * 0.125, back = -gases.mirror.left_head * 0.125;
     const struct {
-        double x, h, widest, time; /* the place of the limit, and on which side of it it is still */
+        double x, h, widest, time; /* the limit, and the side where gas is undisturbed */
         int side;
     } rows[] = {
         {12. / 64, 1. / 64, 1. / 64, 0, 1},       {1 - 12. / 64, 1. / 64, 1. / 64, 0, -1},
@@ -305,15 +305,15 @@ TEST(still_gas_begins_at_its_limits)
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         for (int off = -1; off <= 1; off++) {
-            /* the second is beside the middle, and never far */
+            /* the second particle is near the middle, and never undisturbed */
             const double x[2] = {rows[k].x + 1e-9 * off, 1e-10}, v[2] = {0.5, 9},
                          h[2] = {rows[k].h, rows[k].widest};
             const struct snapshot of = {.n = 2, .x = {x}, .v = {v}, .h = h, .time = rows[k].time};
             const double have = p.problem->regions->still(&p, &of);
-            if (off == 0 && rows[k].time > 0) continue; /* the limit is no exact number */
+            if (off == 0 && rows[k].time > 0) continue; /* the limit is not an exact number */
             assert_int_equal(!isnan(have), off == rows[k].side);
         }
-    /* gas of the middle itself is the left one: here waves have left it behind */
+    /* gas at the middle belongs to the left one: here all waves have passed it */
     const struct prepared fast = prepared_of(&s, 1, "left=1 5 1|right=4 5.5 1");
     const double x[1] = {0}, v[1] = {6}, h[1] = {1e-4};
     const struct snapshot of = {.n = 1, .x = {x}, .v = {v}, .h = h, .time = 0.1};

@@ -7,7 +7,7 @@
 #include "prepared.h"
 #include "simple_wave.h"
 
-/* Waves of every dimension, and what they are: gamma 1.6 and a background "1.3 0.4 0.7". */
+/* Waves in each dimension, and their parameters: gamma 1.6 and a background "1.3 0.4 0.7". */
 static const struct row {
     int dim;
     const char *keys;
@@ -78,8 +78,8 @@ TEST(samples_are_the_wave)
     }
 }
 
-/* All particles have the same mass. From the corner up to a particle, along the wave, there is as
- * much mass as uniform gas would have up to its lattice point. */
+/* All particles have the same mass. The mass from the corner to a particle along the wave is that
+ * of uniform gas up to its lattice point. */
 TEST(particles_carry_the_mass)
 {
     for (const struct row *row = rows; row < rows + ROWS; row++) {
@@ -112,7 +112,7 @@ TEST(particles_carry_the_mass)
             near_relative(initial.rho[i], at.rho, 1e-14);
             near_relative(initial.u[i], at.u, 1e-14);
             for (int d = 0; d < row->dim; d++) near_absolute(initial.v[d][i] - at.v[d], 0, 1e-14);
-            /* the shift from its point, of which whole boxes are taken away */
+            /* the displacement from the lattice point, less whole boxes */
             for (int d = 0; d < row->dim; d++) {
                 const double length = domain_length(&p.domain, d);
                 double step = x[d] - point[d];
@@ -134,8 +134,8 @@ TEST(particles_carry_the_mass)
     }
 }
 
-/* At most fifty steps of Newton's method: for some particles the last steps alternate between two
- * numbers, and a run has the bits of the one at which they stop. */
+/* Newton's method makes at most fifty steps: for some particles the last steps alternate between
+ * two numbers, and the bits of a run depend on where they stop. */
 TEST(steps_are_counted)
 {
     int restless = 0;
@@ -169,7 +169,7 @@ TEST(what_cannot_be_laid_is_said)
         struct settings s;
         struct error error = {0};
         const struct prepared p = prepared_of(&s, dim, "kind=sound_wave");
-        struct initial initial = {.n = 3}; /* of before */
+        struct initial initial = {.n = 3}; /* from before */
         s.value[SETTING_n].real[0] = 0x1p53;
         assert_int_equal(p.problem->fill(&p, &s, &initial, &error), STATUS_ENVIRONMENT);
         s.value[SETTING_n].real[0] = 4;
@@ -178,9 +178,9 @@ TEST(what_cannot_be_laid_is_said)
     }
 }
 
-/* ---- its mode ---- */
+/* ---- the wave's mode ---- */
 
-/* Of points that lie anywhere, one behind them; the boost is taken off. */
+/* Arbitrary points, and one more after the last; the boost is subtracted. */
 TEST(modes_are_sums)
 {
     enum { N = 40 };
@@ -212,7 +212,7 @@ TEST(modes_are_sums)
     }
 }
 
-/* The first coefficient of the wave's own Fourier series, at the start its amplitude. */
+/* The first coefficient of the wave's own Fourier series, whose initial value is the amplitude. */
 TEST(modes_are_those_of_the_wave)
 {
     enum { POINTS = 3000 };

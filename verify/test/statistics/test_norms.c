@@ -39,8 +39,8 @@ TEST(test_bins)
     assert_true(isnan(norm_binned_l1(0, x, window, volume, value, NORM_BINS, means)));
     const double out[] = {-0.46, -0.6, -0.7}; /* one in the window, and lower ones */
     near_relative(norm_binned_l1(2, out, window, volume, value, NORM_BINS, means), 2 - 1, 1e-14);
-    /* a place that is no number is none, wherever it stands; what is behind the last one is
-     * nobody's */
+    /* a position that is NaN makes the norm NaN at any index; elements after the last do not
+     * count */
     const double lost[] = {NAN, 0, 0.25, NAN};
     assert_true(isnan(norm_binned_l1(2, lost, window, volume, value, NORM_BINS, means)));
     assert_true(isfinite(norm_binned_l1(2, lost + 1, window, volume, value, NORM_BINS, means)));
@@ -58,8 +58,8 @@ TEST(test_worst)
     assert_true(isnan(worst));
 }
 
-/* What is nowhere makes every norm no number, wherever it stands; what is exact has none but 0;
- * what lies outside of the window counts for nothing, even where it has no value. */
+/* A position that is NaN makes every norm NaN, at any index; exact values have norms of 0;
+ * particles outside of the window do not count, even if their value is NaN. */
 TEST(test_norms_at_their_limits)
 {
     const double window[] = {0, 2}, volume[] = {0.5, 0.5, 0.5}, exact[] = {3, 4, 5};
@@ -87,7 +87,7 @@ static void no_handler(const char *reason, const char *file, int line, int numbe
     (void)reason, (void)file, (void)line, (void)number;
 }
 
-/* Bins in a window whose length is not 1; what lies on its upper end is in the last one. */
+/* Bins in a window whose length is not 1; a position at its upper end is in the last one. */
 TEST(test_bins_of_a_window)
 {
     const double window[] = {-1, 3}, at = 0.3, x[] = {-1, 0.5, 1.5, 3}, volume[] = {1, 1, 1, 1};
@@ -95,7 +95,7 @@ TEST(test_bins_of_a_window)
     near_relative(norm_binned_l1(4, x, window, volume, (double[]){1, 12, 24, 38}, 4, means),
                   (1. + 2 + 4 + 8) / 4, 1e-15);
     gsl_error_handler_t *before = gsl_set_error_handler(no_handler);
-    norm_bin_means(scaled_step, &at, window, 4, means); /* as good in any unit */
+    norm_bin_means(scaled_step, &at, window, 4, means); /* independent of the unit */
     assert_true(gsl_set_error_handler(before) == no_handler);
     near_relative(means[1], 1e-15 * (3 - 2 * at), 1e-9);
 }

@@ -30,8 +30,8 @@ TEST(test_order_interval)
     assert_int_equal(fit.class, ORDER_ASYMPTOTIC);
 
     /* Replicates that differ by more than the scatter: s^2/Sxx, Satterthwaite's degrees of freedom
-     * from c_i^2 = (0.3, 0.1, 0.1, 0.3)^2: (0.2)^2 8/(2 0.3^4 + 2 0.1^4). Quieter ones leave the
-     * scatter, which they cannot explain. */
+     * from c_i^2 = (0.3, 0.1, 0.1, 0.3)^2: (0.2)^2 8/(2 0.3^4 + 2 0.1^4). If they differ by less,
+     * the scatter is used, because they cannot explain it. */
     const double noisy[] = {0.01, 0.01, 0.01, 0.01}, quiet[] = {1e-9, 1e-9, 1e-9, 1e-9};
     const struct order_noise loud = {noisy, 9}, faint = {quiet, 9};
     const double freedom = 0.04 * 8 / (2 * 0.0081 + 2 * 0.0001);
@@ -41,14 +41,14 @@ TEST(test_order_interval)
                   gsl_cdf_tdist_Pinv(0.975, freedom) * sqrt(0.01 / 5), 1e-12);
     assert_int_equal(order_fit(4, spacing, error, &faint, &replicated, NULL), STATUS_OK);
     near_relative(replicated.high - replicated.low, fit.high - fit.low, 1e-9);
-    /* as many levels as there are variances are used, whatever stands behind them */
+    /* only as many levels are used as there are variances */
     const double behind[] = {0.01, 0.01, 0.01, 0.01, NAN};
     assert_int_equal(
         order_fit(4, spacing, error, &(struct order_noise){behind, 9}, &replicated, NULL),
         STATUS_OK);
     near_relative((replicated.high - replicated.low) / 2,
                   gsl_cdf_tdist_Pinv(0.975, freedom) * sqrt(0.01 / 5), 1e-12);
-    /* replicates all alike: no noise to weigh by */
+    /* equal replicates: no noise to weigh by */
     const double none[4] = {0};
     assert_int_equal(
         order_fit(4, spacing, error, &(struct order_noise){none, 9}, &replicated, NULL), STATUS_OK);
@@ -101,14 +101,14 @@ TEST(test_richardson_unequal_ratios)
     for (int i = 0; i < 3; i++) value[i] = 2.385 - 0.7 * pow(spacing[i], p);
     const struct order_extrapolation e = order_extrapolate(spacing, value, NAN);
     near_relative(e.order, p, 1e-11);
-    /* the root of what defines it, to the last digits */
+    /* the root of the defining equation, to the last digits */
     const double fine = log(0.06 / 0.025), coarse = log(0.1 / 0.06),
                  change = (value[1] - value[0]) / (value[2] - value[1]);
     near_relative(exp(fine * e.order) * expm1(coarse * e.order) / expm1(fine * e.order), change,
                   1e-14);
 }
 
-/* As many levels as there is room for; pairwise orders are those between levels and no more. */
+/* The largest number of levels; pairwise orders are those between levels and no more. */
 TEST(test_order_room)
 {
     double spacing[ORDER_LEVELS_MAX + 1], error[ORDER_LEVELS_MAX + 1];
@@ -127,7 +127,7 @@ TEST(test_order_room)
     for (int i = 4; i < ORDER_LEVELS_MAX - 1; i++) assert_true(fit.pairwise[i] == 0);
 }
 
-/* Errors that grow once, wherever, do not fall from level to level. */
+/* Errors that grow once, at any level, do not fall from level to level. */
 TEST(test_one_rise)
 {
     const double spacing[] = {1, 0.5, 0.25, 0.125, 0.0625, 0.03125};
@@ -141,8 +141,8 @@ TEST(test_one_rise)
     }
 }
 
-/* Levels that are off their line by as much as replicates explain at 1 % (an F test), or by just
- * more: then the scatter decides. */
+/* Levels deviate from their line by as much as replicates explain at 1 % (an F test), or by just
+ * more: then the scatter is used. */
 TEST(test_order_curvature)
 {
     const double e = 0.02, limit = gsl_cdf_fdist_Qinv(0.01, 2, 4 * 8);
@@ -164,9 +164,9 @@ TEST(test_order_curvature)
     }
 }
 
-/* Noise that differs from level to level: weights, slope and interval by hand. A level that seems
- * quiet is not believed: its variance is drawn towards the mean of all, by 24 to the replicates' 4.
- */
+/* Noise that differs from level to level: weights, slope and interval by hand. A level with little
+ * noise is not taken at its word: its variance is drawn towards the mean of all, with 24 degrees of
+ * freedom to the replicates' 4. */
 TEST(test_order_weights)
 {
     const double x[] = {3, 2, 1, 0}, y[] = {3.3, 2.1, 0.7, 0.2};
@@ -197,8 +197,8 @@ TEST(test_order_weights)
                   gsl_cdf_tdist_Pinv(0.975, total * total / parts) * sqrt(total), 1e-12);
 }
 
-/* Flat is what falls by less than a tenth of an order over all levels; a floor shows where the last
- * order is below a third of the best, wherever that was. */
+/* Errors that fall by less than a tenth of an order over all levels are flat; there is a floor if
+ * the last order is below a third of the best one, at any level. */
 TEST(test_class_limits)
 {
     static const struct {
@@ -224,8 +224,7 @@ TEST(test_class_limits)
     }
 }
 
-/* Orders are looked for from 1e-3 to 30; the library's own handler of errors is there afterwards.
- */
+/* Orders are searched from 1e-3 to 30; the caller's error handler of GSL is restored. */
 static void own_handler(const char *reason, const char *file, int line, int code)
 {
     fail_msg("%s:%d: %s (%d)", file, line, reason, code);
@@ -240,7 +239,7 @@ TEST(test_richardson_range)
         const struct order_extrapolation e = order_extrapolate(spacing, value, NAN);
         assert_int_equal(e.class, ORDER_ASYMPTOTIC);
         near_relative(e.order, p, 1e-9);
-        near_relative(e.gci_fine, 1.25, 1e-9); /* the value is all error */
+        near_relative(e.gci_fine, 1.25, 1e-9); /* the error is the value itself */
         near_relative(e.gci_coarse, 1.25, 1e-9);
     }
     const double beyond[] = {9e-4, -1, 30 * (1 + 5e-7)};
@@ -251,8 +250,7 @@ TEST(test_richardson_range)
     assert_true(gsl_set_error_handler(before) == own_handler);
 }
 
-/* Values whose exact limit is known: it must lie within the GCI of the finest, or the errors tell.
- */
+/* Values with a known limit: it must lie within the GCI of the finest, or the errors decide. */
 TEST(test_richardson_exact)
 {
     static const struct {
@@ -263,16 +261,16 @@ TEST(test_richardson_exact)
         {{1.4, 1.2, 1.1}, 1, ORDER_ASYMPTOTIC},
         {{1.4, 1.2, 1.1}, 0.976, ORDER_ASYMPTOTIC},
         {{1.4, 1.2, 1.1}, 0.974, ORDER_PREASYMPTOTIC},
-        /* within the GCI, but past it: errors 0.176, 0.024, 0.124; 0.11, 0.09, 0.19 */
+        /* within the GCI, but on the other side: errors 0.176, 0.024, 0.124; 0.11, 0.09, 0.19 */
         {{1.4, 1.2, 1.1}, 1.224, ORDER_OSCILLATING},
         {{1.4, 1.2, 1.1}, 1.29, ORDER_DIVERGING},
-        /* within a GCI of four times the value, and farther off from level to level */
+        /* within a GCI of four times the value, with errors that grow from level to level */
         {{0.000933, 0.001573, 0.002578}, 0, ORDER_DIVERGING},
-        /* falls on a third of the promised order, or on less */
+        /* errors fall with a third of the promised order, or with less */
         {{1.4, 1.2, 1.1}, 0.716, ORDER_PREASYMPTOTIC},
         {{1.4, 1.2, 1.1}, 0.714, ORDER_FLOOR_LIMITED},
         {{-1.4, -1.2, -1.1}, -0.714, ORDER_FLOOR_LIMITED},
-        /* grows apart, and promises nothing; errors 4^0.099, 4^0.101 */
+        /* differences grow, and promise nothing; errors 4^0.099, 4^0.101 */
         {{1, 1.1, 1.3}, 1.5, ORDER_PREASYMPTOTIC},
         {{1, 1.1, 1.3}, 0.9, ORDER_DIVERGING},
         {{1, 1.1, 1.3}, 1.2, ORDER_DIVERGING},
@@ -287,7 +285,7 @@ TEST(test_richardson_exact)
     }
 }
 
-/* The words of the classes, and what decides between them at its limits. */
+/* The names of the classes, and the limits between them. */
 TEST(test_class_words)
 {
     static const char *const words[] = {"asymptotic", "floor-limited", "pre-asymptotic",
@@ -300,7 +298,7 @@ TEST(test_class_words)
         assert_int_equal(class_of((double[]){512, 64, 8, 1, exp2(-1 - (more - 0.5) * 1e-6)}),
                          more ? ORDER_ASYMPTOTIC : ORDER_FLOOR_LIMITED);
     struct order_fit fit;
-    assert_true(log(3) / log(59049) == ORDER_FLAT); /* not less: no floor */
+    assert_true(log(3) / log(59049) == ORDER_FLAT); /* equal to the limit: no floor */
     assert_int_equal(order_fit(4, (double[]){59049, 2187, 27, 1},
                                (double[]){3, pow(3, 0.7), pow(3, 0.3), 1}, NULL, &fit, NULL),
                      STATUS_OK);
@@ -315,8 +313,8 @@ TEST(test_class_words)
     assert_non_null(strstr(failure.message, "spacing 2 is 2.5"));
 }
 
-/* Three values that converge to something else than the exact one, 1, from above or below, by their
- * errors; and what is reached but for round-off. */
+/* Three values that converge to a value other than the exact one, 1, from above or below, by their
+ * errors; and values that reach it but for round-off. */
 TEST(test_richardson_against_exact)
 {
     const double spacing[] = {0.4, 0.2, 0.1}, wider[] = {2, 1, 0.5};
@@ -329,7 +327,7 @@ TEST(test_richardson_against_exact)
         {{3.232, 3.11, 3}, ORDER_FLOOR_LIMITED},
         {{third + 2 * (third - 1), third, 1}, ORDER_FLOOR_LIMITED},
         {{more + 2 * (more - 1), more, 1}, ORDER_PREASYMPTOTIC},
-        {{-2, -1, 1}, ORDER_DIVERGING}, /* no order at all, and as far off as before */
+        {{-2, -1, 1}, ORDER_DIVERGING}, /* no order, and the error is as large as before */
         {{-8, -5, -1}, ORDER_PREASYMPTOTIC},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)

@@ -69,8 +69,8 @@ static double normal(void)
     return sum;
 }
 
-/* Of what is alike a part of `level` is taken for a difference, whether one side is a single draw
- * or not; swapping the sides turns every verdict round. */
+/* For equal sides a share `level` of the verdicts is a difference, also if one side is a single
+ * draw; exchanging the sides inverts every verdict. */
 TEST(by_chance)
 {
     enum { TIMES = 4000, DRAWS = 5 };

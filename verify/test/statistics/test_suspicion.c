@@ -4,8 +4,8 @@
 
 #include "suspicion.h"
 
-/* A field is another one's if it is nearer to that one's exact values than half of what these
- * spread about their mean; exactly as far is not nearer. */
+/* A field is suspected to be another one if it is nearer to that one's exact values than half of
+ * their spread about their mean; exactly as far is not nearer. */
 TEST(test_limit_of_swapped)
 {
     static const char *const names[] = {"one", "two"};
@@ -21,7 +21,7 @@ TEST(test_limit_of_swapped)
         }
 }
 
-/* Messages name what is suspected, and nothing beyond the last element is asked. */
+/* Messages name the suspicion, and elements after the last one are not read. */
 TEST(test_suspicions)
 {
     char why[SUSPICION_TEXT];
@@ -39,7 +39,8 @@ TEST(test_suspicions)
 
     const char *const names[] = {"u", "v", "w"};
     const double volume[] = {1, 2, 100};
-    /* value, exact of two fields; whether the second is nearer the first's solution than its own */
+    /* value and exact value of two fields; true if the second is nearer the first's solution than
+     * its own */
     static const struct {
         double value[2][3], exact[2][3];
         bool suspected;
@@ -47,7 +48,7 @@ TEST(test_suspicions)
         {{{0, 9}, {1, 9}}, {{0, 9}, {3.000002, 9}}, true},
         {{{0, 9}, {1, 9}}, {{0, 9}, {2.999998, 9}}, false},
         {{{0, 1e-7}, {1e-8, 1e-7}}, {{0, 1e-7}, {1e-7, 1e-7}}, true},
-        {{{0, 0}, {1e-8, 0}}, {{0, 0}, {1e-7, 0}}, false}, /* near a constant is near nobody */
+        {{{0, 0}, {1e-8, 0}}, {{0, 0}, {1e-7, 0}}, false}, /* near a constant does not count */
         {{{0.9, 9, 5}, {1, 9, 5}}, {{0.9, 9, 7}, {2, 9, 5}}, true},
         {{{1, 0, 5}, {1, 9, 7}}, {{1, 0, 7}, {2, 9, 5}}, false},
         {{{0, 2.5, 5}, {4, 2.5, 7}}, {{0, 2.5, 5}, {4, 0, 5}}, false},

@@ -81,8 +81,8 @@ TEST(a_viscosity_that_does_not_vanish_is_named)
     near_inside(autopsy.orders[AUTOPSY_VISCOSITY].order, 0.9, 1.1);
 }
 
-/* Also where particles have lost their lattice: most of the error is smooth, as viscosity is, and
- * that they carry mass away from where it should be is no disorder. */
+/* Also if particles have lost their lattice: most of the error is smooth, as that of viscosity is,
+ * and the displaced mass is not counted as disorder. */
 TEST(a_viscosity_that_does_not_vanish_is_named_among_disorder)
 {
     static const size_t finer[LEVELS] = {400, 576, 784, 1024};
@@ -97,7 +97,7 @@ TEST(a_viscosity_that_does_not_vanish_is_named_among_disorder)
     }
 }
 
-/* The acceleration is wrong by the lattice sum, whatever n. */
+/* The acceleration has the error of the lattice sum at any n. */
 TEST(a_kernel_with_too_few_neighbours_is_named)
 {
     struct autopsy autopsy;
@@ -146,7 +146,7 @@ TEST(a_biased_solution_is_named)
                       0.01 * autopsy.levels[l].acceleration, 1e-3);
 }
 
-/* A solution that is exact but where a run is measured. */
+/* A solution that is exact except at the positions where a run is measured. */
 static const struct prepared *fair;
 
 static void sample_unfairly(const struct prepared *p, const double x[3], double t,
@@ -175,7 +175,7 @@ TEST(a_biased_measure_is_named)
     expect(&autopsy, true, AUTOPSY_MEASURE, "is lost to the measure of the error from ");
 }
 
-/* In a wave the pressures that it changes; nothing of the velocity itself. */
+/* In a wave conductivity changes the pressure, and not the velocity. */
 TEST(a_conductivity_that_does_not_vanish_is_named)
 {
     struct autopsy autopsy;
@@ -184,8 +184,8 @@ TEST(a_conductivity_that_does_not_vanish_is_named)
     near_inside(autopsy.losses[AUTOPSY_CONDUCTION].order, 1, 1.25);
 }
 
-/* A wave that runs across a lattice shakes it: those accelerations come and go. What the viscosity
- * takes away is missed where it is switched off. */
+/* Accelerations of a wave that moves across a lattice fluctuate with it, and cancel. Without
+ * viscosity the damping is missing. */
 TEST(what_shakes_a_wave_is_not_what_damps_it)
 {
     struct run run;
@@ -205,7 +205,7 @@ TEST(what_shakes_a_wave_is_not_what_damps_it)
     run_free(&result);
 }
 
-/* Of our own particles, as if they were another code's. */
+/* Our own particles, treated as another code's. */
 TEST(snapshots_tell_the_same_of_positions)
 {
     enum { N = 576 };
@@ -236,7 +236,7 @@ TEST(snapshots_tell_the_same_of_positions)
     run_free(&result);
 }
 
-/* Figures of any levels in which one part is the largest and falls slowly. */
+/* Figures in which one part is the largest and falls slowly, from level `from` on. */
 static void make(struct autopsy *autopsy, size_t part, size_t from)
 {
     *autopsy = (struct autopsy){.count = LEVELS, .dim = 2};
@@ -272,7 +272,7 @@ TEST(the_largest_part_that_falls_slowly_is_named_whichever_it_is)
         }
 }
 
-/* It cannot cost the order, however large it is. */
+/* It does not limit the order, however large it is. */
 TEST(a_part_that_falls_fast_is_not_named)
 {
     struct autopsy autopsy;
@@ -284,7 +284,7 @@ TEST(a_part_that_falls_fast_is_not_named)
     expect(&autopsy, true, AUTOPSY_VISCOSITY, "is lost to viscosity from 16^2 on");
 }
 
-/* Noise of a known size on a function that is linear in places: both are found. */
+/* Noise of a known size on a function that is locally linear: both are found. */
 static void split_noise(int dim)
 {
     enum { SIDE = 64, N = SIDE * SIDE };
@@ -323,7 +323,7 @@ TEST(noise_is_told_from_smooth_fields)
         for (int k = 0; k < 5; k++) split_noise(dim);
 }
 
-/* Of any state: what terms take from the flow they give as heat. */
+/* In any state, each term's work on the flow is the negative of its heat. */
 TEST(the_power_of_each_term_closes)
 {
     static const char *const keys[] = {"shock_conductivity=0",
@@ -349,7 +349,7 @@ TEST(the_power_of_each_term_closes)
             assert_true((power[t].scale > 0) == there[k][t]);
             near_below(fabs(power[t].work + power[t].heat) / largest, 1e-12);
         }
-        /* viscosity warms, and conduction does no work */
+        /* viscosity heats, and conduction does no work */
         if (there[k][AUTOPSY_VISCOUS]) assert_true(power[AUTOPSY_VISCOUS].heat > 0);
         near_below(fabs(power[AUTOPSY_CONDUCTIVITY].work) / largest, 1e-12);
         run_free(&result);

@@ -114,7 +114,7 @@ TEST(no_number_is_not_known)
     }
 }
 
-/* A gate fails if the run does not have its figure: nothing was compared. */
+/* A gate fails if the run lacks its figure, because nothing was compared. */
 TEST(what_is_missing_fails)
 {
     const struct case_file file = file_of(false);
@@ -130,7 +130,7 @@ TEST(what_is_missing_fails)
     json_decref(run);
 }
 
-/* Where a scheme's order cannot be measured because its errors are round-off, a measured error must
+/* If a scheme's order cannot be measured because its errors are round-off, a measured error must
  * pass. */
 TEST(absence_is_known)
 {
@@ -142,8 +142,8 @@ TEST(absence_is_known)
     assert_true(!gates_know(&some, 1, (double)NAN) && !gates_know(&unsaid, 1, 0));
 }
 
-/* An error that is not a number fails. Figures without an exact value are no gates. Above the
- * ladder the case's bound holds. */
+/* An error that is not a number fails. Figures without an exact value are not gates. Above the
+ * ladder the case's bound applies. */
 TEST(odd)
 {
     const struct case_file file = file_of(false);
@@ -161,7 +161,7 @@ TEST(odd)
     json_decref(run);
 }
 
-/* Momentum is not asked for where walls push or gravity pulls, and energy is not where only heat is
+/* Momentum is not gated where walls push or gravity acts, and energy is not if only heat is
  * integrated. */
 TEST(conserved)
 {

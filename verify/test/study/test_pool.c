@@ -49,7 +49,7 @@ TEST(any_number_of_processes)
     place_clear(&place);
 }
 
-/* Where nothing can be kept, results are still there, and the pool says why. */
+/* If results cannot be stored, they are still returned, and the pool gives the reason. */
 TEST(full_disk)
 {
     struct place place;
@@ -70,7 +70,7 @@ TEST(full_disk)
 
 enum { SLOTS = 160 };
 
-/* What processes tell each other: in memory that they share. */
+/* Shared memory of the processes. */
 struct board {
     int running, most, count, order[SLOTS];
 };
@@ -80,8 +80,8 @@ struct told {
     int number;
     enum status status;
     enum { NOTHING, WITH_DOCUMENT, LEAVES, LEAVES_BADLY, FLUSHES } kind;
-    int ms;       /* how long it takes */
-    int together; /* before that it waits until so many have run at once, 20 s at most */
+    int ms;       /* duration of the job */
+    int together; /* the job first waits until this many have run at once, 20 s at most */
 };
 
 static enum status tell(const void *context, json_t **document, struct error *error)
@@ -108,7 +108,7 @@ static enum status tell(const void *context, json_t **document, struct error *er
     return told->status;
 }
 
-/* n jobs of these weights. */
+/* Adds n jobs with these weights. */
 static void add(struct pool *pool, struct told *told, size_t n, const double *weights)
 {
     *pool = (struct pool){0};
@@ -120,8 +120,8 @@ static void add(struct pool *pool, struct told *told, size_t n, const double *we
     }
 }
 
-/* Before all tests: who runs jobs goes on afterwards. Where not, this process would be gone, too,
- * in the midst of a test and without a word. */
+/* Before all tests: a process that runs a job must not return here. If it did, this process would
+ * end in the middle of a test without a message. */
 static int begin(void **state)
 {
     (void)state;
@@ -140,7 +140,7 @@ static int begin(void **state)
     return !WIFEXITED(status) || WEXITSTATUS(status) != 42;
 }
 
-/* Of malloc's; 0 where nobody knows. */
+/* Bytes that malloc has in use; 0 where that is unknown. */
 static size_t bytes_in_use(void)
 {
 #if defined(__GLIBC__) && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 33)
@@ -150,7 +150,7 @@ static size_t bytes_in_use(void)
 #endif
 }
 
-/* Names, keys and weights as they were given, however many; of a key there is one job. */
+/* Names, keys and weights are as given, for any number of jobs; a key has one job. */
 TEST(many_jobs)
 {
     static struct told told[SLOTS];
@@ -179,17 +179,17 @@ TEST(many_jobs)
             assert_null(job->key);
         }
     }
-    /* a key that is no text cannot be found again */
+    /* a key that is not UTF-8 cannot be found again */
     assert_true(pool_add(&pool, "job", "\xff", 1, tell, NULL) == (size_t)-1);
     assert_int_equal(pool.count, SLOTS);
     pool_free(&pool);
     assert_true(!pool.count && !pool.jobs && !pool.numbers);
-    near_below((double)bytes_in_use() - (double)before, 3000); /* of 160 names and keys none */
+    near_below((double)bytes_in_use() - (double)before, 3000); /* names and keys are freed */
 }
 
 /* ---- how they are run ---- */
 
-/* Heavy ones first, equal ones in their order; never more at once than are asked for. */
+/* Heavy jobs run first, and equal ones in their order, with no more at once than requested. */
 TEST(order_and_number)
 {
     enum { N = 9 };
@@ -210,7 +210,7 @@ TEST(order_and_number)
     }
 }
 
-/* A result is kept whatever it says of the computation; bad input and trouble are none. */
+/* A result is kept whatever its status; bad input and environment errors are not results. */
 TEST(what_is_kept)
 {
     static const enum status statuses[] = {STATUS_OK, STATUS_CHECK_FAILED, STATUS_BAD_INPUT,
@@ -248,8 +248,8 @@ TEST(what_is_kept)
     place_clear(&place);
 }
 
-/* What has no key is never kept; an entry that is whole but no reply is computed again, and one
- * that is damaged is counted, too. */
+/* A job without a key is never kept; a valid entry that is not a reply is computed again, and so is
+ * a damaged one, which is counted. */
 TEST(what_is_not_there)
 {
     struct place place;
@@ -281,7 +281,7 @@ TEST(what_is_not_there)
     place_clear(&place);
 }
 
-/* A crash or a failure is one job's own and is not kept. */
+/* A crash or a failure affects one job only and is not kept. */
 TEST(no_result)
 {
     struct pool pool;
@@ -313,7 +313,7 @@ TEST(no_result)
     place_clear(&place);
 }
 
-/* What was written before, and has not left this process yet, leaves it once. */
+/* Output still in this process's buffer before the run is written once. */
 TEST(nothing_twice)
 {
     struct pool pool;
@@ -335,8 +335,7 @@ TEST(nothing_twice)
     rmdir(folder);
 }
 
-/* What is running is waited for where no more processes can be started, and nothing is left open.
- */
+/* If no more processes can be started, running jobs are waited for, and no pipe stays open. */
 TEST(no_pipe)
 {
     struct pool pool;
@@ -348,7 +347,7 @@ TEST(no_pipe)
     const int next = dup(0);
     close(next);
     assert_int_equal(getrlimit(RLIMIT_NOFILE, &usual), 0);
-    for (int room = 1; room <= 3; room++) { /* one process needs two, and keeps one */
+    for (int room = 1; room <= 3; room++) { /* a process needs two, and keeps one */
         few = usual;
         few.rlim_cur = (rlim_t)(next + room);
         for (int i = 0; i < 4; i++) told[i].ms = 60;
@@ -368,7 +367,7 @@ TEST(no_pipe)
     }
 }
 
-/* ---- what is said meanwhile ---- */
+/* ---- progress reports ---- */
 
 struct seen {
     size_t calls, done[400], total;
@@ -386,8 +385,8 @@ static void see(void *context, const char *what, size_t done, size_t total, doub
     seen->total = total;
 }
 
-/* One after the other: after each the next one's name, how many are done with those that were kept,
- * and the share by weight of those that were not. */
+/* After each job: the name of the next one, the number of jobs done, including kept ones, and the
+ * share by weight of the others. */
 TEST(progress)
 {
     enum { N = 5 };
@@ -399,7 +398,7 @@ TEST(progress)
     struct told told[N] = {{0}};
     place_make(&place);
     add(&pool, told, 1, weights);
-    assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK); /* job 0 is kept */
+    assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK); /* keeps job 0 */
     pool_free(&pool);
     const struct pool_settings settings = {
         .jobs = 1, .cache = &place.cache, .progress = see, .progress_context = &seen};
@@ -421,16 +420,16 @@ TEST(progress)
     }
     assert_true(ends >= 3 && seen.done[seen.calls - 1] == N);
     pool_free(&pool);
-    /* without weights there is nothing that is not done */
+    /* without weights the share is 1 */
     static const double none[2] = {0};
     add(&pool, told, 2, none);
-    pool.jobs[0].key[0] = 'J', pool.jobs[1].key[0] = 'J'; /* new ones */
+    pool.jobs[0].key[0] = 'J', pool.jobs[1].key[0] = 'J'; /* new keys */
     seen = (struct seen){0};
     assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
     assert_true(seen.calls >= 2);
     for (size_t k = 0; k < seen.calls; k++) assert_true(seen.share[k] == 1);
     pool_free(&pool);
-    /* all is kept: nobody is asked */
+    /* all are kept: no report */
     add(&pool, told, N, weights);
     seen = (struct seen){0};
     assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
@@ -439,7 +438,7 @@ TEST(progress)
     place_clear(&place);
 }
 
-/* While one job takes its time, a few times a second. */
+/* A long job reports a few times a second. */
 TEST(several_times_a_second)
 {
     static struct seen seen;
@@ -457,7 +456,8 @@ TEST(several_times_a_second)
 
 /* ---- shares ---- */
 
-/* The heaviest goes where least is, equal ones by their keys, to the first of equal shares. */
+/* The heaviest job goes to the lightest share, equal jobs in the order of keys, to the first of
+ * equal shares. */
 TEST(shares_by_hand)
 {
     static const struct {
@@ -471,7 +471,7 @@ TEST(shares_by_hand)
     for (size_t i = 0; i < N; i++)
         assert_int_equal(pool_add(&pool, "job", rows[i].key, rows[i].weight, tell, NULL), i);
     for (int of = 1; of <= 3; of++) {
-        /* written a second time: in the order d c a b e f */
+        /* computed independently, in the order d c a b e f */
         static const int order[] = {0, 4, 2, 1, 5, 6};
         double load[3] = {0};
         int want[N] = {0};
@@ -488,7 +488,7 @@ TEST(shares_by_hand)
     pool_free(&pool);
 }
 
-/* Each share computes what is in it and leaves the rest as it was. */
+/* Each share computes its own jobs and leaves the others as they were. */
 TEST(a_share_is_its_own)
 {
     enum { N = 6 };

@@ -17,7 +17,7 @@ static void nothing(int number)
     (void)number;
 }
 
-/* Every call that waits ends early. */
+/* A timer interrupts every system call that waits. */
 static void interrupt_often(long us)
 {
     const struct sigaction action = {.sa_handler = nothing};
@@ -32,7 +32,7 @@ static void pause_ms(int ms)
     while (nanosleep(&rest, &rest)) continue;
 }
 
-/* The letters are none alike that a part of them could stand for another one. */
+/* The sequence of characters does not repeat, so that no part can stand for another one. */
 static char letter(size_t i)
 {
     return (char)('!' + 2 + i * i % 57);
@@ -50,7 +50,7 @@ static enum status long_text(const void *context, json_t **document, struct erro
     return STATUS_OK;
 }
 
-/* Its reply has ended long before it dies. */
+/* The reply ends long before the process dies. */
 static enum status closes_and_dies(const void *context, json_t **document, struct error *error)
 {
     (void)context, (void)document, (void)error;
@@ -60,7 +60,7 @@ static enum status closes_and_dies(const void *context, json_t **document, struc
     return STATUS_OK;
 }
 
-/* The pipe is full meanwhile. */
+/* The pipe fills up during this pause. */
 static void rest(void *context, const char *what, size_t done, size_t total, double share)
 {
     (void)context, (void)what, (void)done, (void)total, (void)share;

@@ -21,7 +21,7 @@ static struct pool pool;
 static struct error error;
 static struct case_file *const file = &study.settings.file;
 
-/* A study without gates, which the test sets; its result is as before it was judged. */
+/* A study without gates, which the test adds; its result is reset to that before judging. */
 static void begin(const char *name, const char *keys, size_t replicates, tamper *tampering)
 {
     make(&study, &pool, name, keys, replicates, tampering, &error);
@@ -43,7 +43,8 @@ static void end(void)
     pool_free(&pool);
 }
 
-/* A field's gate on order and error; one of the finest error alone; what lattice sums explain. */
+/* The gate of a field on order and error; one on the finest error alone; orders explained by
+ * lattice sums. */
 TEST(gates_are_judged)
 {
     const double open = (double)INFINITY;
@@ -53,7 +54,7 @@ TEST(gates_are_judged)
         double factor;
         size_t coarse; /* the case's own finest n */
         enum finding_status outcome;
-        double raised; /* the bound, by this factor */
+        double raised; /* factor by which the bound is raised */
         bool explains;
     } rows[] = {
         {"sod", NULL, {0.4, 0.6, 1}, 0.01, 0, FINDING_PASS, 1, false},
@@ -112,8 +113,8 @@ TEST(gates_are_judged)
     }
 }
 
-/* Half the order that is asked for, known up to an error that this one, on a coarser ladder, is
- * beyond: it says up to which. */
+/* Half the promised order, known up to an error that this coarser ladder exceeds: the message gives
+ * the limit. */
 TEST(beyond_what_is_known)
 {
     char text[200];
@@ -131,13 +132,13 @@ TEST(beyond_what_is_known)
     end();
 }
 
-/* An error that is too small to be believed is one of the case's own ladder and settings. */
+/* An error that is suspiciously small counts only on the case's own ladder and settings. */
 TEST(small_errors_are_strange)
 {
     static const struct {
         double least; /* over the finest error */
         size_t coarse;
-        enum setting key; /* that a user has set; n: always */
+        enum setting key; /* set by the user; n: always set */
         bool known;
         enum finding_status outcome;
     } rows[] = {{0.99, 320, SETTING_n, false, FINDING_PASS},
@@ -170,7 +171,7 @@ TEST(small_errors_are_strange)
     }
 }
 
-/* Of a gate of two sides with an order: both sides count. */
+/* Both sides of a gate with an order count. */
 TEST(ordered_gates_have_two_sides)
 {
     static const struct {
@@ -192,7 +193,8 @@ TEST(ordered_gates_have_two_sides)
     }
 }
 
-/* What is conserved: the worst replicate of the finest level counts, and it is known in one. */
+/* Conservation: the worst replicate of the finest level counts, and in one case it is a known
+ * weakness. */
 static double drifts[LEVELS][2];
 
 static void set_drifts(json_t *run, size_t c, size_t l, size_t r)
@@ -223,7 +225,7 @@ TEST(what_is_conserved_has_gates)
         file->gate_count = 2;
         const struct study_result *result = judged();
         assert_int_equal(result->kept[1].status, rows[k].outcome);
-        assert_int_equal(result->kept[2].status, FINDING_FAIL); /* null is no number */
+        assert_int_equal(result->kept[2].status, FINDING_FAIL); /* null is not a number */
         assert_int_equal(result->kept[0].status, FINDING_NONE);
         json_t *run = json_pack("{s:i, s:{s:f}}", "n", 320, "conservation", "momentum",
                                 fmax(rows[k].first, rows[k].second));
@@ -245,8 +247,8 @@ static void set_errors(json_t *run, size_t c, size_t l, size_t r)
                         json_real(exact_errors[l]));
 }
 
-/* An order that is missed is explained up to twenty floors: of the density, with the standard
- * gradient also of that. */
+/* A missed order is explained by errors up to twenty floors: that of the density and, with the
+ * standard gradient, that of the gradient. */
 TEST(floors_explain_up_to_a_point)
 {
     for (int standard = 0; standard < 2; standard++)
@@ -259,7 +261,7 @@ TEST(floors_explain_up_to_a_point)
             measure_lattice(&kernel, 1, 4.8, &density, &gradient);
             assert_true(fabs(gradient) > 2 * fabs(density));
             const double most = 20 * fabs(standard ? gradient : density);
-            /* side 2: an order that is met by its last bit, and an error that is too large */
+            /* side 2: an order at its limit, and an error that is too large */
             for (size_t l = 0; l < LEVELS; l++)
                 exact_errors[l] = most * (1 + 1e-9 * (side % 2)) * pow(2, 0.5 * (double)(3 - l));
             begin("sod", keys, 1, set_errors);
@@ -276,7 +278,7 @@ TEST(floors_explain_up_to_a_point)
         }
 }
 
-/* A floor that is nothing explains nothing, however small the error. */
+/* A floor of 0 explains nothing, however small the error. */
 TEST(no_floor)
 {
     for (size_t l = 0; l < LEVELS; l++) exact_errors[l] = 1e-8 * pow(2, 0.5 * (double)(3 - l));
@@ -289,9 +291,9 @@ TEST(no_floor)
     end();
 }
 
-/* What passes is a pass only where the run is fine enough and the order known well enough: at the
- * coarsest level of the case's ladder a bound that was raised says little, and so does one of more
- * than a quarter of the exact value, and an order whose interval is wider than its gate. */
+/* A passed gate is reported as a pass only if the run is fine enough and the order is known well
+ * enough: not at the coarsest level of the case's ladder with a raised bound, nor with a bound
+ * above a quarter of the exact value, nor with an interval of the order wider than its gate. */
 TEST(what_passes_is_weighed)
 {
     const double open = (double)INFINITY, none = (double)NAN;
@@ -314,9 +316,9 @@ TEST(what_passes_is_weighed)
         {1, open, 1, none, 0.49, 100, FINDING_SMOKE},
         {1, open, 1, none, -1, 101, FINDING_PASS},
         {1, open, 1, none, -1, 100, FINDING_SMOKE},
-        /* a bound for all n, which asks for no order */
+        /* a bound for all n, without an order */
         {0, open, 1, none, 3, 100, FINDING_PASS},
-        /* a bound and the exact value, of either sign; of 0 there is no part */
+        /* a bound and the exact value, of either sign; an exact value of 0 is not compared */
         {1, open, 1, 4.01, 0.1, 101, FINDING_PASS},
         {1, open, 1, -4.01, 0.1, 101, FINDING_PASS},
         {1, open, 1, 3.99, 0.1, 101, FINDING_SMOKE},
@@ -342,8 +344,8 @@ TEST(what_passes_is_weighed)
     }
 }
 
-/* A study, and a run alone, that are too coarse are smoke, with the reason, and fail nothing; an
- * error beyond the bound fails at any n. */
+/* A study, and a single run, that are too coarse have status smoke, with the reason, and fail
+ * nothing; an error beyond the bound fails at any n. */
 TEST(coarse_runs_are_smoke)
 {
     for (int beyond = 0; beyond < 2; beyond++) {
@@ -363,7 +365,7 @@ TEST(coarse_runs_are_smoke)
                             beyond ? "fail" : "smoke");
         assert_int_equal(!json_object_get(gate, "why"), beyond);
         json_decref(list);
-        /* one particle more than the coarsest level: judged */
+        /* one particle more than at the coarsest level: judged */
         json_object_set_new(run, "n", json_integer(321));
         list = json_array();
         gates_add_errors(file, run, list);

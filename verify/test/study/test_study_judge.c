@@ -20,8 +20,8 @@ static double mean_log_spacing(size_t l, size_t replicates)
     return sum / (double)replicates;
 }
 
-/* Geometric means of errors and spacings, arithmetic ones of the rest, the range of n, and the
- * scatter about a line of the ladder's slope; orders are fitted to these. */
+/* Levels have geometric means of errors and spacings, arithmetic means of other values, the range
+ * of n, and the scatter about a line with the ladder's slope; orders are fitted to these. */
 TEST(levels_are_means)
 {
     for (size_t replicates = 1; replicates <= 4; replicates++) {
@@ -85,7 +85,7 @@ TEST(levels_are_means)
                 near_relative(fit->order, want.order, 1e-9);
                 near_relative(fit->high - fit->low, want.high - want.low, 1e-6);
             }
-        /* a region that is nowhere at one level has no order */
+        /* a region that is empty at one level has no order */
         assert_true(result->regions[0].n == LEVELS && result->regions[1].n == 0 &&
                     result->regions[2].n == LEVELS);
         for (size_t l = 0; l < LEVELS; l++)
@@ -105,7 +105,7 @@ TEST(levels_are_means)
         assert_true(isnan(result->functional_exact[2]) && result->functional_exact[1] == 1.5);
         assert_string_equal(result->functional_names[0], "mean_internal_energy");
         for (size_t i = 0; i < 2 && replicates == 1;
-             i++) { /* of the three finest: they fall with the square */
+             i++) { /* of the three finest levels: errors fall with the square */
             const struct order_extrapolation *e = &result->functionals[i];
             near_relative(e->order, 2, 1e-6);
             near_relative(e->value, 0.5 + (double)i, 1e-9);
@@ -114,7 +114,8 @@ TEST(levels_are_means)
     }
 }
 
-/* Of a circular flow in 2D: orders of the parts, and of functionals that are known. */
+/* For a circular flow in 2D: orders of the velocity's parts, and of functionals with exact
+ * values. */
 TEST(clouds_have_more_orders)
 {
     for (size_t replicates = 1; replicates <= 2; replicates++) {
@@ -156,7 +157,7 @@ TEST(broken_and_missing_runs)
         struct pool pool;
         struct error error;
         assert_int_equal(make(&study, &pool, "sod", NULL, 1, NULL, &error), STATUS_OK);
-        struct pool_job *job = &pool.jobs[1]; /* of the level before the finest */
+        struct pool_job *job = &pool.jobs[1]; /* at the level before the finest */
         memset(&study.results[0].levels, 0, sizeof study.results[0].levels);
         study.results[0].level_count = 0;
         study.results[0].status = study.status = STATUS_OK;
@@ -180,7 +181,7 @@ TEST(broken_and_missing_runs)
     }
 }
 
-/* ---- still gas, and errors that are too good ---- */
+/* ---- undisturbed gas, and errors that are too small ---- */
 
 static double still_of[LEVELS];
 static int fault_field, fault_kind;
@@ -209,7 +210,7 @@ TEST(gas_that_does_not_stay)
         if (rows[k].outcome == FINDING_FAIL)
             assert_int_equal(study.results[0].status, STATUS_CHECK_FAILED);
         study_free(&study);
-        study = made("sod", "jitter=0.1", 1, set_still); /* noise that was put there */
+        study = made("sod", "jitter=0.1", 1, set_still); /* noise that the settings ask for */
         assert_int_equal(study.results[0].still_status, FINDING_NONE);
         study_free(&study);
     }
@@ -239,7 +240,7 @@ TEST(errors_that_are_too_good)
                 fail_msg("'%s', not '%s'", result->suspicion, text);
             assert_int_equal(result->status, STATUS_CHECK_FAILED);
             study_free(&study);
-            /* where it is exact it is no wonder */
+            /* an error of 0 is no suspicion if the solution is exact */
             struct pool pool;
             struct error error;
             make(&study, &pool, "sod", NULL, 1, too_good, &error);
@@ -263,7 +264,7 @@ static double one_error(size_t l, int f)
     return 1 + (double)l + 10 * f;
 }
 
-/* Alike are results whose errors are at all levels that both have. */
+/* Results are the same if their errors are at all levels that both have. */
 TEST(same_at_all_levels)
 {
     static struct study_result a, b;
@@ -304,7 +305,8 @@ static void differ_by_eta(json_t *run, size_t c, size_t l, size_t r)
                         json_real(error_at(2, 0, l, r) * (1 + 0.1 * (double)(c / 2 % 2))));
 }
 
-/* Of two keys the one whose pairs are all alike; of one that nobody reads nothing is said. */
+/* Of two keys the one is named whose pairs are all the same; keys without a reader are not
+ * named. */
 TEST(idle_settings_are_suspected)
 {
     static const struct {
@@ -316,7 +318,7 @@ TEST(idle_settings_are_suspected)
         {"eta=1.5,2", "eta", NULL},
         {"eta=0.5,1.5,2", "eta", NULL}, /* the first one is excluded */
         {"eta=1.5,2,0.5", "eta", NULL},
-        {"eta=1.5,2,2.5", NULL, last_differs}, /* not in vain */
+        {"eta=1.5,2,2.5", NULL, last_differs}, /* it has an effect */
         {"skip=auto,none", NULL, NULL},
         {"sinc_n=3,5", NULL, NULL},
         {"alpha_min=0.1,0.2", NULL, NULL},
@@ -346,9 +348,9 @@ TEST(idle_settings_are_suspected)
     }
 }
 
-/* ---- as many as there may be ---- */
+/* ---- largest numbers ---- */
 
-/* A ladder of the most levels that there may be. */
+/* A ladder with the largest number of levels. */
 TEST(the_most_levels)
 {
     static const char *const cases[] = {"sod", "gresho"};
@@ -388,7 +390,7 @@ static void many_functionals(json_t *run, size_t c, size_t l, size_t r)
                                               1e300, "reference", 1.));
 }
 
-/* Of a document that has more functionals than there is room for the first ones are read. */
+/* If a document has too many functionals, the first ones are read. */
 TEST(too_many_functionals)
 {
     struct study study = made("sod", NULL, 1, many_functionals);
@@ -407,7 +409,7 @@ static void no_error(json_t *run, size_t c, size_t l, size_t r)
                             json_real(0));
 }
 
-/* Where a ladder has no slope the scatter is that of the errors themselves. */
+/* If a ladder has no slope, the scatter is that of the errors themselves. */
 TEST(scatter_without_slope)
 {
     struct study study = made("sod", NULL, 2, no_error);
@@ -424,7 +426,7 @@ static void same_spacing(json_t *run, size_t c, size_t l, size_t r)
     if (l == 2) json_object_set_new(run, "spacing", json_real(spacing_of(1, 0)));
 }
 
-/* Two levels of one spacing have no order between them. */
+/* Two levels with the same spacing have no order. */
 TEST(levels_that_are_one)
 {
     struct study study;
@@ -448,7 +450,7 @@ static void same_bins(json_t *run, size_t c, size_t l, size_t r)
     json_object_set_new(json_object_get(run, "errors"), "binned_density_l1", json_real(0.125));
 }
 
-/* What a run says of itself comes first; of means over bins nothing is suspected. */
+/* A run's own suspicion comes first; means over bins are not suspected. */
 TEST(what_is_suspected)
 {
     fault_kind = fault_field = 0;

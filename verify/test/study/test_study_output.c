@@ -78,7 +78,7 @@ static json_t *pack_budget(const struct study_result *result)
         json_t *region = json_pack("{s:s, s:o, s:o}", "region", finest->budget.regions->names[k],
                                    "l1", result_number(finest->budget.l1[k][0]), "share",
                                    result_number(finest->budget.l1[k][0] / whole));
-        if (k != 1) { /* it is empty at one level */
+        if (k != 1) { /* the region is empty at one level */
             json_object_set_new(region, "order", result_number(result->regions[k].order));
             json_object_set_new(region, "low", result_number(result->regions[k].low));
             json_object_set_new(region, "high", result_number(result->regions[k].high));
@@ -90,7 +90,7 @@ static json_t *pack_budget(const struct study_result *result)
                      1e-3, "status", words[result->still_status]);
 }
 
-/* Takes the expected one. */
+/* Compares entry i with the expected value, and frees the latter. */
 static void same(const json_t *list, size_t i, json_t *expected)
 {
     const json_t *item = json_array_get(list, i);
@@ -193,7 +193,7 @@ static void first_combination_stops(json_t *run, size_t c, size_t l, size_t r)
     if (c == 1 && l == 2) json_object_set_new(run, "suspicion", json_string("odder"));
 }
 
-/* Each combination with its own settings; of suspicions the first one counts. */
+/* Each combination has its own settings; the first of several suspicions counts. */
 TEST(combinations_are_told_apart)
 {
     struct study study = made("sod", "eta=1.5,2", 1, first_combination_stops);
@@ -220,7 +220,7 @@ TEST(combinations_are_told_apart)
     assert_null(json_object_get(document, "budgets"));
     assert_string_equal(json_string_value(json_object_get(document, "message")), "n = 160: broken");
     json_decref(document);
-    study.results[1].level_count = 0; /* all lists are there all the same */
+    study.results[1].level_count = 0; /* all lists are present nevertheless */
     document = json_object();
     study_add_json(&study, document);
     static const char *const lists[] = {"levels", "orders", "functionals", "floors", "excluded"};
@@ -229,8 +229,8 @@ TEST(combinations_are_told_apart)
     study_free(&study);
 }
 
-/* What a case is judged by is what the first combination has; nothing beyond a list's end is said.
- */
+/* The figures of a case are those of the first combination; no element after a list's end is
+ * read. */
 TEST(the_first_combination_counts)
 {
     struct study study = made("kelvin_helmholtz_mode", "eta=2.2,0.5", 1, NULL);

@@ -31,7 +31,7 @@ static double real_of(const struct run *run, enum setting key)
     return settings_real(&run->settings, key);
 }
 
-/* Combination, level, replicate: each run has its own number, and is a job of that name and key. */
+/* Combination, level, replicate: each run has its own number, and a job of that name and key. */
 TEST(every_run)
 {
     struct study study;
@@ -67,7 +67,7 @@ TEST(every_run)
     pool_free(&pool);
 }
 
-/* Where the start is random, replicates have other seeds, and the level's own number. */
+/* If the start is random, replicates have other seeds, and the level's own number. */
 TEST(seeds)
 {
     struct study study;
@@ -83,8 +83,8 @@ TEST(seeds)
     pool_free(&pool);
 }
 
-/* 5 % of n from the lowest to the highest, by turns above and below; all above where 4 particles
- * would not be left. */
+/* Replicates span 5 % of n, alternately above and below; all are above if fewer than 4 particles
+ * would be left below. */
 TEST(numbers)
 {
     static const struct {
@@ -102,7 +102,7 @@ TEST(numbers)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         for (size_t r = 0; r < rows[k].replicates; r++)
             assert_int_equal(study_neighbour(rows[k].n, rows[k].replicates, r), rows[k].of[r]);
-    /* 5000 and just below a half */
+    /* 5000, just below one half more */
     assert_int_equal(study_neighbour(6300629, 64, 1), 6300629 + 5000);
     assert_int_equal(study_neighbour(200, 1, 0), 200);
     assert_int_equal(study_neighbour(200, 1, 5), 200);
@@ -136,13 +136,14 @@ static json_t *key_of(const struct run *run, const char *kind)
     json_t *key = json_loads(text, 0, NULL);
     assert_non_null(key);
     char *again = json_dumps(key, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
-    assert_string_equal(text, again); /* in one form, whoever wrote it */
+    assert_string_equal(text, again); /* one form for all spellings */
     free(again);
     free(text);
     return key;
 }
 
-/* All that decides a result, and nothing else: of a file what it holds. */
+/* A key contains everything that determines a result, and nothing else; for a file, its
+ * contents. */
 TEST(keys)
 {
     struct run run = keyed_run("sod", "eta=2.3849999999999998");
@@ -177,7 +178,7 @@ TEST(keys)
     }
     unlink(path);
     strcpy(run.settings.file, "p");
-    json_t *key = key_of(&run, "run"); /* it is not there */
+    json_t *key = key_of(&run, "run"); /* a file that does not exist */
     assert_true(json_is_integer(json_object_get(key, "content")));
     assert_int_equal(json_integer_value(json_object_get(key, "content")), 0);
     json_decref(key);
@@ -194,7 +195,7 @@ TEST(weights)
     near_relative(run_job_weight(&run), 0.002 + 1e-5 * 1e4, 1e-13);
 }
 
-/* A run that is there with its profile is not made again; nor is one of the same key. */
+/* A run whose profile is in the cache is not added; nor is a second one with the same key. */
 TEST(once)
 {
     struct error error;
@@ -213,7 +214,7 @@ TEST(once)
     pool_free(&pool);
 }
 
-/* A run's document comes out of its process, or why there is none. */
+/* The process of a run returns its document, or the reason for its failure. */
 TEST(run_elsewhere)
 {
     struct error error;
@@ -221,7 +222,7 @@ TEST(run_elsewhere)
     const struct pool_settings settings = {.jobs = 1};
     size_t job[2];
     struct run run = keyed_run("sod", "t_end=0.001"), lost = keyed_run("sod", "t_end=0.002");
-    lost.settings.value[SETTING_n].real[0] = 0x1p53; /* more than there is room for */
+    lost.settings.value[SETTING_n].real[0] = 0x1p53; /* more than the memory */
     assert_int_equal(run_job_add(&pool, &run, &job[0], &error), STATUS_OK);
     assert_int_equal(run_job_add(&pool, &lost, &job[1], &error), STATUS_OK);
     assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
@@ -234,7 +235,7 @@ TEST(run_elsewhere)
     pool_free(&pool);
 }
 
-/* A value that a key does not take any more. */
+/* A value that a key no longer allows. */
 TEST(changed_values)
 {
     struct study study;
@@ -268,6 +269,6 @@ TEST(what_is_refused)
     refused("", "eta=0.5,0.6", "no combination of --vary is allowed: eta = 0.5");
     refused("t_end=5", NULL, "t_end=5: ");
     refused("t_end=5", "eta=0.5,1.5", "t_end=5: ");
-    /* of one combination what is wrong with it */
+    /* the fault of a single combination */
     refused("", "eta=0.5", "eta = 0.5: h = eta");
 }

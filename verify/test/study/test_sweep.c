@@ -7,7 +7,7 @@
 #include "sweep.h"
 #include "value.h"
 
-/* That combination i says these words of these keys. */
+/* Compares the words of these keys in combination i. */
 static void says(const struct sweep *sweep, size_t i, size_t n, const char *const *keys,
                  const char *const *words)
 {
@@ -51,8 +51,8 @@ TEST(every_combination)
                                                skips->members[s]->name});
 }
 
-/* A family's word after another key's value is a key; a number or a word that is no key is a value.
- */
+/* A word of a family that follows another key's value is a key; a number, or a word that is not a
+ * key, is a value. */
 TEST(words_and_keys)
 {
     struct sweep sweep;
@@ -70,7 +70,7 @@ TEST(words_and_keys)
     says(&sweep, 0, 0, one, one);
 }
 
-/* The first key of all, a value of no letters, and one that is kept as it was written. */
+/* The very first key, an empty value, and a value kept as it was written. */
 TEST(any_key)
 {
     struct sweep sweep;
@@ -136,7 +136,7 @@ TEST(what_is_refused)
     refused(text, "at most 8 keys");
 }
 
-/* A combination that settings refuse says which value it is. */
+/* If the settings refuse a combination, the message names the value. */
 TEST(applied)
 {
     struct run_settings settings = keyed_case("sod", "");
@@ -149,7 +149,7 @@ TEST(applied)
     assert_non_null(strstr(error.message, "wide"));
 }
 
-/* A label that is too long is cut, not written past its end. */
+/* A label that is too long is truncated. */
 TEST(long_labels)
 {
     struct sweep sweep = {.key_count = 3, .count = 1};
@@ -204,7 +204,7 @@ TEST(ladders)
     no_ladder("100,200,", 1, "''");
     no_ladder("100,1.5", 1, "'1.5'");
     no_ladder("1000000000000000000000000000000", 1, "from 4 to 10000000");
-    no_ladder("00000000000000000000000000000100", 1, "allowed"); /* 32 digits: no room */
+    no_ladder("00000000000000000000000000000100", 1, "allowed"); /* 32 digits do not fit */
     ladder_is("0000000000000000000000000000100", 1, (const size_t[]){100});
     no_ladder("100,100,200,200", 3, "2 distinct resolutions; allowed: at least 3");
     for (int i = 1; i < CASE_LADDER_MAX; i++)

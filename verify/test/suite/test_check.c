@@ -22,7 +22,7 @@ static void clear(struct check_run *run)
 TEST(figures)
 {
     struct check_run run = {.check = &check, .began = clock_wall() - 1000};
-    check_measure(&run, 1, 1, 1, "of %d", 3); /* on the bound, and the bound on the floor */
+    check_measure(&run, 1, 1, 1, "of %d", 3); /* value, bound and floor are equal */
     check_measure(&run, 1.5, 1, 0, "above");
     check_measure(&run, 0, 1, 1.5, "floor above");
     check_measure(&run, (double)NAN, 1, 0, "no number");
@@ -50,7 +50,7 @@ TEST(figures)
     clear(&run);
 }
 
-/* A mutant that has failed once is decided; what is right never is. */
+/* A mutant that has failed once is decided; the correct subject never is. */
 TEST(decided)
 {
     for (int mutant = 0; mutant < 2; mutant++) {

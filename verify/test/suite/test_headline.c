@@ -18,7 +18,7 @@ struct row {
     double value, bound;
 };
 
-/* New reference: the headlines of these figures, all of which fail. */
+/* A new reference to the headlines of these figures, all of which fail. */
 static json_t *told(size_t n, const struct row *rows)
 {
     struct figure figures[MOST];
@@ -38,8 +38,8 @@ static const char *text_of(const json_t *list, size_t i, const char *name)
     return value_text(json_array_get(list, i), name);
 }
 
-/* The member is what stands before a comma or a colon, cut where there is no room for it; the place
- * is the rest. */
+/* The member is the part before a comma or a colon, truncated if it does not fit; the rest is the
+ * location. */
 TEST(members_and_places)
 {
     for (int length = 62; length <= 66; length++) {
@@ -69,7 +69,7 @@ TEST(members_and_places)
     }
 }
 
-/* Of figures that are as far off the first one is told, also where none is off its bound. */
+/* Of figures that are equally far off the first one is named, also if none is off its bound. */
 TEST(the_worst_figure)
 {
     json_t *list = told(4, (const struct row[]){{&one, "a: near", 2, 1},
@@ -87,7 +87,7 @@ TEST(the_worst_figure)
     json_decref(list);
 }
 
-/* The most elementary check first, then what is farthest off, then what came first. */
+/* The most elementary check comes first, then the figure farthest off, then the first in order. */
 TEST(the_order)
 {
     json_t *list = told(6, (const struct row[]){{&two, "early", 4, 2},
@@ -102,7 +102,7 @@ TEST(the_order)
     assert_int_equal(json_array_size(json_object_get(json_array_get(list, 0), "also")), 1);
     assert_string_equal(text_of(list, 0, "headline"), "kernel: is too steep; width off by 2");
     json_decref(list);
-    /* each member once, also one that is not the first */
+    /* each member once, also if it is not the first */
     list = told(
         4, (const struct row[]){
                {&slope, "a", 2, 1}, {&one, "b", 3, 1}, {&two, "b", 2, 1}, {&width, "b", 2, 1}});
@@ -110,12 +110,12 @@ TEST(the_order)
     assert_string_equal(text_of(list, 0, "member"), "a");
     assert_string_equal(text_of(list, 1, "check"), "width");
     json_decref(list);
-    list = told(0, NULL); /* nothing failed */
+    list = told(0, NULL); /* no failure */
     assert_int_equal(json_array_size(list), 0);
     json_decref(list);
 }
 
-/* Mutants that were missed come after all figures, each of them. */
+/* Missed mutants come after all figures, one by one. */
 TEST(missed_mutants)
 {
     static const struct check_mutant sign = {"sign", "a sign", NULL}, power = {"power", "", NULL};
@@ -136,8 +136,8 @@ TEST(missed_mutants)
     json_decref(list);
 }
 
-/* What a person reads, to the last letter: with and without colour; figures or none; how many other
- * checks are named. */
+/* The exact printed text: with and without colour; with and without figures; with the number of
+ * further checks. */
 TEST(what_is_printed)
 {
     static struct check others[9] = {{0}};

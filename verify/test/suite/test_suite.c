@@ -30,7 +30,7 @@ TEST(test_good)
     suite_free(&suite);
 }
 
-/* What another process kept of a check is joined; kept without a single figure it is refused. */
+/* A check kept by another process is joined; one kept without any figure is refused. */
 TEST(test_join)
 {
     const struct check *const checks[] = {&good};
@@ -114,7 +114,7 @@ static void expect_one_failure(const struct check *check, const char *says)
     suite_free(&suite);
 }
 
-/* A check that has no subject, that is silent on all of them or on one, that skips all. */
+/* Checks without a subject, without figures for all subjects or for one, and one that skips all. */
 TEST(test_measures_nothing)
 {
     struct check silent = failing;
@@ -129,7 +129,7 @@ TEST(test_measures_nothing)
     expect_one_failure(&silent, "skipped all 1");
 }
 
-/* More subjects than any array that somebody would have thought ample. */
+/* More subjects than any array of a plausible fixed size. */
 static void many_subjects(struct check_run *run)
 {
     for (int i = 0; i < 5000; i++) {
@@ -194,7 +194,7 @@ TEST(test_groups_are_chosen)
     suite_free(&suite);
 }
 
-/* Slow ones only where they are asked for; what is said of progress is how many are done of all. */
+/* Slow checks run only on request; progress is the number of checks done of all. */
 static void note_progress(void *context, const struct check *check, size_t done, size_t total)
 {
     char *text = context;
@@ -219,7 +219,7 @@ TEST(test_slow_and_progress)
     }
 }
 
-/* A mutant of several checks is one, and is caught where all of them catch it. */
+/* A mutant of several checks counts once, and is detected if all of them detect it. */
 TEST(test_mutants_are_distinct)
 {
     const struct check *const checks[] = {&good, &leaky};
@@ -244,7 +244,7 @@ static void equally_far(struct check_run *run, const void *subject)
     check_measure(run, 6, 3, 0, "as far");
 }
 
-/* Of figures that fail as clearly the first one is told. */
+/* Of figures that fail by equal factors the first one is named. */
 TEST(test_mutant_value)
 {
     struct check check = good;
@@ -280,7 +280,7 @@ static void two_figures(struct check_run *run, const void *subject)
     check_series(run, "data", 1, x, x);
 }
 
-/* Who asks for the first failure gets no later check, but all of this one. */
+/* With --first no check runs after the first failure, but the failing one is completed. */
 TEST(test_first_failure)
 {
     struct check both = bare;
@@ -300,7 +300,8 @@ TEST(test_first_failure)
     }
 }
 
-/* The first failure is that of the check of least rank, of equal ranks that which comes first. */
+/* The first failure is that of the check of least rank, and among equal ranks the first in
+ * order. */
 TEST(test_first_failure_names_the_cause)
 {
     struct check follows = bare, cause = bare, later = bare;
@@ -324,7 +325,7 @@ static void skips_then_measures(struct check_run *run, const void *subject)
     check_measure(run, 0, 1, 0, "but this");
 }
 
-/* One figure is enough, wherever it stands; the harness' own are 1 against 0. */
+/* One figure suffices, at any index; the harness' own figures are 1 against 0. */
 TEST(test_harness_figures)
 {
     struct check late = bare;
@@ -351,7 +352,7 @@ static const double zero = 0;
 static const struct check_mutant unharmed[] = {
     {"none", "", &zero}, {"one", "", &values[1]}, {"two", "", &values[2]}, {0}};
 
-/* A mutant that is within the bound has its figure told, however far. */
+/* For a missed mutant its figure is reported, however far below the bound. */
 TEST(test_value_of_a_miss)
 {
     struct check check = leaky;

@@ -27,7 +27,7 @@ static const char *text_of(const char *name)
         check, (char *)(uintptr_t) "figure", value, bound, 0, 0, status                            \
     }
 
-/* A gnuplot that keeps what it is told and draws always the same. */
+/* A gnuplot that records its input and always draws the same. */
 static void make_gnuplot(void)
 {
     FILE *file = fopen(path_of("gnuplot"), "w");
@@ -37,7 +37,7 @@ static void make_gnuplot(void)
     assert_int_equal(chmod(path_of("gnuplot"), 0700), 0);
 }
 
-/* The numbers of the script, between the lines that begin and end them. */
+/* Compares the data block of the script, between its first and last line. */
 static void numbers_are(const char *expected)
 {
     const char *text = text_of("script"), *begin = strstr(text, "END_OF_DATA\n");
@@ -50,8 +50,8 @@ static void numbers_are(const char *expected)
         fail_msg("'%.*s' is not '%s'", (int)(end - begin), begin, expected);
 }
 
-/* The first check has no curves; of nine of the second one eight are drawn. Figures are drawn
- * between 1e-6 and 1e12. */
+/* The first check has no curves; of the second one's nine eight are drawn. Values are clipped to
+ * 1e-6 and 1e12. */
 TEST(drawings)
 {
     enum { CURVES = 9 };
@@ -69,7 +69,7 @@ TEST(drawings)
         snprintf(label[k], sizeof label[k], "c%d", k);
         series[k + 1] = (struct series){&second, label[k], 2, x, y[k]};
     }
-    series[CURVES + 1] = series[0]; /* behind the last one */
+    series[CURVES + 1] = series[0]; /* after the last one */
     const struct suite suite = {.figures = figures,
                                 .figure_count = 6,
                                 .series = series + 1,
@@ -120,7 +120,7 @@ TEST(drawings)
     assert_true(json_real_value(json_array_get(json_object_get(json_array_get(kept, 8), "y"), 1)) ==
                 81);
     json_decref(document);
-    /* all is well again: nothing stays, not even the folder */
+    /* after success nothing is left, not even the folder */
     for (int k = 0; k < 6; k++) figures[k].status = FINDING_PASS;
     one = suite;
     one.failed = 0;

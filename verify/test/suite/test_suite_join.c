@@ -4,7 +4,7 @@
 
 #include "made_checks.h"
 
-/* Everything that a suite says of its figures and mutants, but for seconds. */
+/* The document of a suite without times. */
 static json_t *told(const struct suite *suite)
 {
     json_t *document = suite_keep(suite), *checks = json_object_get(document, "checks");
@@ -14,7 +14,7 @@ static json_t *told(const struct suite *suite)
     return document;
 }
 
-/* Checks that ran one by one, each elsewhere, say what they say together. */
+/* Checks that ran separately have the same document together. */
 TEST(test_joined)
 {
     enum { PARTS = 4 };
@@ -46,7 +46,7 @@ TEST(test_joined)
     suite_free(&joined);
     assert_int_equal(suite_join(&joined, checks + 1, from, 1, &error), STATUS_ENVIRONMENT);
     assert_null(joined.figures);
-    /* the sum of what each took */
+    /* the sum of all parts */
     for (size_t i = 0; i < PARTS; i++)
         json_object_set_new(documents[i], "seconds", json_real(1 << i));
     assert_int_equal(suite_join(&joined, checks, from, PARTS, &error), STATUS_CHECK_FAILED);
@@ -55,11 +55,11 @@ TEST(test_joined)
     assert_true(json_real_value(json_object_get(again, "seconds")) == 15);
     json_decref(again);
     suite_free(&joined);
-    /* series as long as they are */
+    /* a series has its own length */
     const json_t *curve = json_array_get(json_object_get(documents[1], "series"), 0);
     assert_int_equal(json_array_size(json_object_get(curve, "x")), 2);
     assert_true(json_real_value(json_array_get(json_object_get(curve, "y"), 0)) == 3);
-    /* words that are none of this program's */
+    /* words that this program does not use */
     static const char *const lists[] = {"checks",  "checks",  "checks",
                                         "mutants", "mutants", "checks"},
                              *const keys[] = {"status", "name",  "group",
@@ -73,11 +73,11 @@ TEST(test_joined)
                                            "or there is no memory for it");
         json_object_set_new(entry, keys[k], right);
     }
-    struct check harmless = good; /* the same, but its mutants are no longer there */
+    struct check harmless = good; /* the same check without its mutants */
     harmless.mutants = NULL;
     assert_int_equal(suite_join(&joined, (const struct check *const[]){&harmless}, from, 1, &error),
                      STATUS_ENVIRONMENT);
-    json_array_clear(json_object_get(documents[0], "checks")); /* a check that measured nothing */
+    json_array_clear(json_object_get(documents[0], "checks")); /* a check without figures */
     assert_int_equal(suite_join(&joined, checks, from, 1, &error), STATUS_ENVIRONMENT);
     json_decref(one);
     json_decref(other);

@@ -68,12 +68,12 @@ static const struct suite suite = {.figures = figures,
                                    .mutants_detected = 1,
                                    .seconds = 12.25};
 
-/* The text is that of the file; where it is not, says from where on. */
+/* Compares the text with the file; a difference is reported from where it begins. */
 static void compare(const char *text, const char *name)
 {
     static char expected[1 << 16];
     char path[4096];
-    const bool writing = test_word(2) != NULL; /* anew, to be read before they are believed */
+    const bool writing = test_word(2) != NULL; /* new files, to be checked by a reader */
     snprintf(path, sizeof path, "%s/%s", test_word(1), name);
     FILE *file = fopen(path, writing ? "w+" : "r");
     assert_non_null(file);
@@ -107,11 +107,11 @@ TEST(table)
     well.figures += 9, well.figure_count = 3, well.outcome_count = 0;
     well.failed = 0, well.mutants_detected = well.mutants = 0;
     table_is(&well, true, true, "well.txt");
-    well.mutants = 1; /* one that was not noticed */
+    well.mutants = 1; /* one missed mutant */
     table_is(&well, false, true, "missed.txt");
 }
 
-/* An object, a line. */
+/* One object per line. */
 TEST(json)
 {
     struct buffer lines = {0};

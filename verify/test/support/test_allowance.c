@@ -28,7 +28,7 @@ TEST(groups_are_nested)
     const double all = allowance_memory("nowhere");
     assert_true(all > 1e8);
     put("proc/self", "cgroup", "0::/jobs/7/step\n");
-    same(allowance_memory(place), all); /* nothing there says anything */
+    same(allowance_memory(place), all); /* no file there sets a limit */
     put("sys/fs/cgroup/jobs/7/step", "memory.max", "max\n");
     same(allowance_memory(place), all);
     put("sys/fs/cgroup/jobs", "memory.max", "40000000\n");

@@ -9,7 +9,7 @@
 
 #include "made_jobs.h"
 
-/* Old entries go when they are asked to, not when somebody else opens the folder. */
+/* Old entries are removed on request, and not when another process opens the folder. */
 TEST(pruned)
 {
     struct place place;
@@ -29,7 +29,7 @@ TEST(pruned)
         if (k) assert_int_equal(utimensat(AT_FDCWD, path, month, 0), 0);
     }
     json_decref(document);
-    json_decref(cache_load(&place.cache, "2", NULL)); /* used: young again */
+    json_decref(cache_load(&place.cache, "2", NULL)); /* reading it resets its age */
     assert_int_equal(cache_open(&place.cache, place.cache_folder, false, &error), STATUS_OK);
     assert_int_equal(cache_prune(place.cache_folder, HUGE_VAL, &census, &error), STATUS_OK);
     assert_true(census.entries == 3 && census.removed == 0 && census.bytes > 0);
@@ -58,7 +58,7 @@ static void write_all(const char *path, const char *bytes, size_t n)
     fclose(file);
 }
 
-/* Every truncation and every altered byte counts as missing; so does another key's entry. */
+/* A truncated entry, one with any changed byte and that of another key count as missing. */
 TEST(damaged_entries)
 {
     struct place place;
@@ -100,7 +100,7 @@ TEST(damaged_entries)
     place_clear(&place);
 }
 
-/* The process is killed in the midst of its third job: the first two are there, whole. */
+/* If the process is killed during its third job, the first two entries are complete. */
 TEST(killed)
 {
     struct place place;
@@ -134,8 +134,7 @@ TEST(killed)
     place_clear(&place);
 }
 
-/* Two processes with the same jobs and the same cache: both get all results, the entries are sound.
- */
+/* Two processes with the same jobs and cache: both get all results, and the entries are valid. */
 TEST(two_at_once)
 {
     struct place place;

@@ -32,14 +32,14 @@ static struct cache opened(bool force)
     return cache;
 }
 
-/* The build is what the program is made of, to the last byte, and the mathematics it comes by. */
+/* The build is a hash of the program's bytes and of the mathematical functions it uses. */
 TEST(builds)
 {
     uint64_t hash = CACHE_HASH;
     char text[] = VERSION_FLAGS VERSION_GIT, build[CACHE_BUILD_MAX], said[CACHE_BUILD_MAX];
     hash = cache_hash(hash, text, sizeof text);
     FILE *program = fopen("/proc/self/exe", "rb");
-    if (!program) skip(); /* not on this system */
+    if (!program) skip(); /* this system does not say which file it is */
     for (int c; (c = getc(program)) != EOF;) {
         const unsigned char byte = (unsigned char)c;
         hash = cache_hash(hash, &byte, 1);
@@ -61,7 +61,8 @@ TEST(builds)
     assert_string_equal(cache.build, build);
 }
 
-/* FOLDER/xx/xxxxxxxxxxxxxxxx.entry: of build and key, in the folder of its last two digits. */
+/* FOLDER/xx/xxxxxxxxxxxxxxxx.entry: the hash of build and key, in the folder of its last two
+ * digits. */
 TEST(paths)
 {
     struct cache cache = {.folder = "/a/b", .build = "0123456789abcdef"};
@@ -77,7 +78,7 @@ TEST(paths)
     }
 }
 
-/* The longest folder leaves room for the names in it. */
+/* The longest folder allows for the names in it. */
 TEST(folders)
 {
     struct cache cache;
@@ -114,7 +115,7 @@ static void write_file(const char *path, const void *bytes, size_t n)
     assert_int_equal(fclose(file), 0);
 }
 
-/* An entry as it should be, and ways not to be one. */
+/* A valid entry, and invalid ones. */
 TEST(entries)
 {
     struct cache cache = opened(false), forced = cache;
@@ -125,7 +126,7 @@ TEST(entries)
     assert_false(cache_has(&cache, "key"));
     bool damaged = false;
     assert_null(cache_load(&cache, "key", &damaged));
-    assert_false(damaged); /* there is none */
+    assert_false(damaged); /* it does not exist */
     assert_int_equal(cache_store(&cache, "key", document, &error), STATUS_OK);
     assert_true(cache_has(&cache, "key") && !cache_has(&forced, "key") &&
                 !cache_has(&cache, "other"));
@@ -141,8 +142,8 @@ TEST(entries)
     assert_int_equal(fread(found, 1, sizeof found, file), length);
     fclose(file);
     assert_memory_equal(found, text, (size_t)length);
-    /* one byte less, one more, another one, no line, nothing at all; then what is well made but
-     * says that it is of another build or key, or has no document */
+    /* one byte less, one more, a changed one, no line, an empty file; then valid entries of another
+     * build or key, or without a document */
     static const char *const others[] = {
         "{\"build\":\"%.0s0\",\"key\":\"key\",\"document\":{\"n\":7}}",
         "{\"build\":\"%s\",\"key\":\"kex\",\"document\":{\"n\":7}}",
@@ -174,7 +175,7 @@ TEST(entries)
         json_decref(loaded);
         assert_null(k < 0 ? NULL : cache_load(&cache, "key", NULL));
     }
-    /* of what is said twice the last counts */
+    /* if a member is repeated, the last one counts */
     snprintf(body, sizeof body,
              "{\"build\":\"%s\",\"key\":\"kex\",\"key\":\"key\",\"document\":{\"n\":7}}",
              cache.build);
@@ -184,7 +185,7 @@ TEST(entries)
     json_t *loaded = cache_load(&cache, "key", NULL);
     assert_true(json_equal(loaded, document));
     json_decref(loaded);
-    /* what is read is young again */
+    /* reading an entry resets its age */
     const struct timespec old[2] = {{.tv_sec = 1000}, {.tv_sec = 1000}};
     struct stat is;
     write_file(path, text, (size_t)length);
@@ -194,18 +195,18 @@ TEST(entries)
         assert_int_equal(stat(path, &is), 0);
         assert_true(k ? difftime(time(NULL), is.st_mtime) < 1000 : is.st_mtime == 1000);
     }
-    /* a head that is right but for what stands before it */
+    /* a correct header that does not begin the file */
     snprintf(found, sizeof found, "\n%s", text);
     write_file(path, found, (size_t)length + 1);
     assert_null(cache_load(&cache, "key", NULL));
-    /* too large to be read: not damaged, but none */
+    /* too large to be read: missing, not damaged */
     const int large = open(path, O_WRONLY | O_TRUNC);
     assert_true(large >= 0 && ftruncate(large, 1 << 28) == 0 && close(large) == 0);
     damaged = false;
     assert_null(cache_load(&cache, "key", &damaged));
     assert_false(damaged);
     unlink(path);
-    assert_int_equal(mkdir(path, 0777), 0); /* nor is a folder one */
+    assert_int_equal(mkdir(path, 0777), 0); /* nor is a folder an entry */
     assert_null(cache_load(&cache, "key", &damaged));
     assert_false(damaged);
     rmdir(path);
@@ -219,7 +220,7 @@ TEST(entries)
     json_decref(document);
 }
 
-/* ---- what goes ---- */
+/* ---- removal ---- */
 
 static void make_entry(const char *name, size_t bytes, double age)
 {
@@ -250,7 +251,7 @@ TEST(what_is_old_goes)
     make_entry("00/1.entry", 2, 3000);
     make_entry("7f/.2.entry.123.0.part", 4, 3000); /* of a process that was killed */
     make_entry("ff/3.entry", 8, 1000);
-    make_entry("ff/README", 5, 9000); /* somebody's own */
+    make_entry("ff/README", 5, 9000); /* not an entry */
     make_entry("fg/4.entry", 5, 9000);
     assert_int_equal(cache_prune(place, HUGE_VAL, &census, &error), STATUS_OK);
     assert_true(census.entries == 4 && census.removed == 0 && census.bytes == 15);
@@ -267,7 +268,7 @@ TEST(what_is_old_goes)
     assert_int_equal(cache_prune(place, 0, &census, &error), STATUS_OK);
     assert_true(census.entries == 0 && census.removed == 2 && census.bytes == 0);
     assert_true(is_there("ff/README") && is_there("fg/4.entry"));
-    /* what cannot be looked at */
+    /* folders that cannot be read */
     char path[256], said[300];
     snprintf(path, sizeof path, "%s/ff/README", place);
     snprintf(said, sizeof said, "there is no folder %s", path);
@@ -278,7 +279,7 @@ TEST(what_is_old_goes)
     static char folder[CACHE_PATH_MAX];
     memset(folder, '/', sizeof folder);
     memcpy(folder, place, strlen(place));
-    /* names that are too long with it are left alone, whatever stands at what fits of them */
+    /* names too long for the path are left alone, whatever file has the truncated name */
     make_entry("00/3.entry", 1, 0);
     make_entry("00/3.entryx", 1, 0);
     for (size_t room = 11; room <= 12; room++) { /* for "/00/3.entry" and a NUL */

@@ -23,7 +23,7 @@ struct table {
     size_t line[ROWS_MAX];
     char separator, exponent;
     bool wide, plus, returns, mark, comments, open_end;
-    /* one value is replaced; where that stood */
+    /* one value is replaced, at this position in the text */
     int row, column; /* row -1: a name; -2: none */
     const char *word;
     size_t at_line, at_character;
@@ -138,7 +138,7 @@ TEST(spoilt)
         snprintf(says, sizeof says, "%s:%zu:%zu: '%s' in column '%s' is not a number", path,
                  t.at_line, t.at_character, t.word, names[t.column]);
         refuses(size, says);
-        if (t.separator == ',') { /* nothing at all; two in one place */
+        if (t.separator == ',') { /* an empty field; two values in one field */
             t.word = "";
             size = put(&t);
             snprintf(says, sizeof says, ":%zu:", t.at_line);
@@ -230,7 +230,7 @@ TEST(faults)
             csv_free(&csv);
         }
     }
-    char number[80]; /* numbers of Fortran as long as there is room for */
+    char number[80]; /* the longest Fortran numbers */
     for (int more = 0; more < 2; more++) {
         snprintf(number, sizeof number, "x\n1.%0*dd1\n", 59 + more, 0);
         memcpy(text, number, strlen(number));

@@ -28,14 +28,14 @@ TEST(ratios)
                 isinf(finding_ratio((double)NAN, 1)));
 }
 
-/* A number drawn from few, so that bounds are met exactly. */
+/* A number from a short list, so that bounds are met exactly. */
 static double drawn(void)
 {
     static const double values[] = {0, 0.5, 1, 2, 3, -1, (double)NAN, (double)INFINITY};
     return values[rand() % (int)(sizeof values / sizeof *values)];
 }
 
-/* What fails is the value, or the floor where the value alone would pass; and it is then beyond the
+/* The value fails, or the floor if the value alone would pass; the failing one is beyond the
  * bound. */
 TEST(what_fails)
 {

@@ -28,7 +28,7 @@ TEST(numbers_are_strict)
     assert_false(text_integer("1e-3", &value));
 }
 
-/* A program that uses the library may have set a locale that writes a comma: nothing changes. */
+/* If a program has set a locale with a decimal comma, nothing changes. */
 TEST(a_comma_changes_nothing)
 {
     static const char *const names[] = {"", "de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8",
@@ -146,10 +146,10 @@ TEST(files_appear_whole)
     fputs("new", output.stream);
     assert_int_equal(output_close(&output, &error), STATUS_ENVIRONMENT);
     assert_int_equal(unlink(path), 0);
-    assert_int_equal(rmdir(folder), 0); /* nothing else is left in it */
+    assert_int_equal(rmdir(folder), 0); /* no other file is left in it */
 }
 
-/* A file without a name comes where TMPDIR says, and nowhere else where there is no such folder. */
+/* A temporary file is created in TMPDIR, and nowhere else if that folder does not exist. */
 TEST(temporaries)
 {
     char folder[] = "sphproof-test-XXXXXX", text[8] = "";
@@ -164,7 +164,7 @@ TEST(temporaries)
     assert_int_equal(fread(text, 1, sizeof text, file), 4);
     assert_memory_equal(text, "here", 4);
     fclose(file);
-    assert_int_equal(rmdir(folder), 0); /* nothing stays */
+    assert_int_equal(rmdir(folder), 0); /* no file is left */
     assert_null(output_temporary());
     if (before)
         setenv("TMPDIR", before, 1);
@@ -173,7 +173,7 @@ TEST(temporaries)
     free(before);
 }
 
-/* Examples of FIPS 180, given in parts that do not fit its blocks. */
+/* Examples of FIPS 180, in parts that are not multiples of its blocks. */
 TEST(sums_are_those_of_the_standard)
 {
     static const struct {

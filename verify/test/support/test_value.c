@@ -42,7 +42,7 @@ TEST(numbers)
     json_decref(d);
 }
 
-/* Members of every kind; what cannot be a value leaves no object. */
+/* Members of every kind; with an invalid value there is no object. */
 TEST(objects)
 {
     json_t *made = result_object("a=%s b=%d c=%zu d=%g e=%g f=%g? g=%g?", "sod", -2, (size_t)7, 0.5,
@@ -83,8 +83,8 @@ TEST(words)
     json_decref(d);
 }
 
-/* What result_number writes is read again, to the last bit, with the signs of zeros and infinities.
- */
+/* The output of result_number is read again to the last bit, with the signs of zeros and
+ * infinities. */
 TEST(what_is_written_is_read)
 {
     static const double edges[] = {
