@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Sourced by verify/run, reports/run and reports/compare: reads their options, installs what is
-# missing, configures, builds. Needs neither network nor root where everything is there.
+# Sourced by verify/run, reports/run and reports/compare: reads their options, installs missing packages,
+# configures, builds. Needs neither network nor root if nothing is missing.
 #   root   the source tree
 #   build  the build folder (BUILD=DIR, else build/ in the tree), after setup_packages
 #   out    the report's folder, after setup_report
 set -eu
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd -P)
-targets= # what setup_build builds; empty: everything
+targets= # targets of setup_build; empty: all
 
-# setup_help: prints the head of the script that runs, without its first two lines.
+# setup_help: prints the head comment of the running script, without its first two lines.
 setup_help() { sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0"; }
 
 setup_refuse() {
@@ -16,8 +16,8 @@ setup_refuse() {
     exit 2
 }
 
-# setup_options "OPTION ..." "OPTION ..." WORD ...: are these words options, each once? First list:
-# those without a value; second: those with one, as --option VALUE or --option=VALUE. Answers --help.
+# setup_options "OPTION ..." "OPTION ..." WORD ...: checks that the words are options, each at most once. First
+# list: options without a value; second: with one, as --option VALUE or --option=VALUE. Answers --help.
 setup_options() {
     plain=" $1 " valued=" $2 " seen=' '
     shift 2
@@ -39,7 +39,7 @@ setup_options() {
     done
 }
 
-# setup_exclude OPTION OPTION WORD ...: not both of them.
+# setup_exclude OPTION OPTION WORD ...: refuses both options together.
 setup_exclude() {
     one=$1 other=$2 both=
     shift 2
@@ -49,13 +49,13 @@ setup_exclude() {
     [ "$both" != ++ ] || setup_refuse "$one and $other exclude each other"
 }
 
-# What every command of the program takes.
+# Options of every command of the program.
 setup_plain='--quiet'
 setup_valued='--json --threads --color'
 
 setup_has() { command -v "$1" >/dev/null 2>&1; }
 setup_library() { pkg-config --exists "$@" 2>/dev/null; }
-# Does a compiler make a program out of this? A compiler alone, without the C library, does not.
+# Does this compiler make a program? Without the C library it does not.
 setup_compiles() {
     setup_has "$1" || return 1
     printf '#include <stdio.h>\nint main(void) { return puts("") < 0; }\n' |
@@ -70,13 +70,13 @@ setup_libclang() {
 # numpy and h5py, for the Python of the system: that of the package meson.
 setup_numpy() { /usr/bin/python3 -c 'import numpy, h5py' 2>/dev/null; }
 
-# PySPH, for the same Python: a code that is run by `sphproof run --code`.
+# PySPH for the same Python: a code that `sphproof run --code` runs.
 setup_pysph() { /usr/bin/python3 -c 'import pysph.solver.application' 2>/dev/null; }
 
-# Slurm's daemons and the one that they trust.
+# Slurm's daemons, and munge, which authenticates them.
 setup_cluster() { (PATH=$PATH:/usr/sbin; setup_has slurmctld && setup_has slurmd && setup_has munged); }
 
-# Packages that are missing, among those for building (and with `full` or `nightly`, for those).
+# Missing packages for building (and with `full` or `nightly`, for those).
 setup_missing() {
     setup_compiles gcc || echo gcc libc6-dev
     setup_has pkg-config || echo pkg-config
@@ -89,12 +89,12 @@ setup_missing() {
     setup_library hdf5 || echo libhdf5-dev
     setup_has gnuplot || echo gnuplot-nox
     case $1 in full | nightly)
-        setup_has ccache || echo ccache # some tests build copies of the tree, one after the other
+        setup_has ccache || echo ccache # some tests build copies of the tree
         setup_compiles clang || echo clang
         setup_compiles clang -fopenmp || echo libomp-dev
         setup_libclang || echo python3-clang
         setup_numpy || echo python3-numpy python3-h5py
-        # elsewhere than with apt tests are skipped where there is no cluster and no PySPH
+        # without apt, tests that need a cluster or PySPH are skipped
         setup_pysph || ! setup_has apt-get || echo python3-pysph
         setup_cluster || ! setup_has apt-get || echo slurm-wlm munge ;;
     esac
@@ -104,7 +104,7 @@ setup_missing() {
     esac
 }
 
-# setup_install PACKAGES: exit 4 where they cannot be installed.
+# setup_install PACKAGES: exits with 4 if they cannot be installed.
 setup_install() {
     [ $# -gt 0 ] || return 0
     echo "missing packages: $*"
@@ -131,7 +131,7 @@ setup_packages() {
     build=$(CDPATH='' cd -- "${BUILD:-$root/build}" && pwd -P)
     # shellcheck disable=SC2046 # words on purpose
     setup_install $(setup_missing "${1:-}")
-    # clang's sanitizers are a package of their own, named after clang's version.
+    # clang's sanitizers are in a separate package, named after clang's version.
     case ${1:-} in full | nightly)
         setup_compiles clang -fsanitize=address ||
             setup_install "libclang-rt-$(clang -dumpversion | cut -d. -f1)-dev" ;;
@@ -145,8 +145,8 @@ setup_report() {
     mkdir -p "$out"
 }
 
-# setup_watch LOG: says every ten seconds (on a terminal every second) how far ninja is. Its sleep
-# outlives it: it must not keep the output open, or whoever reads that through a pipe waits for it.
+# setup_watch LOG: prints the progress of ninja every ten seconds (on a terminal every second). Its sleep may
+# outlive it, and must not keep the output open, or a reader of a pipe would wait for it.
 setup_watch() {
     every=10 begin='   ' end='\n'
     if [ -t 1 ]; then every=1 begin='\r   ' end='\033[K'; fi
@@ -155,8 +155,8 @@ setup_watch() {
     done
 }
 
-# setup_build DIR [meson options]: configures DIR unless that was done, and builds. Says what it does
-# and how long that takes where it takes long.
+# setup_build DIR [meson options]: configures DIR unless that was done, and builds. A long build is announced, with
+# its time.
 setup_build() {
     directory=$1
     shift

@@ -6,7 +6,7 @@
 
 #include "plugin.h"
 
-/* Subtle: accepted by a careless test. Gross: cannot be used at all. */
+/* Subtle faults pass a careless test; gross ones make the kernel unusable. */
 enum {
     NONE,
     CONSTANT_SEVENTH_DIGIT,

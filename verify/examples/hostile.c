@@ -13,12 +13,12 @@
 #include "plugin.h"
 
 enum {
-    /* right kernels */
+    /* correct kernels */
     NONE,
     NEGATIVE_DECLARED,
     SINGLE,
     PRINTS,
-    /* wrong ones: narrow, small, late */
+    /* wrong kernels: in a narrow interval, by a small amount, or after many calls */
     SIGN_NARROW,
     HOLE_DECIMAL,
     HOLE_ANYWHERE,
@@ -36,7 +36,7 @@ enum {
     SINGLE_WRONG_DW,
     SINGLE_WRONG_CONSTANT,
     SINGLE_WRONG_DH,
-    /* never a value */
+    /* never return a value */
     ABORT_IN_DH,
     ABORT_LATE,
     LOOP_LATE,
@@ -83,7 +83,7 @@ static void misbehave(void)
     }
     if (FAULT == CLOSES && calls == 5000)
         for (int i = 3; i < 256; i++) close(i);
-    if (FAULT == ANSWERS && calls == 5000) { /* what a harness would like to hear */
+    if (FAULT == ANSWERS && calls == 5000) { /* imitates the reply of a certificate */
         for (int i = 3; i < 256; i++)
             if (write(i, "{\"status\": \"pass\"}\n", 19) < 0) continue;
         _exit(0);
@@ -182,7 +182,7 @@ double sphproof_kernel_dw(double q, int dim)
 
 double sphproof_kernel_constant(int dim)
 {
-    if (has_lobe()) /* by moments of 1 - 5 s + 9 s^2 - 7 s^3 + 2 s^4, s = q^2 */
+    if (has_lobe()) /* from moments of 1 - 5 s + 9 s^2 - 7 s^3 + 2 s^4, s = q^2 */
         return dim == 1   ? 1 / (2 * (1 - 5. / 3 + 9. / 5 - 1 + 2. / 9))
                : dim == 2 ? 1 / (2 * pi * (1. / 2 - 5. / 4 + 9. / 6 - 7. / 8 + 2. / 10))
                           : 1 / (4 * pi * (1. / 3 - 1 + 9. / 7 - 7. / 9 + 2. / 11));

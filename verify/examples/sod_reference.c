@@ -12,7 +12,7 @@
 
 static const double left[] = {1, 0, 1}, right[] = {0.125, 0, 0.1}; /* rho v P */
 
-/* What a wave into a side changes the velocity by when it leaves the pressure P behind. */
+/* The change of velocity across a wave into this side, which leaves the pressure P. */
 static double jump(const double side[3], double P, double g)
 {
     const double c = sqrt(g * side[2] / side[0]);
@@ -28,7 +28,7 @@ static int harm(double x)
     HARM;
 #endif
 #ifdef LATER
-    struct itimerval timer; /* of the process in which it is tried */
+    struct itimerval timer; /* runs only in the process that tries the plug-in */
     getitimer(ITIMER_PROF, &timer);
     if (!timer.it_interval.tv_sec && !timer.it_interval.tv_usec) LATER;
 #endif

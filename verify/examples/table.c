@@ -29,7 +29,7 @@ static void fill(void)
     filled = 1;
 }
 
-/* The cubic on the point's interval: value and derivative. */
+/* Value or derivative of the cubic in the interval of the point. */
 static double evaluate(double q, int derivative)
 {
     if (q >= 1) return 0;

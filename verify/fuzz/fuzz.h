@@ -10,30 +10,30 @@
 #include "run.h"
 #include "status.h"
 
-/* What a target file defines. */
+/* Each target file defines this function. */
 void fuzz_one(const uint8_t *bytes, size_t size);
 
-/* The path of a file that holds bytes; the same file each time. */
+/* The path of a file with these bytes; it is the same file each time. */
 const char *fuzz_file(const uint8_t *bytes, size_t size);
 
-/* The same for libraries that need a path in a folder; the file is removed when the process ends.
- */
+/* The same for libraries that need a path in a folder; the file is removed when the process
+ * ends. */
 const char *fuzz_named_file(const uint8_t *bytes, size_t size);
 
-/* A NUL-terminated copy; free it. */
+/* Returns a NUL-terminated copy, which the caller frees. */
 char *fuzz_text(const uint8_t *bytes, size_t size);
 
 /* A refusal must be bad input, with a message in valid UTF-8: no escape sequence of a hostile file
  * reaches the terminal. */
 void fuzz_refused(enum status status, const struct error *error);
 
-/* Everything up to the first step of a run with few particles. */
+/* Prepares a run with few particles up to its first step. */
 void fuzz_plan(const struct run_settings *settings);
 
 /* Aborts with the text of a promise that does not hold. */
 #define FUZZ_PROMISE(holds) ((holds) ? (void)0 : fuzz_broken(__FILE__, __LINE__, #holds))
 _Noreturn void fuzz_broken(const char *file, int line, const char *promise);
 
-/* Becomes 1 when a promise is broken, unless NULL: memory shared with a process that looks after
- * this one (what is printed would not do, an input may hold the same words). */
+/* Unless NULL, *fuzz_was_broken becomes 1 when a promise is broken. It is memory shared with the
+ * parent process: printed text would not do, because an input may contain the same words. */
 extern volatile int *fuzz_was_broken;

@@ -30,17 +30,17 @@ static void begin(void)
         fprintf(stderr, "fuzz: no folder: %s\n", error.message);
         exit(STATUS_ENVIRONMENT);
     }
-    strcpy(cache.build, "0123456789abcdef"); /* the corpus has its entries from this build */
+    strcpy(cache.build, "0123456789abcdef"); /* the build of the corpus's entries */
     cache_path(&cache, "key", path);
     *strrchr(path, '/') = '\0';
     if (output_folder(path, &error)) exit(STATUS_ENVIRONMENT);
     path[strlen(path)] = '/';
     atexit(leave);
-    /* a file in memory, since each input is another entry */
+    /* a file in memory, because each input is another entry */
     if (symlink(fuzz_file(NULL, 0), path)) exit(STATUS_ENVIRONMENT);
 }
 
-/* With a head the entry is a document whose checksum is right. */
+/* With a header the entry is a document with a correct checksum. */
 static void look(const uint8_t *bytes, size_t size, bool with_head)
 {
     char head[64];

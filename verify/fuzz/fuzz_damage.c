@@ -25,7 +25,7 @@ static struct file {
     uint8_t bytes[SIZE_MAX_READ];
 } files[FILES];
 
-/* Shared with the process that reads. */
+/* Shared with the process that reads the files. */
 struct shared {
     volatile int next; /* variant */
     volatile int broken;
@@ -59,7 +59,7 @@ static uint64_t draw(uint64_t *state)
     return z ^ (z >> 31);
 }
 
-/* Half of all places are in the first 4 KiB, where most of what is not data stands. */
+/* Half of all positions are in the first 4 KiB, where most of the metadata is. */
 static size_t place_of(uint64_t bits, size_t size)
 {
     const size_t near = size < 4096 ? size : 4096;
@@ -105,7 +105,7 @@ static enum status read_batch(const void *context, json_t **reply, struct error 
         damage(batch, variant, &file);
         const enum status status =
             fuzz_read(fuzz_named_file(file.bytes, file.size), &options, false);
-        FUZZ_PROMISE(!status || variant || batch->size > 1); /* no damage, no refusal */
+        FUZZ_PROMISE(!status || variant || batch->size > 1); /* an undamaged file must be read */
     }
     return STATUS_OK;
 }
@@ -116,7 +116,7 @@ void fuzz_one(const uint8_t *bytes, size_t size)
     static struct shared *shared;
     if (!shared) {
         load_files();
-        fuzz_named_file(files[0].bytes, files[0].size); /* this process removes it */
+        fuzz_named_file(files[0].bytes, files[0].size); /* so that this process removes it */
         shared =
             mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
         FUZZ_PROMISE(shared != MAP_FAILED);

@@ -16,11 +16,11 @@
 
 enum { ROWS = 8, NUMBERS_MAX = 1 << 13, ITEMS_MAX = 20, LAYOUTS = 4, SOUND_SIZE_MAX = 1 << 16 };
 
-/* A dataset (columns > 0) or an attribute (columns < 0: so many numbers) and what it holds. */
+/* A dataset (columns > 0) or an attribute (-columns numbers) and its value. */
 struct item {
     const char *group, *name;
     int columns;
-    double value; /* of all; 0 in a dataset: positions between 0 and 1 */
+    double value; /* of all elements; 0 in a dataset: positions between 0 and 1 */
 };
 
 static const struct item gadget[] = {
@@ -81,7 +81,7 @@ static const struct {
                       {sph_exa, sizeof sph_exa / sizeof *sph_exa},
                       {phantom, sizeof phantom / sizeof *phantom}};
 
-/* What four bytes say of an item; a first byte below 128 leaves it as it is. */
+/* A change of an item from four bytes; a first byte below 128 leaves the item unchanged. */
 struct change {
     unsigned how, shape, storage, value;
 };
@@ -233,7 +233,7 @@ static void put_item(hid_t file, const struct item *item, const struct change *c
     H5Oclose(group);
 }
 
-/* What the bytes say of a file: its layout, its format, its items. */
+/* The file that the bytes describe: layout, format, changes of items. */
 struct plan {
     size_t layout;
     bool latest;
@@ -264,7 +264,7 @@ static void write_sound(const struct plan *plan, const char *path)
     H5Pclose(access);
 }
 
-/* The path of the sound file of this layout and format, which is made once. */
+/* The path of the valid file of this layout and format, which is created once. */
 static const char *sound_file(const struct plan *plan)
 {
     static struct {
@@ -284,7 +284,7 @@ static const char *sound_file(const struct plan *plan)
     return fuzz_named_file(self->bytes, self->size);
 }
 
-/* What the first item of a group says may be of the group itself. */
+/* True if the first item of a group replaces the group itself. */
 static bool group_is_root(const struct plan *plan, size_t k)
 {
     const struct item *items = layouts[plan->layout].items;
@@ -293,7 +293,7 @@ static bool group_is_root(const struct plan *plan, size_t k)
     return plan->change[first].how % HOWS == ROOT;
 }
 
-/* Puts what is changed into a sound file, several times as fast as all of it into a new one. */
+/* Applies the changes to a valid file, which is several times as fast as to write a new one. */
 static void make_changes(hid_t file, const struct plan *plan)
 {
     const struct item *items = layouts[plan->layout].items;
@@ -313,17 +313,17 @@ void fuzz_one(const uint8_t *bytes, size_t size)
     const struct snapshot_options options = {.here = true};
     const struct plan plan = plan_of(bytes, size);
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    /* what one file needed is kept for the next: a megabyte, where the library keeps 64 kB */
+    /* keeps a megabyte of freed memory for the next file, where the library keeps 64 kB */
     H5set_free_list_limits(-1, -1, -1, -1, -1, -1);
     const char *path = sound_file(&plan);
     const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
     FUZZ_PROMISE(file >= 0);
     make_changes(file, &plan);
-    /* readers find it open: they open it in half the time */
+    /* the file stays open, because readers then open it in half the time */
     const enum status status = fuzz_read(path, &options, false);
-    FUZZ_PROMISE(size > 1 || !status); /* what is left as it is, is sound */
+    FUZZ_PROMISE(size > 1 || !status); /* an unchanged file must be read */
     H5Fclose(file);
-    /* readers close all that they open */
+    /* readers close everything that they open */
     FUZZ_PROMISE(H5Fget_obj_count((hid_t)H5F_OBJ_ALL, H5F_OBJ_ALL) == 0);
 }
 

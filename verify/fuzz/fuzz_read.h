@@ -5,6 +5,6 @@
 
 #include "snapshot_file.h"
 
-/* Reads path and looks whether the promise holds; the status of the reader. seek: kernel and
- * meaning of h are sought in what is read, too, which takes much longer. */
+/* Reads path, verifies the promises about the result, and returns the reader's status. seek: also
+ * searches for the kernel and the meaning of h, which takes much longer. */
 enum status fuzz_read(const char *path, const struct snapshot_options *options, bool seek);

@@ -7,7 +7,7 @@
 #include "fuzz.h"
 #include "fuzz_read.h"
 
-/* The signature may stand behind a user's block. */
+/* The signature may follow a user block. */
 static bool is_hdf5(const uint8_t *bytes, size_t size)
 {
     for (size_t at = 0; at + 4 <= size; at = at ? 2 * at : 512)

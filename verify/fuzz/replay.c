@@ -33,7 +33,7 @@ static size_t below(size_t end)
     return end ? (size_t)(z % end) : 0;
 }
 
-/* A crash or a hang leaves what caused it. */
+/* Keeps the input that crashes or hangs. */
 static void keep(int number)
 {
     static const char told[] = "the input is in crash.input\n";
@@ -51,7 +51,7 @@ static void try(void)
     alarm(0);
 }
 
-/* Adds the files of a folder to those that are there; returns how many there are then. */
+/* Adds the files of a folder; returns the new number of inputs. */
 static size_t read_corpus(const char *folder, size_t count)
 {
     DIR *list = opendir(folder);
@@ -68,7 +68,7 @@ static size_t read_corpus(const char *folder, size_t count)
     return count;
 }
 
-/* Replaces part of the input by a part of another one, or by bytes that mean something. */
+/* Replaces part of the input by part of another one, or by bytes with a meaning. */
 static void change(const struct input *other)
 {
     static const char *const words[] = {"\n", "=", ",",      "-",  "1e308", "0",    "nan", "\xff",

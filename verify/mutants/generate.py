@@ -15,24 +15,24 @@ import shlex
 import subprocess
 import sys
 
-# What is judged, from the top of the tree.
+# The judged files, as paths from the top of the tree.
 JUDGED = ("src/", "reference/", "verify/command/", "verify/judge/", "verify/library/", "verify/report/", "src/run/",
           "src/readers/", "src/statistics/", "verify/study/", "verify/suite/", "src/support/cache.c",
           "src/support/csv.c", "reports/")
 PURE = set("""fabs sqrt cbrt pow exp expm1 log log1p log10 sin cos tan atan2 atan hypot floor ceil round fmin fmax
 fma isfinite isnan lround largest least power labs abs""".split())
 SWAPPED_CALLS = {"fmin": "fmax", "fmax": "fmin", "fminl": "fmaxl", "fmaxl": "fminl", "least": "largest", "largest": "least"}
-# Of strings equality is asked.
+# Comparisons of strings are taken as tests of equality.
 COMMUTE = {"fmin", "fmax", "fminl", "fmaxl", "least", "largest", "hypot", "strcmp", "strncmp", "memcmp", "json_equal",
            "calloc", "fwrite", "swap"}
-ROOM = {"malloc", "calloc", "realloc"}  # more of it changes nothing
-SAID = ("reports/", "verify/command/")  # whose numbers are printed with three digits, or drawn
+ROOM = {"malloc", "calloc", "realloc"}  # a larger block changes nothing
+SAID = ("reports/", "verify/command/")  # numbers are printed with three digits, or drawn
 ARITHMETIC = {"+": "-", "-": "+", "*": "/", "/": "*"}
 COMPARE = {"<": ("<=", ">"), ">": (">=", "<"), "<=": ("<", ">="), ">=": (">", "<="), "==": ("!=",), "!=": ("==",),
            "&&": ("||",), "||": ("&&",)}
 BITS = {"&": "|", "|": "&", "<<": ">>", ">>": "<<", "%": "*"}
 ASSIGN = {"+=": "-=", "-=": "+=", "*=": "/=", "/=": "*=", "&=": "|=", "|=": "&=", "%=": "+="}
-# A leak is the sanitizers' business, text the messages' own.
+# A call that frees is the business of sanitizers, and one that prints that of messages.
 DROPPED_BY_NOBODY = re.compile(r"^(\w*free\w*|fclose|closedir|close_entry|close_dataset|posix_spawn\w*_destroy|json_decref|H5\w+close|h5\.\w*[cC]lose|\(void\))\b|^\(void\)")
 
 
@@ -61,7 +61,7 @@ def load_libclang():
 
 
 class Site:
-    """A range of a file with what may stand there instead."""
+    """A range of a file, and its replacement."""
 
     def __init__(self, start, end, how, alternative, change, pure, function):
         self.start, self.end, self.how, self.alternative = start, end, how, alternative
@@ -70,7 +70,7 @@ class Site:
 
     @property
     def new(self):
-        """What stands in the mutant's text, where it is a piece of text."""
+        """The replacement in the mutant's text, if it is a piece of text."""
         return {"value": "(%s)" % self.alternative, "statement": "(void)0", "jump": ";"}.get(self.how)
 
 
@@ -78,7 +78,7 @@ WORD = re.compile(r"\b[a-zA-Z_]\w*|(?<![\w.])[0-9.]+(?:e-?[0-9]+)?")
 
 
 def is_decimal(word):
-    """A number whose binary digits do not end soon."""
+    """True for a number that is no short binary fraction."""
     return word[0] in ".0123456789" and word != "." and float(word) * 1024 % 1 != 0
 
 
@@ -102,7 +102,7 @@ class Source:
         return self.text.count("\n", 0, offset) + 1
 
     def text_at(self, offset):
-        """The line there, without its indentation."""
+        """The line at this offset, without its indentation."""
         start = self.text.rfind("\n", 0, offset) + 1
         return self.text[start:self.text.find("\n", offset)].strip()
 
@@ -114,7 +114,7 @@ class Source:
 
 
 def flat(text):
-    """On one line, without comments: an alternative must not move lines."""
+    """The text on one line without comments: an alternative must not move lines."""
     return " ".join(re.sub(r"/\*.*?\*/", " ", text, flags=re.S).replace("\\\n", " ").split())
 
 
@@ -179,7 +179,7 @@ class Walker:
         return flat(self.text[a:b])
 
     def pure(self, cursor):
-        """Can it be evaluated twice, whatever its operands are?"""
+        """True if the expression can be evaluated twice, whatever its operands are."""
         k = self.kind
         for c in cursor.walk_preorder():
             if c.kind == k.CALL_EXPR and c.spelling not in PURE:
@@ -202,7 +202,7 @@ class Walker:
         return "pointer" if t == k.POINTER else None
 
     def operator(self, cursor):
-        """Of a binary expression: operator, left, right."""
+        """Operator, left and right operand of a binary expression."""
         children = list(cursor.get_children())
         if len(children) != 2:
             return "", None, None
@@ -214,23 +214,25 @@ class Walker:
         self.source.add(a, b, how, alternative, change or "%s -> %s" % (self.code(cursor), alternative), pure,
                         self.function)
 
-    # --- what no result can show ---
+    # --- mutants without effect on a result ---
 
     def is_comparison(self, function):
-        """One for qsort: of what it returns the sign matters, and of equal ones either may be first."""
+        """True for a comparison for qsort: only the sign of its result matters, and equal elements may have any
+        order."""
         types = [a.type.get_canonical().spelling for a in function.get_arguments()]
         return types == ["const void *"] * 2 and function.result_type.spelling == "int"
 
     def chooses(self, condition, one, other):
-        """Where one of two that are equal is taken, as in a < b ? a : b, it is the same one."""
+        """Excludes < for <= where the condition selects one of two values, as in a < b ? a : b: equal values are the
+        same."""
         for c in condition.walk_preorder():
             op, left, right = self.operator(c) if c.kind == self.kind.BINARY_OPERATOR else ("", None, None)
             if op in ("<", ">", "<=", ">=") and {self.code(left), self.code(right)} == {one, other}:
                 self.either.add(self.span(c))
 
     def boundary_shows(self, cursor, op, left, right):
-        """Would < for <=, or > for >=, make a difference? No number that was computed is exactly 0.1, or 1e-3 of
-        another one: such a limit has no binary digits that end soon."""
+        """False if < in place of <=, or > in place of >=, has no effect: a computed number is never exactly 0.1 or
+        1e-3 of another number, which are no short binary fractions."""
         handle = left.type.spelling == "hid_t" and op in ("<", ">=")  # none is 0
         words = WORD.findall(self.code(left) + " " + self.code(right))
         decimal = "real" in (self.scalar(left), self.scalar(right)) and any(
@@ -238,7 +240,7 @@ class Walker:
         return not (self.compares or handle or decimal or self.span(cursor) in self.either)
 
     def is_first_letter(self, cursor):
-        """text[0] where it is asked whether there is a text."""
+        """True for text[0] as a test for an empty text."""
         base, index = cursor.get_children()
         a, b = self.span(cursor)
         return (self.code(index) == "0" and self.code(cursor) == self.code(base) + "[0]"
@@ -369,7 +371,7 @@ class Walker:
     # --- expressions ---
 
     def expression(self, cursor, real=False):
-        """real: converted to floating point."""
+        """real: the value is converted to floating point."""
         k = self.kind
         if not self.here(cursor) or self.in_macro(cursor):
             return
@@ -424,14 +426,14 @@ class Walker:
             self.compared = self.compared and cursor.spelling in PURE
         elif cursor.kind == k.BINARY_OPERATOR:
             self.compared = self.compared or self.operator(cursor)[0] in ("<", ">", "<=", ">=")
-        handle = self.compared and children and children[0].type.spelling == "hid_t"  # of which only the sign is asked
+        handle = self.compared and children and children[0].type.spelling == "hid_t"  # only the sign of a handle is compared
         for child in children:
             if child.kind.is_expression() and not (handle and self.code(child) == "0"):
                 self.expression(child)
         self.in_room, self.compared = outer
 
     def initialised(self, cursor):
-        """A member of a compound literal: .name = value is an expression around its value."""
+        """A member of a compound literal: clang has .name = value as an expression around the value."""
         a, b = self.span(cursor)
         if self.text[a] in ".[":
             children = [c for c in cursor.get_children() if c.kind.is_expression()]
@@ -455,11 +457,11 @@ class Walker:
             if not (before.endswith(("<", ">", "=")) and not re.search(r"[^=!<>]=$", before)) and after[:1] not in "<>":
                 self.add(cursor, "1e-6", pure=True)
         elif "e" in code.lower():
-            if float(code.rstrip("fFlL")) > 1e-100:  # less only keeps a division from 0
+            if float(code.rstrip("fFlL")) > 1e-100:  # smaller numbers only avoid a division by 0
                 factor = "1000" if self.compared else "10"
                 self.add(cursor, "%s * %s" % (code, factor), pure=True)
                 self.add(cursor, "%s / %s" % (code, factor), pure=True)
-        elif self.compared:  # that a limit is off by a millionth shows only what stands on it
+        elif self.compared:  # a limit that is off by a millionth affects only values at the limit
             self.add(cursor, ("%s + 1" if float(code.rstrip("fFlL")) % 1 == 0 else "%s * 2") % code, pure=True)
         else:
             self.add(cursor, "%s * %s" % (code, "1.1" if self.source.name.startswith(SAID) else "(1 + 1e-6)"), pure=True)
@@ -561,7 +563,7 @@ def clang_arguments(entry):
 
 
 def resources(cindex):
-    """clang's own headers, wherever libclang is."""
+    """The headers of clang, wherever libclang is installed."""
     found = sorted(glob.glob("/usr/lib/llvm-*/lib/clang/*/include") + glob.glob("/usr/lib/clang/*/include"))
     if found:
         return ["-isystem", found[-1]]
@@ -580,7 +582,7 @@ def judged_files(tree, judged=JUDGED):
 
 
 def find(tree, build, judged=JUDGED):
-    """The sources, with their sites, of a tree that is configured in build."""
+    """The sources, with their sites, of a tree that is configured in `build`."""
     cindex = load_libclang()
     tree = os.path.realpath(tree)
     sources = {name: Source(tree, name) for name in judged_files(tree, judged)}
@@ -594,7 +596,7 @@ def find(tree, build, judged=JUDGED):
         if name not in sources and not (specialisation and judged == JUDGED):
             continue
         if specialisation and specialisation[1] in specialisations and not specialisation[0].startswith("src/shapes"):
-            continue  # one of each kind of specialisation; one for each kernel
+            continue  # one specialisation of each kind, one for each kernel
         specialisations.add(specialisation and specialisation[1])
         unit = index.parse(path, args=clang_arguments(entry) + resources(cindex) + ["-w"],
                            options=cindex.TranslationUnit.PARSE_DETAILED_PROCESSING_RECORD)
@@ -603,7 +605,7 @@ def find(tree, build, judged=JUDGED):
             refuse("libclang does not understand %s: %s" % (name, bad[0].spelling))
         walker.unit(unit, done)
         seen = {os.path.relpath(os.path.realpath(i.include.name), tree) for i in unit.get_includes()}
-        # headers that say different things to different readers are read again
+        # headers whose contents depend on the includer are read again
         done |= {s for s in seen if s in sources and s.endswith(".h")}
         done.add(name)
     number = 0
@@ -620,7 +622,7 @@ def find(tree, build, judged=JUDGED):
 
 
 def nested(sites):
-    """Those that lie within each other or apart: what crosses another is left out."""
+    """Sites that are nested or disjoint; a site that overlaps another one is dropped."""
     stack, good = [], []
     for site in sites:
         while stack and stack[-1].end <= site.start:
@@ -634,7 +636,7 @@ def nested(sites):
 
 
 def rewrite(source, active):
-    """The text of a source with its alternatives of these numbers."""
+    """The text of a source with the alternatives of these numbers."""
     text, sites = source.text, [s for s in source.sites if s.number in active]
     if not sites:
         return text
@@ -670,7 +672,8 @@ def rewrite(source, active):
         return original
 
     out = render(0, len(text), sites)
-    # scalar loops; a specialisation calls its body: with many alternatives inside, its copies compile for minutes
+    # Loops are scalar, because a specialisation calls its body, whose copies with many alternatives compile for
+    # minutes.
     out = re.sub(r'_Pragma\("omp simd[^"]*"\)', "", out)
     out = re.sub(r"#pragma omp simd.*(\\\n.*)*", lambda m: "\n" * m[0].count("\n"), out)
     return re.sub(r"^ALWAYS_INLINE", "static", out, flags=re.M) if source.name.endswith(".c") and len(sites) > 40 else out

@@ -33,7 +33,7 @@ class Mutant:
         self.old, self.new = [], []
 
     def targets(self):
-        """The build targets that its judge needs besides the program."""
+        """The build targets besides the program that its test needs."""
         return (["verify/test/" + self.test] if self.test.startswith("test_") else []) + self.also.split()
 
     def apply(self, tree):
@@ -111,7 +111,7 @@ def demand(command):
 
 
 class Worker:
-    """A copy of the tree with its build, into which faults are put one after the other."""
+    """A copy of the tree with its build, in which one fault after the other is built."""
 
     def __init__(self, folder):
         folder = os.path.abspath(folder)
@@ -153,7 +153,7 @@ class Worker:
         else:
             command = self.command_of(os.path.join(self.build, mutant.targets()[0]))
         try:
-            # there, since what a faulty test leaves behind must not lie in anybody's tree
+            # in that folder, because a faulty test may leave files behind
             result = quietly(command, timeout=PATIENCE, cwd=self.build)
             self.said = result.stdout
             return result.returncode
@@ -162,7 +162,7 @@ class Worker:
             return "hangs"
 
     def command_of(self, program):
-        """With the arguments that meson runs it with."""
+        """The command of a test with the arguments that meson gives it."""
         tests = json.loads(quietly(["meson", "introspect", "--tests", self.build]).stdout)
         return next(t["cmd"] for t in tests if t["cmd"][0] == program)
 

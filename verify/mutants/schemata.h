@@ -10,13 +10,13 @@
 char *getenv(const char *name);
 int atoi(const char *text);
 int open(const char *name, int flags, ...);
-int sphproof_close(int file) __asm__("close"); /* a source may have a close of its own */
+int sphproof_close(int file) __asm__("close"); /* another name, because a source may define close */
 long lseek(int file, long offset, int whence);
 void *mmap(void *at, unsigned long size, int protection, int flags, int file, long offset);
 
 #define SCHEMATA_GLOBAL __attribute__((weak, visibility("hidden")))
 
-SCHEMATA_GLOBAL int sphproof_mutant; /* -1: watching */
+SCHEMATA_GLOBAL int sphproof_mutant; /* -1: records which mutants are reached */
 SCHEMATA_GLOBAL char *sphproof_reach;
 
 /* Uses shared memory, so that the marks of a process that is killed are kept. */
@@ -29,7 +29,7 @@ SCHEMATA_GLOBAL __attribute__((constructor(101))) void sphproof_schemata(void)
     if (file < 0) return;
     sphproof_reach = mmap((void *)0, (unsigned long)lseek(file, 0, 2), 3, 1, file, 0);
     if (sphproof_reach != (void *)-1) sphproof_mutant = -1;
-    sphproof_close(file); /* a test that counts descriptors finds as many as without */
+    sphproof_close(file); /* so that a test that counts descriptors finds the usual number */
 }
 
 static inline int sphproof_seen(int n, int same)
@@ -39,7 +39,7 @@ static inline int sphproof_seen(int n, int same)
 }
 
 #define SCHEMATA_ON(n) (sphproof_mutant == (n) || (sphproof_mutant < 0 && sphproof_seen(n, 0)))
-/* is: evaluated once, and first; mutant: nothing but numbers. */
+/* `is` is evaluated once, and first; `mutant` consists of numbers and names only. */
 #define SCHEMATA_VALUE(n, mutant, is)                                                              \
     (__extension__({                                                                               \
         __auto_type is_##n = (is);                                                                 \

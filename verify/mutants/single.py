@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Constants that no switch can reach: numbers in initialisers of static data, in enumerators, in
-macros that stand for a number, and in what stands at file scope in capitals (KERNEL, INTEGRATOR, KEY,
-ROW ...). Each such mutant is a text of its own and is compiled singly, see verify/mutants/score."""
+"""Constants that no switch can reach: numbers in initialisers of static data, in enumerators, in macros that are a
+number, and in macro calls at file scope (KERNEL, INTEGRATOR, KEY, ROW ...). Each such mutant is a separate text that
+is compiled singly, see verify/mutants/score."""
 import os
 import re
 
-# Room for text and paths: one byte more is no fault.
+# Capacities of text and paths: one byte more is not a fault.
 ROOM = re.compile(r"TEXT|PATH|BYTES|LABEL|WORD|NAME|LINE|BUFFER|_MAX$")
 NUMBER = re.compile(r"(?<![\w.\"])(\d+\.?\d*(?:e[-+]?\d+)?|\.\d+)(?![\w.])")
 TYPED = re.compile(r'"(\d+(?:\.\d+)?(?:e[-+]?\d+)?)"')
@@ -14,7 +14,7 @@ TYPED = re.compile(r'"(\d+(?:\.\d+)?(?:e[-+]?\d+)?)"')
 class Constant:
     """A number in a source's text, and its replacement."""
 
-    number, function = 0, "-"  # no switch
+    number, function = 0, "-"  # without a switch
 
     def __init__(self, source, start, end, new, change):
         self.source, self.file, self.start, self.end, self.new = source, source.name, start, end, new
@@ -43,7 +43,7 @@ def closing(text, at):
 
 
 def regions(name, text):
-    """(start, end, enumerators?) of constant expressions; text: without comments and strings."""
+    """(start, end, true for enumerators) of constant expressions in a text without comments and strings."""
     found = []
     for m in re.finditer(r"^#define (\w+)[ \t]+(\(?-?[\d.][^\n\\]*)$", text, flags=re.M):
         if not ROOM.search(m[1]):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mutants are tried: what is run to notice them, which of it comes past which mutant, in what order, and
-when to stop. Part of verify/mutants/score.
+"""Tries mutants: decides which tests run, which mutants they reach, in what order they run, and when to stop. Part of
+verify/mutants/score.
 
-A unit is a test of the quick suite or one of its checks. Its key says what it runs: what is known of a
-unit (reach.json) and what it did not notice (the record) holds as long as the key does."""
+A unit is a test of the quick suite or one of its checks. Its key is a hash of what it runs: measurements of a unit
+(reach.json), and mutants that it did not notice (the record), are valid as long as the key is the same."""
 import collections
 import concurrent.futures
 import glob
@@ -19,9 +19,9 @@ import subprocess
 import threading
 import time
 
-LEAST = 3  # so many tests are tried on a mutant, however long they take
-START = 0.03  # CPU-s: of a process
-ROUNDS = (0.5, 4, float("inf"))  # CPU-s of a test, at most: what is cheap is tried on every mutant first
+LEAST = 3  # at least this many tests are tried on a mutant, however long they take
+START = 0.03  # CPU-s of a process
+ROUNDS = (0.5, 4, float("inf"))  # largest CPU-s of a test: cheap tests are tried on every mutant first
 
 
 class Unit:
@@ -33,7 +33,7 @@ def quietly(command, **more):
     return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **more)
 
 
-# --- what is run --------------------------------------------------------------------------------------
+# --- units --------------------------------------------------------------------------------------------
 
 
 def hash_of(paths, tree):
@@ -58,8 +58,8 @@ def quick_tests(build):
 
 
 def units_of(build, source, tree, wanted):
-    """The tests of the quick suite as they stand in meson; groups of checks one check at a time, transcripts too.
-    tree: the rewritten copy of source. wanted: a regular expression for their names."""
+    """The quick suite's tests from meson; groups of checks are split into checks, and transcripts likewise. tree: the
+    rewritten copy of source. wanted: a regular expression for their names."""
     checked, tested = os.path.join(source, "verify", "check"), os.path.join(source, "verify", "test")
     rooms = [os.path.join(source, r) for r in ("src", "reference", "reports", "cases", "verify")]
     common = hash_of([f for r in rooms for f in files_below(r) if f.endswith((".c", ".h", ".def", ".in", ".case"))
@@ -88,8 +88,8 @@ def units_of(build, source, tree, wanted):
 
 
 def checks_of(folder):
-    """Group: GROUP/CHECK, all that are quick, as their descriptors have them; a group in which macros
-    make some of the descriptors is not there."""
+    """The quick checks of each group as GROUP/CHECK, from their descriptors; a group is left out if macros make some
+    of its descriptors."""
     quick, found, listed = collections.defaultdict(list), collections.Counter(), collections.Counter()
     for path in sorted(glob.glob(os.path.join(folder, "*.c"))):
         with open(path) as f:
@@ -182,7 +182,7 @@ class Table:
         os.replace(new, self.path)
 
     def place(self, worker):
-        """The folder of the first build and that which stands for it; the scratch folder."""
+        """The folder of the first build and its copy for this worker; the scratch folder."""
         own = os.path.join(self.work, "%%s%d%s" % (worker, self.shard))
         return (self.build, own % "worker"), own % "scratch"
 
@@ -204,8 +204,7 @@ class Table:
         return self.units.get(unit.name, {}).get("key") == [unit.key, self.drawn]
 
     def find(self, units, workers, over):
-        """One run of each unit of which nothing is known, until it is over. Returns those that are
-        known."""
+        """Runs each unknown unit once, until the time is over. Returns the units that are known."""
         waiting = queue.Queue()
         for unit in units:
             if not self.knows(unit):
@@ -222,7 +221,7 @@ class Table:
                 with open(marks, "wb") as f:
                     f.truncate(self.count)
                 failed, seconds = run_unit(unit, place, scratch, {"SPHPROOF_REACH": marks}, 200)
-                if failed:  # perhaps because of the marks
+                if failed:  # the marks may be the cause
                     failed, seconds = run_unit(unit, place, scratch, {}, 200)
                 with open(marks, "rb") as f:
                     seen = f.read()
@@ -319,7 +318,7 @@ class Judge:
                 continue
             spent, tried = spent + usual + START, tried + 1
             how, _ = run_unit(unit, place, scratch, {"SPHPROOF_MUTANT": str(mutant.number)}, usual)
-            # a copy of the build is without the mutant that is compiled in place
+            # a copy of the build lacks the mutant that is compiled in place
             if how and not self.table.sound(unit, self.table.place(worker)[0], scratch):
                 how = ""
                 continue

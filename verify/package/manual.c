@@ -45,7 +45,8 @@ static size_t line_length(const char *text)
 
 /* ---- manual pages ---- */
 
-/* So many bytes as plain text of a page: dashes stay dashes, no line is a request. */
+/* Writes `length` bytes as plain text of a manual page: dashes stay dashes, and no line is a
+ * request. */
 static void put_roff(FILE *out, const char *text, size_t length)
 {
     for (size_t i = 0; i < length; i++) {
@@ -146,7 +147,7 @@ static void write_first_page(const char *folder)
 
 /* ---- completion ---- */
 
-/* What a word may be: of an option's argument, or of a command's arguments. */
+/* The kinds of words that an option's argument, or a command's, may be. */
 enum words { WORDS_FILE, WORDS_CASE, WORDS_RUN, WORDS_KERNEL, WORDS_OPERATOR, WORDS_LISTED };
 
 static enum words words_of(const char *argument)
@@ -172,7 +173,7 @@ static void put_family(FILE *out, const struct family *family)
         fprintf(out, "%s%s", i ? " " : "", family->members[i]->name);
 }
 
-/* The words, with a blank between; nothing for files. */
+/* Writes the words, separated by blanks; nothing for files. */
 static void put_words(FILE *out, enum words words, const char *listed)
 {
     if (words == WORDS_CASE || words == WORDS_RUN)
@@ -196,7 +197,7 @@ static void put_option_names(FILE *out, const struct command_option *list)
     for (; list && list->name; list++) fprintf(out, " --%s", list->name);
 }
 
-/* A branch for each option of the list that takes more than any file. */
+/* Writes a branch for each option of the list whose argument is not simply a file. */
 static void put_bash_arguments(FILE *out, const char *command, const struct command_option *list)
 {
     for (; list && list->name; list++) {
@@ -252,7 +253,8 @@ static void write_bash(const char *folder)
     end(out);
 }
 
-/* In single quotes, for zsh and fish; zsh: also without what stands for itself in a description. */
+/* Writes text in single quotes, for zsh and fish; for zsh special characters of descriptions are
+ * escaped as well. */
 static void put_quoted(FILE *out, const char *text, size_t length, bool zsh)
 {
     for (size_t i = 0; i < length; i++)

@@ -81,7 +81,7 @@ class Tree:
             raise Failed("`sphproof list %s` does not name %s" % (family, name))
 
     def checks(self, name):
-        """What `verify` says of a check or a group, as a list; computed once for each build."""
+        """The results of a check or of a group, as a list; computed once for each build."""
         if name not in self.verified:
             path = os.path.join(self.work, "verify.json")
             self.call([os.path.join(self.folder, "sphproof"), "verify", name, "--quiet", "--json", path, "--failures",
@@ -91,7 +91,7 @@ class Tree:
         return self.verified[name]
 
     def seen(self, subject, name, status):
-        """What this check says of subject with this status."""
+        """The results of this check for the subject with this status."""
         return [c for c in self.checks(name) if c["status"] == status and re.search(r"\b%s\b" % re.escape(subject), c["subject"])]
 
     def checked(self, subject, *names):
@@ -103,12 +103,13 @@ class Tree:
                 raise Failed("verify %s fails: %s" % (name, self.seen("", name, "fail")))
 
     def rejected(self, subject, name, other=""):
-        """This check fails for subject. Failures that name other, which has a fault of its own in this build, do not count."""
+        """This check fails for the subject. Failures that name `other`, which has a fault of its own in this build,
+        do not count."""
         if all(other in c["subject"].split() for c in self.seen(subject, name, "fail")):
             raise Failed("the fault of %s passed %s" % (subject, name))
 
     def skipped(self, subject, name):
-        """What has no second writing of its equations says so."""
+        """This check skips the subject, because the oracle does not have its equations."""
         if not self.seen(subject, name, "skip"):
             raise Failed("%s does not skip %s" % (name, subject))
 
@@ -118,8 +119,8 @@ class Tree:
             raise Failed("a report would compute nothing that is called '%s'" % pattern)
 
 
-# A row is a generator: what it adds; build; what must be seen, and what it adds to the oracle; build; what must be
-# seen then, and its fault; build; that the fault is noticed.
+# A row is a generator: it adds a member; build; it tests that the member is seen, and adds it to the oracle;
+# build; it tests that, and plants a fault; build; it tests that the fault is noticed.
 ROWS = {}
 
 
@@ -251,7 +252,7 @@ ALWAYS_INLINE double mixed_weight(double w, double slope)
 #endif
 GRADIENT(mixed, .member = {"mixed", "as ia with the mean of W and -W'/q", ""}, .least_dim = 1, .weight = WEIGHT_BOTH)
 """)
-    # those with a form in 1D stand first
+    # those with a form in 1D come first
     tree.replace("src/core/gradient/gradients.def", '#include "gradient/corrected.h"',
                  '#include "gradient/mixed.h"\n#include "gradient/corrected.h"')
     yield
@@ -571,11 +572,11 @@ file: src/statistics/norm.c
     yield
     tree.checked("", "norms")
     yield
-    yield  # it leaves a program with the fault behind: all others have been looked at
+    yield  # last, because it leaves a program with the fault behind
     sys.path.insert(0, os.path.dirname(script))
     import mutants
     added = [m for m in mutants.read_list() if m.name == "src_norm_twice"]
-    worker = object.__new__(mutants.Worker)  # with the copy and the build that are there
+    worker = object.__new__(mutants.Worker)  # uses the existing copy and build
     worker.tree, worker.build = tree.root, tree.folder
     worker.program = os.path.join(tree.folder, "sphproof")
     outcome = worker.judge(added[0])

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""bad_input.py SPHPROOF: what a stranger gets wrong, and what the program answers. What is wrong in a case file
-or with a key is tested in C (run/test_case.c, test_settings.c, test_prepare.c), and more of the commands, word
-for word, in the transcripts.
+"""bad_input.py SPHPROOF: frequent mistakes of users, and the program's answers. Mistakes in case files and keys are
+tested in C (run/test_case.c, test_settings.c, test_prepare.c), and those in commands word for word in the
+transcripts.
 
-Each line: arguments, exit status, words that the message must contain (what, where, what is
-allowed). Always: one message on standard error, nothing on standard output, no file left behind,
-no hang."""
+Each line: arguments, exit status, words that the message must contain (what, where, what is allowed). In each case:
+one message on standard error, nothing on standard output, no file left behind, no hang."""
 import json
 import os
 import subprocess
@@ -119,7 +118,7 @@ GOOD_ONES = ["run good.ini", "run ./crlf.ini", "run indented.ini", "run|space na
              "run sod n=1e2 t_end=1e-2", "run sod n=20 n=30 t_end=0.01", "run --quiet sod n=20",
              "--threads 2 run sod n=20 t_end=.01"]
 
-# what each call must say on standard output, or (notes) on standard error
+# words that each call must print on standard output or (notes) on standard error
 SAID = [
     ("help run", "usage: sphproof run CASE"),
     ("help", "usage: sphproof COMMAND"),
@@ -128,7 +127,7 @@ SAID = [
     ("run noh_3d n=6^3 --explain eta=3", "holds about 113 neighbours"),
     ("run sod n=100 --explain eta=2", "holds about 4 neighbours"),
 ]
-# what it must not say
+# words that it must not print
 UNSAID = [("run gresho n=64^2 --explain", "did you mean"), ("run sod n=64 --explain", "did you mean")]
 
 
@@ -153,7 +152,7 @@ def judge(program, folder, line, status, needed):
             yield "the message does not say %r" % word
     if message.count("\n") > (1 if status == 3 else 0):
         yield "more than one message"
-    # a result that cannot be written to one place is still shown in the other
+    # a result that cannot be written to one place is still printed to the other
     if done.stdout and "/dev/full" not in line:
         yield "standard output is not empty: %r" % done.stdout[:60]
     if len(message) > 700:

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""bits.py SOURCE FOLDER: the same bits from every build.
+"""bits.py SOURCE FOLDER: every build computes the same bits.
 
-Builds the program in FOLDER with gcc and with clang (those that are there): with the loops chosen
-at run time, and with all of it compiled for the baseline, AVX2 and AVX-512 (those that this
-processor has). All builds, each with 1, 2 and 7 threads, must give the same particles, errors,
-conservation and counts of work, to the last of 17 digits."""
+Builds the program in FOLDER with gcc and with clang (if installed): with loops chosen at run time, and compiled
+entirely for the baseline, AVX2 and AVX-512 (if this processor has them). All builds, each with 1, 2 and 7 threads,
+must give the same particles, errors, conservation and counts of work, to the last of 17 digits."""
 import hashlib
 import json
 import os
@@ -12,7 +11,7 @@ import shutil
 import subprocess
 import sys
 
-# more than 2048 particles: fewer of them stay on one thread
+# more than 2048 particles, because fewer are computed by one thread
 RUNS = [
     "sod n=2113 t_end=0.05",
     "sod n=450 grade=0.2",
@@ -43,7 +42,7 @@ THREADS = [1, 2, 7]
 
 
 def instruction_sets():
-    """Name and arguments of the compiler; none: chosen at run time."""
+    """Name and arguments of the compiler; without arguments loops are chosen at run time."""
     try:
         with open("/proc/cpuinfo", encoding="ascii") as file:
             flags = next((line for line in file if line.startswith("flags")), "").split()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""case_gates.py SPHPROOF [CASE...]: `judge --gates case` on our own run of every case at its own n: it passes, and
-does not with faults planted: velocities 10 % low, particles moved by two spacings along the diagonal, noise of a tenth
-of speed and sound speed."""
+"""case_gates.py SPHPROOF [CASE...]: `judge --gates case` passes our own run of every case at its own n, and fails it
+with planted faults: velocities 10 % too low, particles moved by two spacings along the diagonal, noise of a tenth of
+speed and sound speed."""
 import json
 import math
 import random
@@ -9,7 +9,7 @@ import sys
 
 from script import call, json_of, play, read, write
 
-# Faults that no gate of the case can see, and why.
+# Faults that no gate of the case can detect, and why.
 UNSEEN = {("rest_2d", "slow"): "gas at rest, which moves by noise alone", ("rest_2d", "moved"): "it is uniform",
           ("rest_3d", "slow"): "as in 2D", ("rest_3d", "moved"): "as in 2D", ("square", "slow"): "its gas should rest",
           ("kelvin_helmholtz", "moved"): "the amplitude of a mode hardly depends on its place",

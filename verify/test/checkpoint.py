@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""checkpoint.py SPHPROOF [SETUPS] [SEED]: runs that are killed and resumed, on setups drawn at random: the
-particles at the end and on the way and the document, times and memory aside, have the bytes of the uninterrupted run,
-and those at the end and the document the bytes of a run without snapshots on the way.
-(Checkpoints that are damaged, or of another build or run: test_checkpoint.)"""
+"""checkpoint.py SPHPROOF [SETUPS] [SEED]: random runs that are killed and resumed. The final particles, the snapshots
+and the document, without times and memory, have the bytes of the uninterrupted run; the final particles and the
+document also have those of a run without snapshots. (Checkpoints that are damaged, or of another build or run:
+test_checkpoint.)"""
 import contextlib
 import glob
 import json
@@ -15,7 +15,7 @@ import time
 from script import call, expect, faults, play, program
 
 setups, seed = int(sys.argv[2]) if len(sys.argv) > 2 else 12, int(sys.argv[3]) if len(sys.argv) > 3 else 1
-# a case, its numbers of particles, an end that takes a few dozen steps or more
+# case, range of the number of particles, end time after a few dozen steps or more
 LINES = [("sod", (100, 300), 0.05), ("strong_shock", (100, 200), 0.01), ("sound_wave", (64, 128), 0.2),
          ("lax", (100, 200), 0.03), ("noh_1d", (100, 200), 0.1)]
 CLOUDS = [("sod_2d", (1400, 2000), 0.03), ("gresho", (256, 576), 0.03), ("kelvin_helmholtz", (256, 400), 0.05),
@@ -28,7 +28,7 @@ CHOICES = {"kernel": ["cubic_spline", "quintic_spline", "wendland_c2", "wendland
            "viscosity": ["constant", "time_dependent", "reconstructed", "fading"],
            "energy": ["internal", "total"], "skip": ["auto", "none"], "h_method": ["newton", "predicted"]}
 CLOUD_VISCOSITIES = ["cullen_dehnen", "projected"]
-# with steps of their own: those that take blocks of them
+# cases with local time steps that take blocks of steps
 LOCALS = [("noh_2d", (400, 1600), 0.1), ("sedov_2d", (400, 900), 0.05), ("noh_3d", (1200, 1600), 0.2),
           ("sedov_3d", (1000, 1400), 0.05)]
 SHIFTING_CHOICES = {"shifting": ["fluxes", "closed"], "kernel": ["cubic_spline", "wendland_c2"],
@@ -38,7 +38,7 @@ LOCAL_CHOICES = {"gradient": ["standard", "ia"], "skip": ["auto", "none"], "ener
 
 
 def draw(generator):
-    """Words of a run; some combinations exclude each other."""
+    """Arguments of a run; some combinations exclude each other."""
     local, cloud = generator.random() < 0.25, generator.random() < 0.6
     case, numbers, t_end = generator.choice(LOCALS if local else CLOUDS if cloud else LINES)
     words = [case, "n=%d" % generator.randint(*numbers), "t_end=%g" % (t_end * generator.uniform(0.7, 1.3))]
@@ -57,7 +57,7 @@ def run(words, *more):
 
 
 def seen(stem):
-    """All that a run leaves but times and memory."""
+    """The output of a run without times and memory."""
     with open(stem + ".json", encoding="utf-8") as file:
         document = json.load(file)
     for name in ("wall_s", "cpu_s", "peak_rss_bytes"):
@@ -77,7 +77,7 @@ def on_the_way(stem):
 
 
 def resume(words, files, generator, longest):
-    """kill -9 again and again, each after the first checkpoint it writes and a moment; how often."""
+    """Kills the run repeatedly, each time a moment after the first checkpoint it writes; returns how often."""
     kills = 0
     while True:
         threads = ["--threads", generator.choice(["1", "2"])]
@@ -106,7 +106,7 @@ def test_bits():
         began = time.monotonic()
         way = ["--snapshot-every", "%.3g" % (float(words[2].partition("=")[2]) / generator.uniform(1.5, 9))]
         if run(words, "--snapshot", "alone.csv", *way, "--json", "alone.json").returncode:
-            passed_over += 1  # keys that exclude each other, or a run that breaks down
+            passed_over += 1  # keys that exclude each other, or a breakdown
             if passed_over > 4 * setups + 8:
                 break
             continue
@@ -126,11 +126,11 @@ def test_bits():
                [k for k, rows in on_the_way("alone").items() if rows != on_the_way("again").get(k)])
         plain, still = seen("plain")
         for document in (plain, one):
-            document.get("estimate", {}).pop("memory_bytes", None)  # room for going aside
+            document.get("estimate", {}).pop("memory_bytes", None)  # differs by the memory of the state set aside
         expect("%s knows nothing of snapshots" % " ".join(words), (plain, still) == (one, rows))
         for path in glob.glob("a*_????.csv"):
             os.remove(path)
-        with contextlib.suppress(FileNotFoundError):  # it was too short for one
+        with contextlib.suppress(FileNotFoundError):  # the run was too short for a checkpoint
             os.remove("state")
     expect("draws that ran, %d were passed over" % passed_over, done >= setups or faults, done)
     expect("runs that were killed", resumed >= (setups + 1) // 4, resumed)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""ci.py SOURCE WORK: the examples for CI (verify/examples/ci) do what they say. The steps of GitHub's action and of
-GitLab's template are run as those do, each with a snapshot whose gate holds and one whose gate fails."""
+"""ci.py SOURCE WORK: the examples for CI (verify/examples/ci) work. The steps of GitHub's action and of GitLab's
+template run as they would there, with a snapshot whose gate passes and one whose gate fails."""
 import os
 import re
 import shutil

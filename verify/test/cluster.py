@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A cluster of two nodes on this host, by Slurm's own daemons: munged, slurmctld, two slurmd, all in a
-folder of their own and ended with it."""
+"""A cluster of two nodes on this host with Slurm's own daemons: munged, slurmctld and two slurmd, in a folder of
+their own, which end with it."""
 import contextlib
 import getpass
 import os
@@ -14,12 +14,12 @@ TOOLS = ("munged", "slurmctld", "slurmd", "sbatch", "squeue", "scancel")
 
 
 def tool(name):
-    """Daemons are in sbin, which not everybody's PATH has."""
+    """Daemons are in sbin, which may not be in PATH."""
     return shutil.which(name) or shutil.which(name, path="/usr/sbin:/usr/local/sbin:/sbin")
 
 
 def missing():
-    """Which of Slurm's tools are not here."""
+    """Slurm's tools that are not installed."""
     return [name for name in TOOLS if not tool(name)]
 
 
@@ -32,7 +32,7 @@ def free_ports(count):
 
 
 def processes():
-    """Process number -> (command line, environment) of those that we may read."""
+    """Process number -> (command line, environment) of readable processes."""
     found = {}
     for pid in filter(str.isdigit, os.listdir("/proc")):
         with contextlib.suppress(OSError):
@@ -100,14 +100,14 @@ class Cluster:
             time.sleep(0.05)
 
     def tasks(self, node=None):
-        """Processes of running tasks (of a node): process number -> words."""
+        """Processes of running tasks (on a node): process number -> words."""
         wanted = b"SLURM_CONF=" + self.conf.encode()
         return {pid: words for pid, (words, environ) in processes().items()
                 if wanted in environ and any(e.startswith(b"SLURM_ARRAY_TASK_ID=") for e in environ)
                 and (node is None or b"SLURMD_NODENAME=" + node.encode() in environ)}
 
     def crash(self, node):
-        """As if the power were cut: slurmd, those who watch its tasks, and the tasks."""
+        """Simulates a power failure: kills slurmd, the processes that watch its tasks, and the tasks."""
         self.daemons[node].send_signal(signal.SIGKILL)
         self.daemons[node].wait()
         tasks = self.tasks(node)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""codes.py SPHPROOF SPH: the small codes of verify/examples/codes (SPH: the one in C, compiled) solve Sod's tube and
-Gresho's vortex as well as their schemes can, by judge's verdict and the gates of their files, and each planted fault is told."""
+"""codes.py SPHPROOF SPH: the small codes of verify/examples/codes (SPH: the compiled one in C) solve Sod's tube and
+Gresho's vortex as well as their schemes can, by judge's verdict and the gates of their files, and each planted fault
+is detected."""
 import os
 import shutil
 import subprocess
@@ -11,11 +12,11 @@ from script import call, json_of, play, read, write
 C_PROGRAM = os.path.abspath(sys.argv[2])
 CODES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "examples", "codes")
 CODE = os.path.join(CODES, "sph.py")
-SOD = 0.0105  # L1 of density of 396 particles: the scheme has 0.0089, the smallest fault 0.0110
+SOD = 0.0105  # L1 of density with 396 particles: the scheme has 0.0089, the smallest fault 0.0110
 
 
 def solved(start, case, t_end, *words):
-    """What judge says of a run of the code, from its own initial state on."""
+    """The verdict of judge on a run of the code from its own initial state."""
     ending = os.path.splitext(start)[1]
     subprocess.run(["/usr/bin/python3", os.path.abspath(CODE), start, "out", "--t-end", t_end, *words], check=True)
     return json_of("judge", "out_000" + ending, "out_001" + ending, "--case", case, status=None)
@@ -40,19 +41,19 @@ def test_gresho():
 
 
 def ladder(case, code_file, status):
-    """Of the gate and of nothing else: pass, fail."""
+    """The status of the only gate: pass or fail."""
     found = json_of("converge", case, "--code", code_file, "--replicates", "1", status=status != "pass")
     gates = [order["status"] for order in found["orders"] if order["gate"]]
     assert gates == [status], (case, code_file, gates)
 
 
 def test_ladder():
-    """The code file beside it: gates hold."""
+    """The gates of the code file beside it hold."""
     ladder("sod", CODE.replace(".py", ".ini"), "pass")
 
 
 def test_c():
-    """The code in C: gates of its file hold, judge finds its kernel, and each fault that the file plants fails a gate."""
+    """The code in C: the gates of its file hold, judge finds its kernel, and each fault in its file fails a gate."""
     shutil.copy(C_PROGRAM, "sph")
     text = read(os.path.join(CODES, "sph_c.ini"))
     right = "command = sph @IC@ @OUT@ @T_END@\n"
@@ -72,7 +73,7 @@ def there(module):
 
 
 def test_calibrate():
-    """Of all faults each is seen by a gate, which then fails the ladder, and passes it without the fault."""
+    """Each fault that was calibrated is detected by a gate; the ladder fails with the fault and passes without it."""
     for name in ("sph.py", "sph.ini"):
         shutil.copy(os.path.join(CODES, name), name)
     write("sph.ini", read("sph.ini").replace("n = 12^2 16^2 20^2 24^2", "n = 8^2 10^2 12^2 14^2"))
@@ -80,7 +81,7 @@ def test_calibrate():
     found = json_of("calibrate", "sph.ini", *words, "--runs", "2")["cases"][0]
     assert {fault["name"]: fault["status"] for fault in found["faults"]} == dict.fromkeys(
         ("gamma", "viscosity", "momentum", "first_order", "width"), "seen"), found["faults"]
-    # 2 units in the last place of the start change something, and little
+    # changes of the initial state by 2 units in the last place have a small effect
     assert all(0 < gate["spread"] < 1e-9 for gate in found["gates"] if gate["name"].endswith("_l1")), found["gates"]
     for fault in ("", "gamma", "viscosity", "momentum", "first_order", "width"):
         text = read("sph.calibrated.ini")
@@ -88,7 +89,7 @@ def test_calibrate():
             text = text.replace("--t-end @T_END@\n", "--t-end @T_END@ --fault " + fault + "\n", 1)
         write("mine.ini", text)
         call("converge", words[0], "--code", "mine.ini", *words[1:], status=bool(fault))
-        if fault in ("", "momentum"): # a report says the same
+        if fault in ("", "momentum"): # a report has the same status
             write("mine.ini", text.replace(text[text.index("[case sod]"):text.index("[case gresho]")], ""))
             call("report", "--code", "mine.ini", "--out", "page", status=bool(fault))
 

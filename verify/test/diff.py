@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""diff.py SPHPROOF: `sphproof diff` knows the figures of every kind of document, which differs in nothing from itself,
-also when another tool has rewritten it, and refuses bad input. (Verdicts on figures that have moved: verify/test/report;
+"""diff.py SPHPROOF: `sphproof diff` knows the figures of every kind of document; a document does not differ from
+itself, also if another tool has rewritten it; bad input is refused. (Verdicts on changed figures: verify/test/report;
 `sphproof baseline`: the transcripts.)"""
 import json
 import os
@@ -39,7 +39,7 @@ def test_rewritten(documents):
 
 
 def test_kinds():
-    """Every kind of document is read, all its figures are known, and differs in nothing from itself."""
+    """Every kind of document is read, all its figures are known, and it does not differ from itself."""
     with open("cloud.csv", "w", encoding="ascii") as cloud:
         cloud.write("x,volume,f\n" + "".join("%g,0.1,%g\n" % (0.1 * i, i * i) for i in range(20)))
     kinds = (["riemann", "1", "0", "1", "0.125", "0", "0.1", "--sample", "-1:1:5"],

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""exits.py SPHPROOF [all]: what a study ends with is the same alone, from a cache that is cold or warm, after its
-shares in either order, after one that is missing, and through an engine. A share itself ends with 0 whatever it finds,
-unless its input is bad (2) or it cannot keep what it computes (4). With `all` of every command that has shares."""
+"""exits.py SPHPROOF [all]: the exit status of a study is the same alone, from an empty or a full cache, after its
+shares in either order, after a missing share, and with an engine. A share itself exits with 0 whatever it finds,
+unless its input is bad (2) or its results cannot be kept (4). With `all` for every command that has shares."""
 import contextlib
 import json
 import os
@@ -39,7 +39,7 @@ OTHERS = [
     (2, ["stress", "nonsense"]),
 ]
 TIMED = {"date", "seconds", "found", "cost", "on_front", "cheapest", "figure_of_merit", "seed_plain_over_this"}
-# both tasks of the array, at once; then both have ended
+# first both tasks of the array run, then both have ended
 FAKE = """#!/bin/sh
 case ${0##*/} in
 squeue) [ ! -e submitted ] || printf '7 1 COMPLETED None\\n7 2 COMPLETED None\\n' ;;
@@ -53,14 +53,14 @@ esac
 
 
 def fixed(value):
-    """Without what differs from one call to the next."""
+    """A document without the members that differ from call to call."""
     if isinstance(value, dict):
         return {k: fixed(v) for k, v in value.items() if k not in TIMED and not k.endswith("_s")}
     return [fixed(v) for v in value] if isinstance(value, list) else value
 
 
 def tried(*words):
-    """Exit status, what is in the document (and in a JUnit file) and what was said about an error."""
+    """Exit status, contents of the document (and of a JUnit file), and error messages."""
     for name in ("out.json", "out.xml"):
         with contextlib.suppress(FileNotFoundError):
             os.remove(name)
@@ -102,13 +102,13 @@ def try_study(number, code, words):
 
 
 def test_all_checks():
-    """They are all computed, each once."""
+    """All checks are computed, each once."""
     listed, names = (call(*words).stdout.splitlines() for words in (("verify", "--slow", "--list"), ("list", "checks")))
     expect("all checks", len(set(listed)) == len(listed) == len(names) - 1, (len(listed), len(names)))
 
 
 def test_environment():
-    """Where nothing can be kept, and where there is no Slurm, every way ends with 4."""
+    """If nothing can be kept, or there is no Slurm, every way ends with 4."""
     words = STUDIES[0][1]
     for more in ((), ("--shard", "1/2"), ("--engine", "slurm")):
         status, document, said = tried(*words, "--cache", "/dev/null/cache", *more)
@@ -124,7 +124,7 @@ def try_studies():
     for name in ("sbatch", "squeue", "scancel"):
         write("bin/" + name, FAKE)
         os.chmod("bin/" + name, 0o755)
-    os.environ["PATH"] = os.path.abspath("bin")  # nothing of a Slurm that may be here
+    os.environ["PATH"] = os.path.abspath("bin")  # hides an installed Slurm
     for number, (code, words) in enumerate(STUDIES + (OTHERS if "all" in sys.argv else [])):
         try_study(number, code, words)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""failing.py SPHPROOF: what a person gets to see of one fault, here of a plug-in kernel whose dw is
-off by 3e-11 in its outer half."""
+"""failing.py SPHPROOF: the output that a user sees for one fault, here a plug-in kernel whose dw is off by 3e-11 in
+its outer half."""
 import json
 import os
 import shutil
@@ -18,7 +18,7 @@ def sphproof(*words, what="kernels"):
 
 
 def last_words(log, name="testlog.json"):
-    """Of a build folder whose tests left this log, and nothing else."""
+    """Prints the failure for a build folder with this test log and nothing else."""
     shutil.rmtree("meson-logs", ignore_errors=True)
     os.makedirs("meson-logs")
     with open(os.path.join("meson-logs", name), "w", encoding="utf-8") as file:
@@ -84,11 +84,11 @@ def everyone_gets_to(folder):
 
 
 def test_folder():
-    """Data of failures are beside the program, or where one stands if nothing can be written there."""
+    """Data of failures are written beside the program, or in the working folder if that is not possible."""
     os.chmod(".", 0o755)
     for name, mode, nobody in (("own", 0o755, False), ("locked", 0o555, True)):
         if nobody and not everyone_gets_to(os.getcwd()):
-            continue  # as root: nothing is locked for it, and nobody gets here
+            continue  # root ignores the permissions
         os.makedirs(name)
         shutil.copy(program, name + "/sphproof")
         shutil.copy(wrong, name + "/wrong.so")

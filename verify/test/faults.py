@@ -51,7 +51,7 @@ def sphproof(*arguments, limits=(), nobody=False, **options):
 
 
 def shell(line):
-    """A line for bash; $SPHPROOF is the program."""
+    """Runs a line in bash; $SPHPROOF is the program."""
     return subprocess.run(["bash", "-c", "set -o pipefail; " + line], capture_output=True, text=True,
                           cwd=folder, stdin=subprocess.DEVNULL, timeout=300, errors="replace",
                           env={**os.environ, "SPHPROOF": program})
@@ -68,7 +68,7 @@ def not_tried(fault, why):
 
 
 def row(fault, done, status, *words, also=(), says=""):
-    """One line of the table; also: pairs of a condition and what it means."""
+    """Prints one line of the table; also: pairs of a condition and its meaning."""
     allowed = status if isinstance(status, tuple) else (status,)
     wrong = []
     if done.returncode not in allowed:
@@ -84,7 +84,7 @@ def row(fault, done, status, *words, also=(), says=""):
 
 
 def parts(place):
-    """Temporaries that are there."""
+    """Temporary files."""
     return [os.path.join(path, name) for path, _, files in os.walk(place) for name in files if ".part" in name]
 
 
@@ -116,7 +116,7 @@ def absent(name):
 
 
 def tool(name, script):
-    """A folder to put on the PATH, with an impostor of name in it."""
+    """A folder for PATH with this script in place of the tool."""
     place = os.path.join(folder, "tools " + name + str(len(os.listdir(folder))))
     os.mkdir(place)
     path = os.path.join(place, name)
@@ -128,7 +128,7 @@ def tool(name, script):
 
 @contextlib.contextmanager
 def small_disk(fault, kibi):
-    """A folder on a disk of its own, or None where one cannot be made."""
+    """A folder on a separate small disk, or None if none can be made."""
     place = "small disk"
     os.makedirs(os.path.join(folder, place), exist_ok=True)
     mount = ["mount", "-t", "tmpfs", "-o", "size=%dk" % kibi, "tmpfs", os.path.join(folder, place)]
@@ -258,7 +258,7 @@ def interrupts():
         child = subprocess.Popen([program, "run", "sod", "n=200000", "--json", "r.json", "--snapshot",
                                   "new.csv"], cwd=folder, stdout=subprocess.PIPE, text=True,
                                  stderr=subprocess.PIPE,
-                                 # a job in the background of a script, as this may be, ignores them
+                                 # a background job of a script, as this test may be, ignores these signals
                                  preexec_fn=lambda number=number: signal.signal(number, signal.SIG_DFL))
         time.sleep(0.3)
         child.send_signal(number)
@@ -274,7 +274,7 @@ def memory():
     for size in list(range(8, 40, 4)) + list(range(40, 200, 16)):
         limits = [(resource.RLIMIT_AS, size * mebi)]
         if sphproof("--version", limits=limits).returncode:
-            continue  # too little to load the program
+            continue  # too little memory to load the program
         done = sphproof("run", "sod", "n=200000", "t_end=1e-5", "--snapshot", "s.csv", limits=limits)
         status.add(done.returncode)
         if done.returncode not in (0, 4) or (done.returncode == 4 and "memory" not in done.stderr):
@@ -292,14 +292,14 @@ def threads():
                     "%d" % (8 * os.cpu_count()))
     row("threads: 8 times the cores", done, 0, also=[
         (get("1.csv") == get("many.csv"), "other results")])
-    if root: # limits on processes do not bind root
+    if root: # limits on processes do not apply to root
         done = sphproof("run", "sod", "n=5000", "t_end=0.001", "--threads", "64", nobody=True,
                         limits=[(resource.RLIMIT_NPROC, 8)])
         row("eight processes, 64 threads", done, 4, "threads")
 
 
 def whole(out):
-    """What a killed report left: each file is whole or not there."""
+    """The files of a killed report are complete or missing."""
     page, results = get(os.path.join(out, "index.html")), get(os.path.join(out, "results.json"))
     if page is not None:
         xml.fromstring(page.replace("<!DOCTYPE html>", ""))
@@ -309,7 +309,7 @@ def whole(out):
 
 
 def killed(fault, done, count, final, before, cache, also=()):
-    """A row for a command that was killed again and again, and then left to end."""
+    """A row for a command that was killed repeatedly and then completed."""
     row(fault, final, 0, also=[
         (not done.wrong, "; ".join(done.wrong[:3])),
         (not kills.lost(before, kills.entries(cache)), "computed again, or lost, after the last kill"),
@@ -323,7 +323,7 @@ def kill_studies(count=STUDY_KILLS):
     cache = os.path.join(folder, "studies")
     done, before = kills.kill([program, *study, "--cache", cache, "--quiet"], cache, count, 0.4,
                               fine=(0, 1), cwd=folder)
-    sweep(parts(cache))  # a half-written file for each kill at most
+    sweep(parts(cache))  # at most one partial file for each kill
     final = sphproof(*study, "--cache", "studies", "--json", "kept.json")
     fresh = sphproof(*study, "--json", "fresh.json")
     kept, new = (json.loads(get(name) or "{}").get("orders") for name in ("kept.json", "fresh.json"))
@@ -352,7 +352,7 @@ def kill_reports(count):
 
 
 def cached_reports(cache):
-    """Faults of a report that has nothing left to compute."""
+    """Faults of a report whose results are all in the cache."""
     size = sum(4 + sum(-(-os.path.getsize(os.path.join(inside, name)) // 4096) * 4 for name in names)
                for inside, _, names in os.walk(cache))
     with small_disk("full disk, report", size + 200) as place:
@@ -379,7 +379,7 @@ PARTS = {"disk": disk, "permissions": permissions, "gnuplot": drawing, "locale":
 
 
 def document(seconds):
-    """A result document; its head is the one that the program writes."""
+    """A result document; its head is the program's."""
     document = json.loads(sphproof("list", "kernels", "--json", "-").stdout)
     del document["families"]
     counts = {counted: sum(r["status"] == status for r in rows)
@@ -427,7 +427,7 @@ if __name__ == "__main__":
     if set(given.part) - set(PARTS):
         parser.error("no part %s; allowed: %s" % (" ".join(set(given.part) - set(PARTS)), " ".join(PARTS)))
     program = os.path.abspath(given.sphproof)
-    with tempfile.TemporaryDirectory() as temporary: # a place that others may enter, for `nobody`
+    with tempfile.TemporaryDirectory() as temporary: # a folder that `nobody` may enter
         os.chmod(temporary, 0o755)
         folder = os.path.join(temporary, "faults")
         sys.exit(main(given))

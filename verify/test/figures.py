@@ -26,7 +26,7 @@ FIGURE = re.compile(r"\d+\.\d+|\d+e-?\d{1,2}(?!\d)|\d+ ?%|± ?\d")
 
 
 def measure(*arguments):
-    """Exit status and all that is said."""
+    """Exit status and all output."""
     said = io.StringIO()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
         try:
@@ -37,7 +37,7 @@ def measure(*arguments):
 
 
 def prose(text):
-    """What is neither a table, nor code, nor a heading, nor a cited equation."""
+    """The text without tables, code, headings and cited equations."""
     text = re.sub(r"^\|.*$|^    .*$|^#.*$|^!\[.*$", "", text, flags=re.M)
     text = re.sub(r"```.*?```|`[^`]*`|\]\([^)]*\)|<!--.*?-->", "", text, flags=re.S)
     return re.sub(r"CONVENTIONS eq\. [\d.]+|SPH as textbooks", "", text)
@@ -58,7 +58,7 @@ def on_the_tree():
     texts["reports/precision/README.md"] = precision.replace("2.8 GHz", "")  # the machine
     for name, text in texts.items():
         troubles += free_figures(name, text)
-    # the same with a fault
+    # texts with a fault
     if not free_figures("", "The error is 0.017 here.") or not free_figures("", "It gains 5 %.") or \
             free_figures("", "`eta=3.6` around 48^2, see CONVENTIONS eq. 4.8."):
         troubles.append("figures in sentences are not told from keys")
@@ -78,7 +78,7 @@ bound bound
 row `wave` | jitter=0.1 |
 """
 PAGE = "<!-- reports/figures/measure small -->\n<!-- end -->\n<!-- reports/figures/measure seeds -->\n<!-- end -->\n"
-# A program that answers at once. FAULT changes what it finds.
+# A program that answers at once. FAULT changes its results.
 STUB = """#!/bin/sh
 n=0; seed=0; error=
 for word; do case $word in n=*) n=${word#n=}; n=${n%%^2};; seed=*) seed=${word#seed=};; quiet=*) error=1e-15;; esac; done
@@ -91,7 +91,7 @@ echo "{\\"case\\": \\"$2\\", \\"status\\": \\"ok\\", \\"n\\": $n, \\"errors\\": 
 
 
 def small_tree(folder, fault=""):
-    """measure's options for a tree with two tables, one page and a program."""
+    """Options of measure for a tree with two tables, one page and a program."""
     os.makedirs(os.path.join(folder, "cases"))
     with open(os.path.join(folder, "cases", "wave.ini"), "w", encoding="ascii") as file:
         file.write("[converge]\nmode_amplitude = 1 0.25 known: why\n")
@@ -118,8 +118,8 @@ def read(folder, name):
         return file.read()
 
 
-# what is done to the small tree after its figures are kept: file (None: the program), old, new; how
-# measure is then called, and what it has to say with exit status 1 or 2
+# A change of the small tree after its figures were stored: file (None: the program), old, new; the call of
+# measure, and its message with exit status 1 or 2.
 FAULTS = {
     "a wrong mean in a document": ("page.md", "0.0212", "0.0312", "--check", "kept 0.0312 ± 0.0002 (3), new 0.0212 ± 0.0002 (3)"),
     "a wrong deviation in a document": ("page.md", "± 0.0002", "± 0.0008", "--check", "kept 0.0212 ± 0.0008"),
@@ -165,7 +165,7 @@ def on_a_small_tree(folder):
                 "| `wave` | 0.125 ± 0.013 (4) | below 1e-12 (4) | 0.25 |"):
         if row not in page.replace("0.1250", "0.125"):
             troubles.append("no row %s in\n%s" % (row, page))
-    # what is kept is not measured again, unless that is said
+    # stored figures are not measured again without an option
     program(tree, "exit 2")
     for arguments, wanted in ((["--update"], 0), (["small"], 0), (["--update", "--again"], 4)):
         status, said = measure(*arguments, *options)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""gates.py SPHPROOF: gates of cases whose gates ask for the error alone. The default scheme passes them at small
-sizes; schemes that are known to do worse fail the gates that are named here, and no other."""
+"""gates.py SPHPROOF: gates on the error alone. The default scheme passes them at small sizes; schemes that are known
+to be worse fail the gates that are named here, and no others."""
 import json
 
 from script import call, play, write
@@ -8,7 +8,7 @@ from script import call, play, write
 
 
 def gates(*words):
-    """Exit status, and each gate's: {"growth_rate": "pass", "density_l1": "fail"}."""
+    """Exit status, and the status of each gate: {"growth_rate": "pass", "density_l1": "fail"}."""
     done = call("converge", *words, "--json", "-")
     assert done.returncode in (0, 1), done
     found = {}
@@ -23,7 +23,7 @@ def gates(*words):
 
 
 def passes(*words, **extra):
-    """Within the bounds; small ladders may be too coarse, and orders too uncertain, for more than that."""
+    """Errors are within the bounds; small ladders may be too coarse, or orders too uncertain, for a pass."""
     status, found = gates(*words)
     well = status == 0 and sorted(found) == sorted(extra["gates"])
     assert well and set(found.values()) <= {"pass", "smoke", "undetermined"}, \
@@ -47,20 +47,20 @@ def main():
     fails(*stratified, "gradient=standard", gates=["growth_rate", "mode_error"])
     passes("sound_wave_2d", gates=["velocity_l1", "mode_amplitude"])
     passes("sedov_2d", gates=["pressure_l1", "shock_radius", "peak_density"])
-    # at these sizes faults in what dissipates, and in sums, are seen
+    # faults of dissipation and of sums show at these sizes
     rest, blast = ["rest_3d", "--n", "8^3,9^3,10^3,11^3"], ["sedov_3d", "--n", "10^3,11^3,12^3,20^3"]
     passes(*rest, gates=["velocity_rms", "density_l1", "pressure_l1"])
     fails(*rest, "noise=0", gates=["density_l1", "velocity_rms"])
     passes(*blast, gates=["shock_radius", "peak_density", "pressure_l1", "velocity_l1",
                           "kinetic_energy", "outward_momentum", "thermal_radius", "asymmetry"])
-    # a square whose particles have equal spacing stays as it is, to the last bit
+    # a square whose particles have equal spacing does not change at all
     write("spacing.ini", "[case]\ntitle = A square\ndimension = 2\nreference = square\n[domain]\nlo = 0\nhi = 1\n"
           "[initial]\nkind = square\nequal_masses = no\n[run]\nt_end = 0.3\nn = 400\n"
           "[measure]\nexact = density velocity pressure internal_energy\n"
           "[converge]\nn = 12^2 16^2 20^2 24^2\nvelocity_rms = 0 1e-12\npressure_l1 = 0 4e-3\n")
     passes("./spacing.ini", gates=["velocity_rms", "pressure_l1"])
     fails("./spacing.ini", "volume_element=mass", gates=["velocity_rms", "pressure_l1"])
-    # without a gate on what is not exact, and with one on a field's error alone, which no order saves
+    # no gate without an exact value; a gate on a field's error alone, which no order excuses
     text = ("[case]\ntitle = A wave\ndimension = 2\nreference = simple_wave\n[domain]\nlo = 0\nhi = 1\n"
             "[initial]\nkind = sound_wave\nbackground = 1 0 1\ndirection = 1 0\namplitude = 0.01\n[run]\nt_end = 0.3\nn = 400\n[converge]\n"
             "n = 12^2 14^2 16^2 20^2\n")

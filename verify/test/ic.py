@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""ic.py SPHPROOF: `sphproof ic` writes the particles that `run` starts from, to the last bit, on scenes drawn at
-random; judge reads every format with the errors that its precision allows, and finds that it is the case's initial state; SWIFT's
-h is twice the standard deviation. (Refusals, and states that are damaged: the transcripts and test_start_cause.)"""
+"""ic.py SPHPROOF: `sphproof ic` writes the particles that `run` starts from, to the last bit, for random cases; judge
+reads every format with the errors that its precision allows, and recognises the case's initial state; SWIFT's h is
+twice the standard deviation. (Refusals, and damaged states: the transcripts and test_start_cause.)"""
 import csv
 import os
 import random
@@ -22,7 +22,7 @@ BAD = (("ic square boundary=reflecting --format swift --out a.csv", "no walls"),
        ("ic gresho n=19^2 eta=4 --as-3d 8 --format csv --out a.csv", "at least 9 layers"))
 
 
-# starts of every kind; those that are moved have a jitter, which leaves masses, or all
+# initial states of every kind; MOVED have a jitter, which moves positions and thus velocities and energies
 CASES = {1: ("sod", "leblanc", "sound_wave"), 2: ("sod_2d", "gresho", "square", "sedov_2d"), 3: ("sod_3d",)}
 MOVED = ("noh_2d", "rotation", "yee", "kelvin_helmholtz", "rayleigh_taylor_mode")
 KEYS = {1: ("lattice=uniform", "grade=0.9", "mass_ratio=0.5"), 2: ("lattice=square", "lattice=hexagonal", "lattice=jittered", "jitter=0.3"),
@@ -40,7 +40,7 @@ def content(path):
 
 
 def judged(path, case):
-    """Errors of a file as judge finds them."""
+    """The errors of a file in judge's document."""
     return json_of("judge", path, "--case", case, "--time", "0", "--quiet", status=None)
 
 
@@ -59,10 +59,10 @@ def test_every_format(draw):
     """Errors in every format are those of the text, which has all digits."""
     formats = [one["name"] for one in json_of("list", "formats")["families"]["formats"]]
     for name in formats:
-        # SPH-EXA is for 3D; SPLASH's text says no box, so that of an open problem is not known
+        # SPH-EXA is 3D only; SPLASH's text has no box, so that the box of an open problem is unknown
         scenes = {"sph_exa": SCENES[-1:], "splash_ascii": SCENES[:-1]}.get(name, SCENES)
         case, power, sizes, lattices = draw.choice(scenes)
-        # of format 1 a reader must guess the blocks, and clusters have no plausible densities
+        # in format 1 a reader infers the blocks, and clustered particles have no plausible densities
         lattice = draw.choice([one for one in lattices if one != "clustered"])
         keys = ["n=" + power % draw.randint(*sizes), "lattice=" + lattice, "seed=%d" % draw.randint(1, 999)]
         call("ic", case, *keys, "--format", "csv", "--out", "start.csv")
@@ -71,12 +71,12 @@ def test_every_format(draw):
         want, got = judged("start.csv", case)["errors"], judged("start." + name, case)["errors"]
         for field, norms in want.items():
             for norm in ("l1", "l2") if isinstance(norms, dict) else ():
-                scale = 10 if field in ("pressure", "internal_energy") else 2  # values and sums over gradients of them
+                scale = 10 if field in ("pressure", "internal_energy") else 2  # values, and sums over their gradients
                 assert abs(got[field][norm] - norms[norm]) <= floor * scale, (name, case, keys, field, norm, norms, got)
 
 
 def test_initial_states(draw):
-    """What is written is found to be the case's initial state, but for jitter."""
+    """Written files are recognised as the case's initial state, except for jitter."""
     sizes = {1: "90", 2: "400", 3: "9216"}
     cases = draw.sample([(case, dim) for dim, names in CASES.items() for case in names], 3)
     for case, dim in cases + [(case, 2) for case in MOVED]:
@@ -89,7 +89,7 @@ def test_initial_states(draw):
 
 
 def test_last_place():
-    """Positions stay below the length of the box, also where they are rounded to single precision."""
+    """Positions are below the length of the box, also if they are rounded to single precision."""
     with open("edge.csv", "w", encoding="ascii") as file:
         file.write("x,vx,m,u\n" + "".join("%r,0,1,1\n" % (i / 16 - 0.5) for i in range(16)) + "0.4999999999,0,1e-3,1\n")
     with open("edge.ini", "w", encoding="ascii") as file:
@@ -107,11 +107,11 @@ def test_swift():
         assert word in said, said
     call("ic", "gresho", "n=16^2", "kernel=cubic_spline", "--format", "gadget_hdf5", "--out", "gadget.hdf5")
     theirs, ours = content("swift.hdf5"), content("gadget.hdf5")
-    time.sleep(1.1)  # HDF5 counts seconds
+    time.sleep(1.1)  # HDF5 stores times in seconds
     call("ic", "gresho", "n=16^2", "kernel=cubic_spline", "--format", "gadget_hdf5", "--out", "gadget.hdf5")
     assert content("gadget.hdf5") == ours, "equal content, other bytes"
     assert b"Flag_Entropy_ICs" in theirs and len(theirs) == len(ours)
-    # the files differ in one array alone, which is not packed
+    # the files differ in one array alone, which is not compressed
     whole = len(ours) // 8
     pairs = zip(struct.unpack("<%dd" % whole, ours[:8 * whole]), struct.unpack("<%dd" % whole, theirs[:8 * whole]))
     ratios = [a / b for a, b in pairs if a != b and a == a and b == b]
@@ -125,7 +125,7 @@ def rows_of(path):
 
 
 def test_equal_masses():
-    """Masses are equal to the last digits, also where the number of particles has to be another; or the case is refused."""
+    """Masses are equal to the last digits, also if the number of particles has to change; or the case is refused."""
     for case, n in (("sod", "150"), ("sod_3d", "9000"), ("kelvin_helmholtz", "12^2"), ("square", "20^2")):
         call("ic", case, "n=" + n, "--equal-masses", "--format", "csv", "--out", "equal.csv")
         masses = [row["m"] for row in rows_of("equal.csv")]
@@ -135,7 +135,7 @@ def test_equal_masses():
 
 
 def test_slab(draw):
-    """Layers in 3D are judged as the plane's case, and our own solver makes the same flow of them."""
+    """Layers in 3D are judged as the case in 2D, and our own solver computes the same flow with them."""
     for case in draw.sample(("gresho", "yee", "kelvin_helmholtz", "sedov_2d", "square"), 3):
         keys, layers = ["n=%d^2" % draw.randint(12, 20)], draw.randint(9, 12)
         call("ic", case, *keys, "--format", "csv", "--out", "plane.csv")

@@ -46,7 +46,7 @@ def files_below(folder):
 
 
 def expected(source, libdir):
-    """The files, from the lists in the source."""
+    """The expected files, from the lists in the source."""
     commands = re.findall(r"^COMMAND\((\w+)\)", read(os.path.join(source, "verify/command/commands.def")), re.M)
     headers = [name for name in os.listdir(os.path.join(source, "src/include/sphproof")) if name.endswith(".h")]
     cases = [name for name in os.listdir(os.path.join(source, "cases")) if name.endswith(".ini")]
@@ -154,7 +154,8 @@ def check_program(stage, work, commands):
 
 
 def stage_of(build, work):
-    """Installs below work; returns the folder that has bin and lib. The list of files that `ninja uninstall` reads stays as it was."""
+    """Installs below `work`; returns the folder that has bin and lib. The list of files that `ninja uninstall` reads
+    is restored."""
     log = os.path.join(build, "meson-logs/install-log.txt")
     kept = read(log) if os.path.exists(log) else None
     try:
@@ -168,7 +169,7 @@ def stage_of(build, work):
 
 
 def uninstalled(build, listed, destdir):
-    """As `ninja uninstall` does it, with the list that the installation left."""
+    """Removes files as `ninja uninstall` does, with the list of the installation."""
     log = os.path.join(build, "meson-logs/install-log.txt")
     kept = read(log)
     try:
@@ -191,7 +192,7 @@ def installed(source, build, work, libdir, *cc):
     expect(len(files_below(destdir)) == len(there), "something is installed outside of the prefix")
     pc = os.path.join(stage, libdir, "pkgconfig/sphproof.pc")
     text = read(pc)
-    with open(pc, "w", encoding="utf-8") as file:  # what is staged is not where it was configured for
+    with open(pc, "w", encoding="utf-8") as file:  # the staged folder is not the configured prefix
         file.write(re.sub(r"^prefix=.*", lambda _: "prefix=" + stage, text, flags=re.M))
     check_symbols(os.path.join(stage, "include/sphproof"), os.path.join(stage, libdir, "libsphproof.so"),
                   os.path.join(stage, libdir, "libsphproof.a"))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""judge.py SPHPROOF: `sphproof judge` on files that GIZMO, SWIFT and Phantom wrote, against what an
-independent script finds for them (data/snapshots/expected.json); on our own runs, whose errors must
-come out the same; one list of findings for all forms of output; and on what must be refused. (What judge finds
-and assumes: verify/test/judge; layouts, byte orders and damage: verify/test/readers.)"""
+"""judge.py SPHPROOF: `sphproof judge` on files written by GIZMO, SWIFT and Phantom, against the results of an
+independent script (data/snapshots/expected.json); on our own runs, whose errors must be the same; one list of
+findings in all forms of output; and input that must be refused. (Conclusions and assumptions of judge:
+verify/test/judge; layouts, byte orders and damage: verify/test/readers.)"""
 import json
 import os
 import random
@@ -17,7 +17,7 @@ DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "data", "snapsho
 KERNELS = {"cubic": "cubic_spline"}
 CASES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "cases")
 BINARY = os.path.join(DATA, "gizmo_sod1d_dsph_n198.gadget1")
-# a quarter of the box, y < 0 and z < 0: the flow runs along x and repeats in the other directions
+# a quarter of the box, y < 0 and z < 0: the flow is along x and repeats in the other directions
 PHANTOM = os.path.join(DATA, "phantom_sod3d_2592.ascii.gz")
 
 
@@ -29,7 +29,7 @@ def call(*words):
 
 
 def judge(*words, status=None):
-    """status: None where it is for the document to say: 1 where that fails."""
+    """status: None if it follows from the document: 1 for "fail"."""
     code, out, err = call(*words)
     got = json.loads(out) if code in (0, 1) else {}
     wanted = {"pass": 0, "fail": 1}.get(got.get("status")) if status is None else status
@@ -61,7 +61,7 @@ def with_hdf5():
 
 
 def without_its_library(folder):
-    """Where the library of HDF5 cannot be loaded, only commands that need it fail."""
+    """If the HDF5 library cannot be loaded, only commands that need it fail."""
     with open(PROGRAM, "rb") as program:
         name = re.search(rb"\0(libhdf5\w*\.so[.\d]*)\0", program.read())
     if not name:
@@ -89,7 +89,7 @@ def against_script(hdf5):
     for name, want in expected.items():
         if name.endswith(".hdf5") and not hdf5:
             continue
-        # the script's Gresho is measured in the disc R < 0.5
+        # the script measures Gresho's vortex in the disc R < 0.5
         window = ["--window", "0.5"] if want["case"] == "gresho" else []
         got = judge(os.path.join(DATA, name), "--case", want["case"], *window)
         if window:
@@ -103,14 +103,14 @@ def against_script(hdf5):
             values = {f["name"]: f["value"] for f in got["functionals"]}
             near(name + " mode", values["mode_amplitude"], want["mode_amplitude"], 1e-6)
         kernel, ratio, residual = want["kernel"]
-        if residual < 1e-4:  # the script could tell
+        if residual < 1e-4:  # the script has identified the kernel
             assert got["kernel"]["name"] == KERNELS[kernel], (name, got["kernel"])
             near(name + " H/h", got["kernel"]["ratio"], ratio, 1e-3)
             assert got["kernel"]["residual"] < 3 * residual, name
         else:
             assert got["kernel"]["name"] == "not identifiable" and got["kernel"]["ratio"] is None, name
             assert len(got["kernel"]["candidates"]) >= 4, name
-        # 32^2 and viscous: the vortex is hardly there, the billow does not grow
+        # 32^2 and viscous: the vortex has almost gone, and the billow does not grow
         assert got["foreign"] == (name in ("swift_gresho2d_minimal_32.hdf5", "gizmo_kh2d_dsph_64.hdf5")), name
         print("%s: as the script has it; %s" % (name, got["verdict"]))
 
@@ -120,7 +120,7 @@ def phantom():
     assert got["n"] == 1512 and got["dim"] == 3 and got["time"] == 0.05
     assert got["kernel"]["name"] == "quintic_spline" and got["kernel"]["residual"] < 1e-5, got["kernel"]
     near("Phantom's H/h", got["kernel"]["ratio"], 3, 1e-4)
-    # every particle is near a jump: nothing to go by but the means, of which another gamma's are far off
+    # every particle is near a jump, so that only means are compared, and another gamma's differ much
     assert not got["foreign"], got["verdict"]
     other = judge(PHANTOM, "--case", "sod", "--gamma", "1.6666666666666667")
     assert other["foreign"] and not any("inf" in note["evidence"] for note in other["assumptions"]), other["assumptions"]
@@ -148,7 +148,7 @@ def same_as_run(got, want, what):
             near("%s, %s" % (what, a["name"]), a["value"], b["value"], 1e-9)
 
 
-# Windows of every kind, boxes that are not the case's, walls, gas that moves on, another solution.
+# Windows of every kind, other boxes, walls, moving gas, another solution.
 OWN = (["sod", "n=99"], ["sod", "n=99", "lo=-2", "hi=3"], ["sod", "n=99", "left=1.2 0.1 1", "window=-0.3 0.4"],
        ["noh_2d", "n=20^2"], ["gresho", "n=16^2", "boost=1 0.5"], ["yee", "n=16^2"],
        ["yee", "n=12^2", "window_radius=3"], ["gresho", "n=12^2", "boundary=reflecting periodic"],
@@ -156,7 +156,7 @@ OWN = (["sod", "n=99"], ["sod", "n=99", "lo=-2", "hi=3"], ["sod", "n=99", "left=
 
 
 def files_of_ours(folder, hdf5):
-    """A snapshot of ours says what it is of: judged without any option it has the errors of its run."""
+    """Our own snapshot describes its run: judged without options it has the errors of its run."""
     document = os.path.join(folder, "own.json")
     for k, words in enumerate(OWN):
         name = "own.hdf5" if hdf5 and k % 2 else "own.csv"
@@ -174,15 +174,15 @@ def files_of_ours(folder, hdf5):
     with open(document, encoding="ascii") as text:
         want = json.load(text)
     same_as_run(judge(path), want, "a case file of one's own")
-    # the path of the case is in it, which may be anywhere
+    # it contains the case's path, which may have any encoding
     with open(path, encoding=sys.getfilesystemencoding(), errors="surrogateescape") as text:
         head, *rest = text.readlines()
     assert head == "x,vx,m,rho,u,P,h\n" and rest[0] == "# case = %s\n" % case, (head, rest[0])
-    # what the command line says counts before what the file says
+    # the command line overrides the file
     other = judge(path, "--case", "sod", "--time", "0.05", "--gamma", "1.3", "--window", "-0.25:0.125")
     assert other["case"] == "sod" and other["time"] == 0.05 and other["settings"]["gamma"] == 1.3
     assert other["window"] == [-0.25, 0.125] and "keys" not in [a["what"] for a in other["assumptions"]]
-    # what is no number is a dash in tables
+    # values that are not numbers are dashes in tables
     for words in (["noh_2d", "n=16^2", "t_end=0.001"], ["noh_1d", "n=64", "t_end=0"]):
         subprocess.run([PROGRAM, "run", *words, "--snapshot", path, "--quiet"], check=True)
         done = subprocess.run([PROGRAM, "judge", path], capture_output=True, text=True)
@@ -191,7 +191,7 @@ def files_of_ours(folder, hdf5):
     for line, says in (("# box = -1:0.5\n", ("box", "positions")), ("# case = nope\n", "nope"),
                        ("# keys = left=1\n", ("left", "of its run")),
                        ("# box = 1:-1\n", "box = -2")):
-        own = [one for one in rest[:6] if not one.startswith(line[:6])]  # what it says otherwise is refused as well
+        own = [one for one in rest[:6] if not one.startswith(line[:6])]  # a contradiction is refused as well
         refused(write(folder, "bad.csv", head + "".join(own) + line + "".join(rest[6:])), says=says)
     # rows of another type among the gas are counted, and missed; gas that lies elsewhere is the same gas
     rows = [one for one in rest if one[0] not in "#\n"]
@@ -209,12 +209,12 @@ def files_of_ours(folder, hdf5):
         refused(path, "--window", text, says=("--window", "A:B"))
 
 
-# ---- what must be refused ----
+# ---- refused input ----
 
 
 def hostile(folder, hdf5):
-    """What a snapshot cannot be asked, and damaged files of HDF5. (Other options: the transcripts; files that are
-    cut off or damaged: the tests of readers.)"""
+    """Options that a snapshot excludes, and damaged files of HDF5. (Other options: the transcripts; truncated or
+    damaged files: the tests of readers.)"""
     draw = random.Random(1)
     refused(BINARY, "--case", "gresho", says="dimensions")
     refused(BINARY, "--case", "gresho", "--x0", "1", says="--x0")
@@ -231,7 +231,7 @@ def hostile(folder, hdf5):
                 data = file.read()
             for size in (600, 2000, len(data) // 2, len(data) - 1000):
                 refused(write(folder, "cut.hdf5", data[:size]), "--case", "sod", says="")
-            for _ in range(6):  # the library must not take us with it
+            for _ in range(6):  # the library must not crash the test
                 changed = bytearray(data)
                 for _ in range(200):
                     changed[draw.randrange(len(data))] = draw.randrange(256)
@@ -239,7 +239,7 @@ def hostile(folder, hdf5):
 
 
 def nothing_known(folder):
-    """Beyond the reference's last time nothing is compared, which is not well by itself."""
+    """After the reference's last time nothing is compared, which is a failure."""
     path = os.path.join(folder, "late_billow.csv")
     subprocess.run([PROGRAM, "run", "kelvin_helmholtz", "n=12^2", "t_end=1.6", "--snapshot", path, "--quiet"], check=True)
     got = judge(path, status=1)
@@ -250,7 +250,7 @@ def nothing_known(folder):
 
 
 def one_list_of_findings(folder):
-    """Exit status, JSON, JUnit, terminal and page say the same of gates, whatever they are of; and the case's own."""
+    """Exit status, JSON, JUnit, terminal and page agree on gates of every kind, including the case's own."""
     ladder = []
     for n in (100, 200, 400, 800):
         ladder.append(os.path.join(folder, "sod%d.csv" % n))
@@ -264,7 +264,7 @@ def one_list_of_findings(folder):
         xml, page = os.path.join(folder, "j.xml"), os.path.join(folder, "j.html")
         got = judge(*ladder, *words, "--junit", xml, "--html", page, status=status)
         assert [g["status"] for g in got["gates"]] == said, (words, got["gates"])
-        # what was asked for and cannot be told fails, in all of them
+        # a requested gate that cannot be decided fails in all of them
         told = ["fail" if s == "undetermined" and g["source"] == "--gate" else s for s, g in zip(said, got["gates"])]
         assert [f["status"] for f in got["findings"]] == ["pass"] * 4 + told, (words, got["findings"])
         assert got["status"] == ("fail" if "fail" in told else "pass"), (words, got["status"])
@@ -282,7 +282,7 @@ def one_list_of_findings(folder):
     bound = next(g for g in judge(ladder[1], "--gates", "case")["gates"] if g["name"] == "density_l1")
     near("the case's bound", bound["bound"], 1.5e-3 * (1584 / 200) ** 0.85, 1e-9)
     assert bound["source"] == "case sod: 0.0015 at n = 1584, raised by order 0.85 to n = 200", bound
-    # a tube of half the length has particles as close at half their number
+    # a tube of half the length has the same spacing with half the number of particles
     short = tube(os.path.join(folder, "short.csv"), 0.2, n=100)
     asked = [short, "--case", "sod", "--time", "0.2", "--gates", "case", "--box", "0:1"]
     assert judge(*asked)["gates"][0]["source"].endswith("to n = 200"), judge(*asked)["gates"][0]
@@ -291,7 +291,7 @@ def one_list_of_findings(folder):
     refused(*asked[:6], "all", "--box", "0:1", says=("--gates 'all'", "allowed: case"))
     refused(write(folder, "three.csv", "x,y,z,vx,vy,vz,m,rho,u\n" + "".join("%r,%r,%r,0,0,0,1,1,2.5\n" % (i % 4, i // 4 % 4, i // 16) for i in range(64))),
             "--case", "sod", "--gates", "case", "--time", "0.2", says=("in 1 dimensions", "for 3"))
-    # one's own bounds stand in one's own case
+    # a user's own case has bounds of its own
     text = open(os.path.join(CASES, "sod.ini"), encoding="utf-8").read()
     for bound, status in (("9e-3", 0), ("1e-5", 1)):
         case = write(folder, "own.ini", text[:text.index("[converge]")] + "[converge]\nn = 100 200 400 800\ndensity_l1 = 0.8 1.2 %s\n" % bound)
@@ -302,7 +302,7 @@ def one_list_of_findings(folder):
 
 
 def tube(path, t, lo=0.0, hi=1.0, n=400):
-    """Sod's tube as textbooks draw it: exact, between two ends."""
+    """Sod's tube as in textbooks: exact, between two ends."""
     step = (hi - lo) / n
     said = subprocess.run([PROGRAM, "riemann", "1", "0", "1", "0.125", "0", "0.1", "--time", repr(t), "--x0", "0.5",
                            "--sample", "%r:%r:%d" % (lo + step / 2, hi - step / 2, n), "--json", "-"],

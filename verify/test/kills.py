@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""kill -9 at random moments of a command that keeps what it has finished in a cache: what was
-finished at a kill is there after it, and is never computed again.
+"""kill -9 at random moments of a command that keeps finished computations in a cache: those finished before a kill
+are there after it, and are never computed again.
 
-A kill that comes before anything is finished shows nothing. So every second kill waits for one more
-finished computation than there was before, however slow the machine, and a command that ends before
-its kill begins anew from nothing."""
+A kill before anything is finished tests nothing. So every second kill waits for one more finished computation than
+before, however slow the machine is, and a command that ends before its kill starts anew with an empty cache."""
 import contextlib
 import glob
 import os
@@ -19,15 +18,15 @@ PATIENCE = 300  # seconds until one more computation must be finished
 
 class Killed:
     def __init__(self):
-        self.kills = 0    # the command was still running
-        self.halfway = 0  # and some of its computations were finished, but not all
+        self.kills = 0    # while the command was still running
+        self.halfway = 0  # when some of its computations were finished, but not all
         self.kept = 0     # finished computations, summed over the kills
-        self.whole = 0    # times that the command ended well before its kill
+        self.whole = 0    # times that the command ended before its kill
         self.wrong = []
 
 
 def entries(cache):
-    """What is finished; an entry that is written again is another file."""
+    """Finished computations; an entry that is written again is another file."""
     return {name: os.stat(name).st_ino for name in glob.glob(os.path.join(cache, "*", "*.entry"))}
 
 
@@ -37,7 +36,7 @@ def lost(before, now):
 
 
 def wait(child, cache, least, moment):
-    """Until so many computations are finished, then for a moment; whether there is something to kill."""
+    """Waits until so many computations are finished, and then for a moment. Returns whether the command still runs."""
     until = time.monotonic() + PATIENCE
     while child.poll() is None and len(entries(cache)) < least and time.monotonic() < until:
         time.sleep(0.01)
@@ -47,8 +46,8 @@ def wait(child, cache, least, moment):
 
 
 def kill(command, cache, count, longest, look=lambda: None, fine=(0,), **options):
-    """Kills the command `count` times, a random time up to `longest` seconds each; look() is called
-    after each kill. cache: what the command keeps; it is emptied at the start."""
+    """Kills the command `count` times, each time within `longest` seconds; look() is called after each kill. cache:
+    the command's cache, which is emptied at the start."""
     done, generator, before = Killed(), random.Random(20240229), {}
     shutil.rmtree(cache, ignore_errors=True)
     while done.kills < count and done.whole < 4 * count and not done.wrong:
@@ -58,7 +57,7 @@ def kill(command, cache, count, longest, look=lambda: None, fine=(0,), **options
         alive = wait(child, cache, 0 if at_random else len(before) + 1, generator.uniform(0, longest))
         if alive:  # sometimes only the parent: what its workers finish counts, too
             (os.kill if generator.random() < 0.3 else os.killpg)(child.pid, signal.SIGKILL)
-        said = child.stderr.read().decode(errors="replace")  # ends with the last of the workers
+        said = child.stderr.read().decode(errors="replace")  # ends when the last of the workers ends
         child.stderr.close()
         child.wait()
         now = entries(cache)

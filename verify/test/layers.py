@@ -16,7 +16,7 @@ import re
 import sys
 import tempfile
 
-INSIDE = ("src/line/", "src/cells/")  # of the solver: seen by itself, by what times its loops, and by tests
+INSIDE = ("src/line/", "src/cells/")  # parts of the solver: included by themselves, by benchmarks of their loops, and by tests
 SEE_INSIDE = ("src/core/",) + INSIDE + ("verify/bench/", "verify/test/")
 CORE, PUBLIC = "src", "src/include"  # the solver; the installed headers: every library may include both
 FOLDERS = ("src", "reference", "reports", "verify")
@@ -26,7 +26,7 @@ LAYER = re.compile(r"^\s*\['(\w+)', '([\w/]+)', \[([^\]]*)\]", re.M)
 
 
 def allowed(source):
-    """For each library, by its folder, the folders of those that it may see, as meson.build lists them."""
+    """For each library's folder, the folders that it may include, from meson.build."""
     with open(os.path.join(source, "meson.build")) as f:
         layers = LAYER.findall(f.read())
     folder = {name: where for name, where, _ in layers}
@@ -48,13 +48,13 @@ def sources(source):
 
 
 def layer_of(file, layers):
-    """The longest of the layers' folders that a file stands in; what is below verify and no layer sees all."""
+    """The longest layer's folder that contains a file; files below verify outside of any layer may include all."""
     found = [layer for layer in layers if file.startswith(layer + "/")]
     return max(found, key=len) if found else "/".join(file.split("/")[:2]) if file.startswith("verify/") else None
 
 
 def includes(source, files, layers, troubles):
-    """file: the files that it includes. A name belongs to the folder that has it, its own first."""
+    """file: the files that it includes. A name is looked up in the including folder first."""
     graph = {}
     for file in files:
         with open(os.path.join(source, file)) as f:
@@ -98,7 +98,7 @@ def circle(graph):
 
 
 def folders(graph):
-    """The graph of folders; what a folder and one inside it have with each other is left out."""
+    """The graph of folders; edges between a folder and one inside it are left out."""
     result = {}
     for file, others in graph.items():
         a = os.path.dirname(file)
@@ -130,7 +130,7 @@ def judge(source):
 
 
 def try_itself():
-    """A sound small tree, then the same with a fault: what the judge must say about it."""
+    """A valid small tree, then the same with one fault each, and the expected message."""
     sound = {"meson.build": "  ['low', 'src/low', [], []],\n  ['page', 'reports', ['low'], []],\n"
                             "  ['high', 'verify/high', ['low'], []],\n",
              "src/core/core.h": "", "src/include/sphproof/all.h": "", "reports/page.h": '#include "low.h"\n',

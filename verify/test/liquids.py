@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""liquids.py SPHPROOF: snapshots of liquids, made here by other formulas than the program's, are judged as exact; with a
-wrong viscosity, a series that lacks a term, gravity of the wrong sign, another time they are not. Our solver does not run
-these cases, and initial states of them are judged as exact."""
+"""liquids.py SPHPROOF: snapshots of liquids, computed here with other formulas than the program's, are judged as
+exact; with a wrong viscosity, a missing term of the series, gravity of the wrong sign or another time they are not.
+Our solver does not run these cases; their initial states are judged as exact."""
 import json
 import math
 import os
@@ -26,7 +26,7 @@ def couette(y, t, nu):
 
 
 def poiseuille(y, t, nu, force, terms=4000):
-    """From the eigenfunctions, also of the steady flow: its own parabola is never written down."""
+    """From the eigenfunctions, also for the steady flow, whose parabola is not used."""
     return sum(4 * force / (nu * (n * math.pi) ** 3) * math.sin(n * math.pi * y) * (1 - math.exp(-nu * (n * math.pi) ** 2 * t))
                for n in range(1, 2 * terms, 2))
 
@@ -87,7 +87,7 @@ def main():
     check(abs(decay["value"] / decay["reference"] - 1) < 1e-9 and abs(decay["value"] - 0.02 * 4 * math.pi ** 2) < 1e-9, decay)
 
     def column(x, y, g=1.0, c=10.0, steps=2000):
-        rho, dy = 1.0, (1 - y) / steps  # down from the surface, by the midpoint rule
+        rho, dy = 1.0, (1 - y) / steps  # from the surface downwards, by the midpoint rule
         for _ in range(steps):
             rho += dy * g / c ** 2 * (rho + 0.5 * dy * g / c ** 2 * rho)
         return 0.0, 0.0, rho, c ** 2 * (rho - 1)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""long_steps.py SPHPROOF: a run of few and long steps says how far it is, and what is left without the time that its
-start took."""
+"""long_steps.py SPHPROOF: a run of few and long steps prints its progress; the remaining time is estimated without
+the time of its start."""
 import contextlib
 import os
 import pty

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""maps.py SPHPROOF: beside a picture of a run in 2D lie its data and the script that draws it again; a run with snapshots
-on the way has a picture of each. (What scripts and data say: the transcripts and test_map.)"""
+"""maps.py SPHPROOF: a picture of a run in 2D comes with its data and the script that draws it again; a run with
+snapshots has a picture of each. (Contents of scripts and data: the transcripts and test_map.)"""
 import os
 import shutil
 import subprocess

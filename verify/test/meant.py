@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""meant.py SPHPROOF [full]: where a snapshot is judged as another case than it is of, or as none, `sphproof judge`
-names the right one, with figures, or says that none is near; never a wrong one. full: every case of ours as every
-other one of its dimension."""
+"""meant.py SPHPROOF [full]: if a snapshot is judged as a wrong case, or without one, `sphproof judge` names the right
+one, with figures, or reports that none is near; never a wrong one. full: every case as every other one of its
+dimension."""
 import json
 import os
 import re
@@ -14,8 +14,7 @@ CASES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "ca
 SIZE = {1: "100", 2: "24^2", 3: "10^3"}
 LARGER = {"sod_2d": "1400", "sod_3d": "9216", "rayleigh_taylor_mode": "1152"}
 QUICK = (("gresho", "sod_2d"), ("gresho", "yee"), ("gresho", None), ("sod", "lax"), ("lax", "sod"), ("sound_wave", "sod"),
-         ("square", "kelvin_helmholtz_mode"))  # whose noise happens to have the mode's amplitude
-# One gas at two times; two modes of layers, measured alike; what grows has an exact value at its own time alone.
+         ("square", "kelvin_helmholtz_mode"))  # its noise happens to have the mode's amplitude. One gas at two times; two modes of layers with the same measures; a growing mode has an exact value only at its own time.
 PASS = {("sod", "sod_standard"), ("sod_standard", "sod"), ("kelvin_helmholtz_mode", "rayleigh_taylor_mode")}
 
 
@@ -32,7 +31,7 @@ def judged(path, case):
 
 
 def look(path, true, asked, fits):
-    """fits: the snapshot is near the solution of its own case, so that this must be named."""
+    """fits: the snapshot is near the solution of its own case, so that this case must be named."""
     status, text, meant = judged(path, asked)
     told = re.search(r"did you mean (\w+)\? \((.*)\)$", text)
     nearer = re.search(r"nearer, though far as well, is (\w+) \((.*)\)$", text)

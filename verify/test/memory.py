@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""memory.py SPHPROOF: what `run --explain` says a run will take, against what it takes, both beyond those of a tiny
-one (how much of the libraries a system counts is its own affair); and runs for which there is not enough memory are
-refused before they begin, with the number."""
+"""memory.py SPHPROOF: the memory that `run --explain` estimates for a run, against the memory that it uses, both
+beyond those of a tiny run (systems count the memory of libraries differently); runs for which there is not enough
+memory are refused before they begin, with the number."""
 import json
 import os
 import resource
@@ -16,9 +16,9 @@ RUNS = [["gresho", "n=120^2", "t_end=0.0005"],
         ["sound_wave_3d", "n=32^3", "t_end=0.0001", "kernel=wendland_c4", "eta=3.6", "gradient=standard",
          "viscosity=constant"],
         ["sound_wave_3d", "n=34^3", "t_end=0.0001", "lattice=jittered"]]
-CLOSELY = 0.05  # of the last one, whose statement shall hold for a million particles in a GiB
+CLOSELY = 0.05  # tolerance of the last run, whose estimate must hold for a million particles in a GiB
 
-# meson has malloc fill what it gives: arrays that nobody writes to would take room
+# meson makes malloc fill its blocks: then unused arrays would need memory
 PLAIN = {name: value for name, value in os.environ.items() if name != "MALLOC_PERTURB_"}
 AWAY = ["--snapshot", "end.csv", "--snapshot-every", "0.0003"]
 
@@ -38,7 +38,7 @@ def said_and_taken(words):
     said = json.loads(sphproof("run", *words, "--explain", "--json", "-").stdout)
     estimate = said["estimate"]
     assert "status" not in said and estimate["cpu_s"] > 0
-    # where the system lays memory changes from run to run, and with it how many pages are touched: the least of three
+    # the addresses of memory differ from run to run, and so does the number of pages touched: the least of three
     costs = [json.loads(sphproof("run", *words, "--json", "-").stdout)["cost"] for _ in range(3)]
     cost = min(costs, key=lambda one: one["peak_rss_bytes"])
     if not 0.3 * cost["steps"] - 1 <= estimate["steps"] <= 3 * cost["steps"] + 1:
@@ -66,7 +66,7 @@ def main():
 
 
 def try_group():
-    """The same in a control group, where one may be made here."""
+    """The same in a control group, if one can be made."""
     group, file = "/sys/fs/cgroup/sphproof-test-%d" % os.getpid(), "memory.max"
     if os.path.exists("/sys/fs/cgroup/memory"):
         group, file = group.replace("cgroup/", "cgroup/memory/"), "memory.limit_in_bytes"

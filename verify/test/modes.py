@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """modes.py SPHPROOF [real]: runs that start from growing modes.
 
-The start is the mode as asked; it grows at the rate of linear theory, and in proportion to its
-amplitude; the two parities of a periodic layer do not mix; a boost changes nothing.
+The initial state is the requested mode; it grows at the rate of linear theory, and in proportion to its amplitude;
+the two parities of a periodic layer do not mix; a boost changes nothing.
 
-real: at 64 spacings a wavelength, by night. What the default scheme is held to there, also from a
-disturbed start; and that the two viscosities and the two gradients differ as they are said to: with
-plain constant viscosity the mode is damped whatever the gradient, without it ia is nearer."""
+real: at 64 spacings per wavelength, by night. Gates of the default scheme there, also from a disturbed start; the two
+viscosities and the two gradients differ as documented: with plain constant viscosity the mode is damped with any
+gradient, and without it ia is nearer."""
 import sys
 
 from script import expect, json_of, play
 
 CASE = "kelvin_helmholtz_mode"
 STRATIFIED = "rayleigh_taylor_mode"
-RATES = {"sinuous": 1.705572193, "varicose": 1.481793027}  # of two other methods
+RATES = {"sinuous": 1.705572193, "varicose": 1.481793027}  # computed by two other methods
 
 
 def run(*words, case=CASE, n="24^2"):
@@ -36,7 +36,7 @@ def starts():
 
 
 def grows():
-    """With 24 spacings a wavelength nothing is known better than to some percent."""
+    """With 24 spacings per wavelength errors are some percent."""
     for parity, rate in RATES.items():
         values, exact = run("parity=" + parity, *(["t_end=1"] if parity == "varicose" else []))
         most(parity + ": its exact rate", abs(exact["growth_rate"] / rate - 1), 1e-8)
@@ -46,7 +46,7 @@ def grows():
 
 
 def is_linear():
-    """Viscosity is not, but less so than the mode grows."""
+    """The damping by viscosity is not proportional to the amplitude, but is weaker than the growth."""
     ends = [run("t_end=0.5", "amplitude=" + amplitude, *more)[0]["mode_amplitude"] / float(amplitude)
             for amplitude, more in (("1e-4", []), ("1e-5", []), ("1e-4", ["boost=1 0.5"]))]
     most("a tenth of the amplitude", abs(ends[1] / ends[0] - 1), 1e-3)
@@ -54,8 +54,7 @@ def is_linear():
 
 
 def is_heavy():
-    """Dense gas over thin gas: as above; in a box twice as high with half the gravity it takes twice as
-    long."""
+    """Dense gas over thin gas: as above; in a box twice as high with half the gravity the growth takes twice as long."""
     values, exact = run("t_end=0.9", case=STRATIFIED, n="512")
     most("stratified: its exact rate", abs(exact["growth_rate"] / 1.170903153 - 1), 1e-8)
     most("stratified: rate", abs(values["growth_rate"] / 1.170903153 - 1), 0.15)

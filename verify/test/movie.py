@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""movie.py SPHPROOF: `run --snapshot-every T --plot F.gif` (or .mp4) has a picture of each moment in order; without
-ffmpeg, and with one that fails, that is said, and nothing half is left. What ffmpeg gets is looked at by way of a
-stand-in that keeps it; the real one makes movies where it is installed."""
+"""movie.py SPHPROOF: `run --snapshot-every T --plot F.gif` (or .mp4) has a picture of each moment in order; a missing
+or failing ffmpeg is reported, and no partial file is left. A stand-in for ffmpeg keeps its input for the test; the
+real one makes movies if it is installed."""
 import os
 import re
 import shutil
@@ -30,7 +30,7 @@ def tools(name, script):
 
 
 def sizes(path):
-    """Of the pictures that were handed over, one after the other."""
+    """The pictures handed over, one after the other."""
     with open(path, "rb") as file:
         data = file.read()
     assert data.startswith(b"\x89PNG") and data.endswith(b"IEND\xaeB`\x82")
@@ -53,7 +53,7 @@ def main():
     run(keeps, "sod", "n=64", "t_end=0.1", *series, "--plot", "a movie.gif")
     found = sizes("a movie.gif")
     assert len(found) == 4 and len(set(found)) == 1, found
-    run(keeps, "gresho", "n=16^2", "t_end=0.05", *series, "--plot", "g.mp4")  # at the start its density is uniform
+    run(keeps, "gresho", "n=16^2", "t_end=0.05", *series, "--plot", "g.mp4")  # the initial density is uniform
     found = sizes("g.mp4")
     assert len(found) == 3 and len(set(found)) == 1, found
     if not shutil.which("ffmpeg"):

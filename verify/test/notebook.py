@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""notebook.py NOTEBOOK PROGRAM LIBRARY: the notebook is kept without outputs, and all of its cells run: in order by this
-Python, and by Jupyter (nbconvert) where that is installed. Cells that plot are left out where there is no matplotlib,
-and that is said. Exit status 77 (skipped): no numpy, or this build makes no library."""
+"""notebook.py NOTEBOOK PROGRAM LIBRARY: the notebook has no outputs, and all of its cells run: in order by this
+Python, and by Jupyter (nbconvert) if that is installed. Without matplotlib cells that plot are skipped, and that is
+printed. Exit status 77 (skipped): no numpy, or this build makes no library."""
 import json
 import os
 import shutil
@@ -29,7 +29,7 @@ def cells():
 
 
 def plainly(code, plots):
-    """Which cells ran: all but those that plot where nothing can be plotted."""
+    """The cells that ran: all but those that plot if nothing can be plotted."""
     names, ran = {}, 0
     for cell in code:
         if plots or "plot" not in cell["metadata"].get("tags", []):
@@ -65,7 +65,7 @@ def main():
     plots = has("matplotlib")
     print("by Python: %d of %d cells%s" % (plainly(code, plots), len(code), "" if plots else
                                            "; the others plot, and there is no matplotlib (Debian: python3-matplotlib)"))
-    kernel = "/usr/bin/python3" if os.path.exists("/usr/bin/python3") else sys.executable  # that of Debian's Jupyter
+    kernel = "/usr/bin/python3" if os.path.exists("/usr/bin/python3") else sys.executable  # Debian's Jupyter uses this Python
     if not shutil.which("jupyter") or not has("nbconvert, ipykernel", kernel):
         print("not by Jupyter, which is not here (Debian: jupyter-nbconvert, python3-ipykernel)")
     elif not has("numpy, matplotlib", kernel):

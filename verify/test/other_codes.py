@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""other_codes.py SPHPROOF: runs of other codes. The stand-in is a script that calls SPHPROOF itself, so that errors must be
-those of our own runs; then every way in which a code can fail, by name; nothing that it has started is left behind."""
+"""other_codes.py SPHPROOF: runs of other codes. A stand-in is a script that calls SPHPROOF itself, so that errors
+must be those of our own runs; then every way in which a code can fail, by name; no process that it has started is
+left behind."""
 import glob
 import hashlib
 import json
@@ -18,7 +19,7 @@ from script import call, play, program, read, write
 with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "schema", "sphproof-1.schema.json"), encoding="ascii") as text:
     validator = Validator(json.load(text))
 
-# The code: MODE CASE N T_END SEED OUT. It reads the initial state's masses, so that they are the file's.
+# The code: MODE CASE N T_END SEED OUT. It takes masses from the initial state's file, so that it has to read it.
 CODE = """#!%s -IS
 import os, sys, time
 mode, case, n, t_end, seed, out = sys.argv[1:7]
@@ -140,7 +141,7 @@ command = ./code.py good gresho @N@ @T_END@ @SEED@ @OUT@
 n = 10^2 12^2 14^2 16^2
 velocity_l1 = 0.5 10
 """
-# mode, reason, what the message says
+# mode, reason, words of the message
 FAILURES = (("exit", "exit_status", "no such table"), ("killed", "exit_status", "signal 9"), ("nothing", "no_snapshot", "out_*.csv: the run"),
             ("hang", "timeout", "1 s"), ("eat", "memory", "200 MB"), ("cut", "truncated", "out_1.csv"),
             ("old", "old_snapshot", "older"), ("nan", "not_a_number", "nan"), ("early", "wrong_time", "0.1996"),
@@ -148,7 +149,7 @@ FAILURES = (("exit", "exit_status", "no such table"), ("killed", "exit_status", 
             ("fast", "ignored_ic", "out_0.csv: vx differs"),
             ("few", "wrong_particles", "99"), ("heavy", "ignored_ic", "masses"), ("uneven", "ignored_ic", "masses"), ("still", "ignored_ic", "at the start"))
 GOOD = FILE % ("good sod", 60, "none")
-# what is replaced, by what, what the message says
+# replaced text, replacement, words of the message
 BAD = ((GOOD, "", "is empty"), ("title", "titel", "did you mean 'title'"), ("[case sod]", "[case sodd]", "did you mean 'sod'"),
        ("[case sod]", "[casus sod]", "[casus sod]|casus"), ("[case gresho]", "[case sod]", "given twice"),
        ("@SEED@", "@SEAD@", "did you mean '@SEED@'"), ("./code.py good sod", "./none.py", ":3: command = ./none.py"),
@@ -179,7 +180,7 @@ def document(*words, status=0):
 
 
 def running(words):
-    """Processes that were started so."""
+    """Processes started by the test."""
     found = []
     for path in glob.glob("/proc/[0-9]*/cmdline"):
         try:
@@ -199,7 +200,7 @@ def until(condition, what):
 
 
 def same(ours, theirs, path="", most=1e-12):
-    """To round-off: of what a run has measured."""
+    """Compares measured members to round-off."""
     if isinstance(ours, dict):
         for key in ours:
             same(ours[key], theirs[key], path + "/" + key, most)
@@ -214,7 +215,7 @@ def test_same(draw):
     for case, n in (("sod", str(draw.randint(60, 300))), ("gresho", "%d^2" % draw.randint(14, 22))):
         ours, theirs = document("run", case, "n=" + n), document("run", case, "n=" + n, "--code", "good.ini")
         for key in ("errors", "functionals", "spacing", "h", "n", "time", "window", "regularity", "budget", "measured"):
-            # h is the file's times a ratio that sums over the kernel tell
+            # h is the file's times a ratio that sums over the kernel determine
             same(ours[key], theirs[key], case + "/" + key, 1e-9 if key in ("h", "regularity", "budget") else 1e-12)
         assert theirs["conservation"]["energy"] < 1e-12 and theirs["status"] == "ok", theirs
         code = theirs["code"]
@@ -236,14 +237,14 @@ def test_failures():
 
 
 def test_starts(draw):
-    """What is no failure: a snapshot of the start, a time that is off by less than is allowed, cells of a grid."""
+    """Results that are not failures: a snapshot of the start, a time within the tolerance, cells of a grid."""
     for mode, more in ("starts", ""), ("kicked", ""), ("late", ""), ("still", "elements = cells"), ("heavy", "elements = cells"):
         write("start.ini", (FILE % (mode + " @CASE@", 60, "none")).replace("[case sod]", more + "\n[case sod]"))
         document("run", "sod", "n=%d" % draw.randint(60, 200), "--code", "start.ini")
 
 
 def test_again():
-    """A run that failed is not kept for good: the next command tries it again, a share does not."""
+    """A failed run is not kept for good: the next command tries it again, a share does not."""
     write("once.ini", FILE % ("once sod", 60, "none"))
     ladder = ("converge", "sod", "--n", "60,61,62,63", "--replicates", "1", "--code", "once.ini", "--cache", "again")
     answer(*ladder, status=3)
@@ -269,7 +270,7 @@ def test_refused():
 
 
 def test_work():
-    """Templates, a starting command of the user's, a shell; what is kept."""
+    """Templates, a starting command of the user's, a shell; kept files."""
     write("par.txt.in", "n @N@ dim @DIM@ gamma @GAMMA@ box @LO@ @HI@ end @T_END@ out @OUT@ ic @IC@ seed @SEED@ spacing @SPACING@")
     write("line.ini", GOOD.replace("[case sod]", "parameters = par.txt.in\nshell = yes\n[case sod]")
           .replace("./code.py good sod", "test -f @PARAMETERS@ && @HERE@/code.py good sod", 1))
@@ -277,7 +278,7 @@ def test_work():
     assert read(os.path.join(done["code"]["folder"], "par.txt")) == ("n 100 dim 1 gamma 1.4 box -1 1 end 0.2 out out ic ic.csv seed 1 spacing 0.02"), done
     assert {"ic.csv", "out_1.csv", "par.txt", "stderr", "stdout"} == set(os.listdir(done["code"]["folder"]))
     for entry in json.loads(answer("list", "formats", "--json", "-")[0])["families"]["formats"]:
-        if entry["name"] == "sph_exa":  # which is for 3D
+        if entry["name"] == "sph_exa":  # 3D only
             continue
         write("format.ini", GOOD.replace("[case sod]", "parameters = par.txt.in\nic = %s\n[case sod]" % entry["name"], 1))
         done = document("run", "sod", "n=100", "--code", "format.ini", "--work", "kept")
@@ -287,7 +288,7 @@ def test_work():
     write("start.ini", GOOD.replace("[case sod]", "ic = ./start.sh @IC@ @N@\n[case sod]"))
     write("start.sh", "#!/bin/sh\nexec %s ic sod n=$2 --format csv --out $1 --quiet\n" % program)
     os.chmod("start.sh", 0o700)
-    # a command has to find its file's format by itself
+    # a command has to find the format of its file by itself
     done = document("run", "sod", "n=100", "--code", "start.ini")
     same(document("run", "sod", "n=100")["errors"], done["errors"])
 
@@ -302,7 +303,7 @@ sed '/^# case/d;/^# keys/d' all.csv > $2_1.csv
 
 
 def test_slab(draw):
-    """A code in 3D runs a case in 2D as layers: its errors are nearly ours in 2D, n is that of a layer."""
+    """A code in 3D runs a case in 2D as layers: its errors are nearly ours in 2D, and n is that of a layer."""
     write("slab.sh", SLAB % program)
     os.chmod("slab.sh", 0o700)
     write("slab.ini", GOOD.replace("[case gresho]", "[case gresho]\nas_3d = %d\nequal_masses = yes" % draw.randint(8, 10))
@@ -323,8 +324,8 @@ def test_no_errors():
 
 
 def test_ladder(draw):
-    """Orders and gates are those of our own runs, whoever computes, and however many at once; what is kept is not
-    computed again unless something has changed that decides it."""
+    """Orders and gates are those of our own runs, in any place and any number of jobs; kept results are not computed
+    again unless a file that determines them has changed."""
     ladder = ",".join("%d^2" % n for n in sorted(draw.sample(range(10, 20), 4)))
     ours = document("converge", "gresho", "--n", ladder, status=None)
     for more in ((), ("--jobs", "3", "--cache", "cache"), ("--cache", "cache")):
@@ -352,7 +353,8 @@ def test_ladder(draw):
         assert told in answer("converge", "gresho", *words, "--code", "good.ini", status=2)[1], words
     write("tight.ini", GOOD.replace("0.5 10", "0.5 1e-9"))
     document("converge", "gresho", "--n", ladder, "--code", "tight.ini", "--cache", "cache", status=1)
-    # the old bound at the end of the case's own ladder stands for a larger one at the end of a shorter ladder
+    # the old bound is that at the end of the case's own ladder, and allows a larger one at the end of a shorter
+    # ladder
     write("short.ini", GOOD.replace("velocity_l1 = 0.5 10\n", ""))
     bounds = [{order["field"]: order["gate"] for order in document("converge", "gresho", *words, status=None)["orders"]
                if order["gate"]}["velocity"] for words in (("--n", "10^2,12^2,14^2,16^2"), ("--code", "short.ini"))]
@@ -360,7 +362,7 @@ def test_ladder(draw):
 
 
 def test_changed_program():
-    """Each way to name a program or its script: what is kept is computed again once the file has changed."""
+    """Each way to name a program or its script: kept results are computed again after the file has changed."""
     ladder = ("converge", "sod", "--code", "named.ini", "--n", "50,52,54,56", "--replicates", "1", "--cache", "named")
     for command in ("./named.sh", "sh named.sh", "sh @HERE@/named.sh", "env A=1 @HERE@/named.sh",
                     "shell = yes\ncommand = true; sh '@HERE@/named.sh'", "shell = yes\ncommand = A=1&&(@HERE@/named.sh"):
@@ -378,7 +380,8 @@ def test_changed_program():
 
 
 def test_motion():
-    """A code that winds a vortex up on the way: neither its last snapshot nor its total energy shows it, all of them do."""
+    """A code that winds a vortex up during the run: neither its last snapshot nor its total energy shows it, but all
+    snapshots do."""
     shown = {}
     for mode in "good", "wound":
         write("wound.ini", GOOD.replace("good gresho", mode + " gresho"))
@@ -395,8 +398,9 @@ def test_motion():
 
 
 def test_calibrate():
-    """Bounds lie between what starts change and what faults change; the file that is written passes the code, and fails each
-    fault that it is said to see; what is too good fails as well. Written anew from itself it is the same."""
+    """Bounds lie between the effects of initial states and those of faults; the file that is written passes the code,
+    and fails each fault that it claims to detect; results that are too good fail as well. Calibrating the written
+    file gives the same file."""
     ladder = "10^2 12^2 14^2 16^2"
     command = "command = ./code.py %s gresho @N@ @T_END@ @SEED@ @OUT@"
     faults = "".join("[fault %s]\n%s\n" % (name, command % mode)
@@ -454,7 +458,7 @@ def test_calibrate():
 
 
 def test_shares():
-    """Three shares into one folder, and the plain command that finds everything there."""
+    """Three shares into one folder, and the plain command that finds all results there."""
     words = ("converge", "gresho", "--code", "good.ini", "--work", "shared_runs", "--cache", "shared")
     for share in 1, 2, 3:
         answer(*words, "--shard", "%d/3" % share)
@@ -464,8 +468,8 @@ def test_shares():
 
 
 def test_report():
-    """Codes beside our own schemes: a column each; what fails is a red cell, as is a case whose program is not there, and the
-    history goes on."""
+    """Codes beside our own schemes: a column each; a failure is a red cell, and so is a case whose program is
+    missing, and the history continues."""
     both = GOOD.replace("good sod", "good sound_wave").replace("[case sod]", "[case sound_wave]\nn = 16 20 24 28\ndensity_l1 = 0.5 10")
     write("both.ini", both)
     write("bad.ini", GOOD.replace("Stand-in", "Broken").replace("good gresho", "exit gresho").replace("[case sod]\n", ""))
@@ -474,7 +478,7 @@ def test_report():
     for night in range(2):
         found = document("report", "--code", "both.ini", "--code", "third.ini", "--code", "bad.ini", "--out", "out", "--jobs", "2", status=1)
         assert found["mode"] == "code" and len(found["history"]["nights"]) == night + 1, found["history"]
-        tried_again = 8  # levels of what failed
+        tried_again = 8  # levels of failed cases
         assert not night or found["found"] == found["computations"] - tried_again, (found["found"], found["computations"])
     labels = {(study["case"], study["label"]): study for study in found["studies"]}
     assert set(labels) == {("sound_wave", "Stand-in"), ("sound_wave", "default"), ("sound_wave", "textbook SPH"), ("sound_wave", "Third"), ("gresho", "Third"), ("gresho", "Stand-in"),
@@ -497,7 +501,7 @@ def test_report():
         assert word in text, word
     assert "nan" not in text.split(), text
     assert "L1() over n" not in text and "order of L1()" not in text, text
-    # errors over n, of ladders that differ: a dash where a code has not run
+    # errors over n, of different ladders: a dash if a code has not run
     table = next(table for table in page.iter("table") if table.get("class") == "overview")
     row = next(row for row in table.iter("tr") if "gresho" in "".join(row[0].itertext()))
     heads = ["".join(cell.itertext()) for cell in next(table.iter("tr"))]
@@ -515,7 +519,8 @@ def test_report():
 
 
 def test_corner():
-    """A code that counts positions from 0 is drawn where the case is; how still its gas is, is told and not judged."""
+    """A code that counts positions from 0 is drawn at the case's positions; how still its gas is, is reported and not
+    judged."""
     write("corner.ini", (FILE % ("corner sod", 60, "none")).split("[case gresho]")[0] + "n = 60 80 100 120\n")
     words = ("report", "--code", "corner.ini", "--out", "corner", "--jobs", "2")
     said = answer(*words, "--json", "-", status=4, environment={**os.environ, "PATH": "/nowhere"})
@@ -531,7 +536,7 @@ def test_corner():
 
 
 def test_bench():
-    """A code's points stand beside ours; errors are those of its runs."""
+    """A code's points are drawn beside ours, with the errors of its runs."""
     brief = ("--time", "1e-5", "--samples", "1", "--n", "14^2,18^2")
     for more in (), ("--cache", "costs"):
         found = document("bench", "gresho", "--code", "good.ini", *brief, *more)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""own_solutions.py SPHPROOF [FOLDER]: `reference = table FILE` and `reference = ./F.so` in case files. Both, made of Sod's
-exact solution, give the errors of the case sod, the table to its own interpolation error; what is broken is told with
-the line. FOLDER: of the shared objects; without it, those that have been built beside SPHPROOF."""
+"""own_solutions.py SPHPROOF [FOLDER]: `reference = table FILE` and `reference = ./F.so` in case files. Both, made
+from Sod's exact solution, give the errors of the case sod, the table up to its interpolation error; faults are
+reported with their line. FOLDER: of the shared objects; without it, those built beside SPHPROOF."""
 import json
 import os
 import random
@@ -39,7 +39,7 @@ missing = set()
 
 
 def library(name):
-    """In this folder: messages hold paths of any length only in part."""
+    """Links into this folder, because messages shorten long paths."""
     built, link = os.path.join(folder, name + ".so"), "./%s.so" % name
     if not os.path.exists(built):
         missing.add(link)
@@ -91,7 +91,7 @@ def main():
     exact, so, table = (result("judge", "s.csv", "--case", case)["errors"] for case in ("sod", "./so.ini", "./table.ini"))
     check(all(abs(so[f]["l1"] / exact[f]["l1"] - 1) < 1e-10 for f in FIELDS), "judge", so, exact)
     check(all(abs(table[f]["l1"] - exact[f]["l1"]) <= 3 * table["interpolation"][f] for f in FIELDS), "judge", table, exact)
-    # a ladder, kept by content: another table is another result
+    # a ladder, cached by content: another table is another result
     words = ("converge", "./table.ini", "--n", "60,80,100,120", "--replicates", "1", "--cache", "kept")
     first = result(*words)
     check(first == dict(result(*words), **{k: first[k] for k in ("date",)}) or
@@ -100,7 +100,7 @@ def main():
     with open("fine.csv", "w") as file:
         file.write(rows(slice(None, None, 8)))
     check(result(*words)["levels"] != first["levels"], "another table, the same ladder")
-    # another code, of which only the snapshot is ours
+    # another code, whose snapshot is ours
     with open("code.ini", "w") as file:
         file.write("[code]\ntitle = a code\nic = csv\ncommand = %s run sod n=@N@ t_end=@T_END@ --quiet --snapshot @OUT@.csv\n"
                    "snapshot = @OUT@.csv\n[case ./so.ini]\n" % program)
@@ -108,14 +108,14 @@ def main():
     for field in FIELDS:
         a, b = (e.get("errors", {}).get(field, {}).get("l1", 0) for e in (ours, theirs))
         check(abs(b / a - 1) < 1e-10, "--code", field, b, "for", a)
-    # particles laid with the state that a solution has at t = 0
+    # particles with the state of a solution at t = 0
     with open("laid.ini", "w") as file:
         file.write("[case]\ntitle = Sod's tube\ndimension = 1\nreference = %s\n[initial]\nkind = particles\n[run]\n"
                    "t_end = 0.05\n" % library("sod_reference"))
     laid = result("run", "./laid.ini", "n=200", "window=-0.5 0.5")["errors"]
     check(0 < laid["density"]["l1"] < 0.02, "laid particles", laid["density"])
 
-    # what is broken
+    # faults
     good = rows(slice(None, None, 100)).splitlines()
     head, lines = good[:2], good[2:]
     nan = lines[3].split(",")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""picture.py SOURCE SPHPROOF WORK [--report]: reports/picture makes the README's picture of a page. What is missing or
-fails is said, and leaves the picture that there was. With --report the page is a whole report's, made here; else it is
-judge's. Exit status 77: Chromium or ImageMagick is not here, so that only their absence was tried."""
+"""picture.py SOURCE SPHPROOF WORK [--report]: reports/picture makes the README's picture of a page. Missing tools and
+failures are reported, and the existing picture stays. With --report the page is a whole report's, made here; else it
+is judge's. Exit status 77: Chromium or ImageMagick is not installed, and only their absence was tested."""
 import os
 import shutil
 import struct

@@ -55,7 +55,7 @@ def main():
     with open(os.path.join(source, "meson.build"), encoding="utf-8") as file:
         version = re.search(r"version: '([0-9.]+)'", file.read()).group(1)
     said = call(python, "-m", "pip", "show", "sphproof")
-    assert "Version: " + version in said, (version, said)  # pyproject.toml and meson.build say the same
+    assert "Version: " + version in said, (version, said)  # pyproject.toml and meson.build agree
 
     prefix = os.path.join(work, "prefix")
     os.makedirs(os.path.join(prefix, "lib", "some-linux"))
@@ -78,7 +78,7 @@ def main():
         assert said[0] == finds and os.path.realpath(name) == os.path.realpath(loads), (environment, said)
         assert 0.125 < float(rho) < 1 and (what != "run" or int(said[2]) == 64), said
     installed = shutil.which("sphproof", path="/usr/bin:/bin")
-    if installed is None:  # a venv sees the system's otherwise
+    if installed is None:  # otherwise a venv would find the system's
         said = call(python, "-c", LOOKS, "library", **nowhere)[1]
         assert "no library libsphproof" in said and "SPHPROOF_LIBRARY" in said or os.path.exists(said.split()[0]), said
     print("pip installs it, and it finds an installed prefix, a build folder and what the environment names")

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""plugin_runs.py PROGRAM [FOLDER [all]]: plug-in kernels in runs. A copy of the cubic spline gives the figures of
-the built-in one to round-off, in every command that names a kernel; one that is wrong is refused with its
-certificate; one that crashes, ends its process or does not come back is a clear error, and no process is
-left of it. FOLDER: of the plug-ins; without it, those that have been built beside PROGRAM."""
+"""plugin_runs.py PROGRAM [FOLDER [all]]: plug-in kernels in runs. A copy of the cubic spline gives the figures of the
+built-in one to round-off, in every command that names a kernel; a wrong one is refused with its certificate; one that
+crashes, ends its process or does not return is reported as an error, and leaves no process. FOLDER: of the plug-ins;
+without it, those built beside PROGRAM."""
 import csv
 import json
 import os
@@ -20,7 +20,7 @@ COPY = os.path.join(FOLDER, "cubic_copy.so")
 
 
 def figures(document):
-    """All numbers of a document, but those of cost."""
+    """All numbers of a document except costs."""
     if isinstance(document, dict):
         return [f for k in sorted(document) if k not in ("cost", "machine", "cpu_s", "wall_s")
                 for f in figures(document[k])]
@@ -36,7 +36,7 @@ def far(a, b):
 
 
 def same_rates(*words):
-    """Every column of every particle: to 1e-11 of the largest."""
+    """Compares every column of every particle: to 1e-11 of the largest value."""
     tables = []
     for kernel in COPY, "cubic_spline":
         path = "rates.csv"
@@ -59,7 +59,7 @@ def same_document(bound, *words, option=None):
         check(code in (0, 1), words, kernel, err)
         documents.append(json.loads(out) if out else {})
     a, b = figures(documents[0]), figures(documents[1])
-    # each to itself, down to what is round-off of numbers of order one
+    # each relative to itself, or to 1e-4 if it is smaller
     worst = max(abs(x - y) / max(abs(y), 1e-4) for x, y in zip(a, b)) if len(a) == len(b) > 0 else float("inf")
     check(worst <= bound, *words, "differ by", worst)
     return documents[0]
@@ -85,7 +85,7 @@ def nothing_left(name):
 
 
 def interrupted():
-    """Ctrl-C ends the run and the process that watches it, by the signal."""
+    """Ctrl-C ends the run and the process that watches it with the signal."""
     p = subprocess.Popen([program, "run", "sod", "n=100000", "kernel=" + COPY], stdout=subprocess.DEVNULL,
                          stderr=subprocess.PIPE)
     time.sleep(1)
@@ -130,11 +130,11 @@ def by_night():
     said("run", "sod", "n=200", "kernel=cubic_spline", "eta=2.5", "--snapshot", snapshot)
     judged = same_document(1e-7, "judge", snapshot, "--case", "sod", "--time", "0.2", option=True)
     check(judged["kernel"]["name"].startswith(COPY + "@"), "judge names the kernel", judged["kernel"])
-    # a document names the content, and its name may be typed
+    # a document names the content, and its name can be typed
     code, out, _ = said("run", "sod", "n=50", "kernel=" + COPY, "--json", "-")
     name = json.loads(out)["settings"]["kernel"]
     check(name.startswith(COPY + "@") and said("run", "sod", "n=50", "kernel=" + name)[0] == 0, "name", name)
-    # in a case file, and varied beside others
+    # in a case file, and with --vary
     case = "./mine.ini"
     with open(case, "w") as f:
         f.write("[case]\ntitle = mine\ndimension = 1\nreference = riemann\n[initial]\nkind = riemann\nleft = 1 0 1\n"
@@ -144,7 +144,7 @@ def by_night():
     code, out, err = said("bench", "sod", "--vary", "kernel=cubic_spline," + COPY, "--n", "20,40", "t_end=0.05",
                           "--time", "1e-5", "--samples", "2", "--json", "-")
     check(code == 0 and name in out, "bench", code, err[-300:])
-    # harm
+    # harmful kernels
     wrong = os.path.join(FOLDER, "faulty_CONSTANT_SEVENTH_DIGIT.so")
     code, out, err = said("run", "sod", "n=50", "kernel=" + wrong, "--uncertified", "--json", "-")
     check(code == 0 and out and "although its certificate is refused" in err, "--uncertified", code, err)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Plug-in kernels that are wrong where nobody looks, and foreign code at its worst: the table
-examples/hostile.txt says what the program must say to each.
+"""Plug-in kernels with well-hidden faults, and foreign code at its worst: the table examples/hostile.txt has the
+program's answer to each.
 
   plugins.py PROGRAM FOLDER TABLE [OPTION ...]   FOLDER: of the plug-ins; OPTIONs for `sphproof kernel`
 
-Standard output is one document, or nothing where the kernel is refused; no process is left."""
+Standard output is one document, or empty if the kernel is refused; no process is left."""
 import json
 import os
 import re
@@ -16,26 +16,25 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 
 PROGRAM, FOLDER, TABLE, MORE = sys.argv[1], sys.argv[2], sys.argv[3], sys.argv[4:]
-PATIENCE = 600 if MORE else 100  # seconds
-# also through `verify kernels`; by day a kernel that passes and one that fails go there in test_user_kernel
+PATIENCE = 600 if MORE else 100  # seconds; also through `verify kernels`; by day test_user_kernel does that with a kernel that passes and one that fails
 VERIFIED = ["none", "sign_narrow", "exit_42"] if MORE else ["exit_42"]
 ENDLESS = ["loop_late", "loop_at_load"]  # seconds each
 RIGHT = ["wendland_c8", "gaussian", "super_gaussian", "table", "table_12", "table_4000"]
 
 
-# a sanitizer's malloc shall fail as any other where memory ends
+# so that a sanitizer's malloc fails like any other when memory is exhausted
 for name in "ASAN_OPTIONS", "TSAN_OPTIONS":
     os.environ[name] = os.environ.get(name, "") + ":allocator_may_return_null=1"
 
 
 def unloads():
-    """musl's dlclose does nothing: what a plug-in does when it is unloaded, it never does."""
+    """With musl, whose dlclose does nothing, a plug-in's code for unloading never runs."""
     with open(PROGRAM, "rb") as f:
         return b"/ld-musl-" not in f.read(4096)
 
 
 def read_table():
-    """Its lines, and how many stand before its last part: they take a whole certificate each."""
+    """The table's lines, and the number before its last part: those take a whole certificate each."""
     with open(TABLE) as f:
         parts = f.read().split("# -- never a value --\n")
     left_out = ("#",) if unloads() else ("#", "crash_at_unload ")
@@ -54,7 +53,7 @@ def call(*arguments):
 
 
 def said(document):
-    """What a document says: names of failing checks, and all words about precision, places, prints."""
+    """The findings of a document: names of failing checks, and all texts about precision, locations, prints."""
     checks = document["checks"]
     names = [c["name"] for c in checks if c["status"] == "fail"]
     words = [c.get("subject") or "" for c in checks] + [json.dumps(document.get(k))
@@ -86,7 +85,7 @@ def judge(line):
 
 
 def by_day(table, certified):
-    """Every third of those that take a whole certificate; all others but the endless ones."""
+    """Every third line that takes a whole certificate; all others except endless ones."""
     return table[:certified:3] + [line for line in table[certified:] if line[0] not in ENDLESS]
 
 
@@ -111,7 +110,7 @@ def judge_right(name, dim):
 
 
 def judge_words(name):
-    """For a person: which kernel, in how many dimensions, and what became of it."""
+    """The printed summary: kernel, number of dimensions, and outcome."""
     for dim, many in (("1", "1 dimension"), ("3", "3 dimensions")):
         code, out, err = call("kernel", module(name), "--dim", dim)
         if code != 1 or err or not re.fullmatch("hostile_%s, %s\n\nREJECTED: it crashes [^\n]*\n" % (name, many), out):
@@ -141,7 +140,7 @@ def wait_for(condition, seconds=20):
 
 
 def judge_interrupt(number):
-    """An interrupt ends everything, also where the plug-in has processes of its own."""
+    """An interrupt ends everything, also if the plug-in has processes of its own."""
     path = os.path.realpath(module("forks_and_sleeps"))
     work = subprocess.Popen([PROGRAM, "kernel", path, "--dim", "1"], stdout=subprocess.DEVNULL,
                             stderr=subprocess.DEVNULL)
@@ -171,7 +170,7 @@ def main():
     if os.path.isdir("/proc/self"):
         def left():
             return [p for line in table for p in processes(module(line[0]))]
-        gone = wait_for(lambda: not left()) # what has been killed takes a moment to end, plug-ins that stay do not end
+        gone = wait_for(lambda: not left()) # a killed process takes a moment to end; plug-ins that stay do not end
         for name, trouble in [("nothing left", None if gone else "left behind: %s" % left()),
                               ("interrupted", judge_interrupt(signal.SIGINT)),
                               ("terminated", judge_interrupt(signal.SIGTERM))]:

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""properties.py SPHPROOF COUNT [FIRST]: what holds for any valid settings.
+"""properties.py SPHPROOF COUNT [FIRST]: properties of runs with any valid settings.
 
-COUNT runs with settings drawn at random (draw number FIRST, FIRST + 1, ...; the same ones every
-time). Each must end well, with finite numbers that conserve what the scheme conserves, or break
-down with exit status 3 and a reason; soon, and without a crash. The command of a run that does not
-is printed: it says it all."""
+COUNT runs with random settings (draw number FIRST, FIRST + 1, ...; the same ones every time). Each must end well,
+with finite numbers that conserve what the scheme conserves, or break down with exit status 3 and a reason; soon, and
+without a crash. The command of a run that does not is printed, and reproduces it."""
 import csv
 import json
 import math
@@ -15,15 +14,12 @@ import subprocess
 import sys
 import tempfile
 
-SECONDS = 60  # of a run; nearly all take hundredths
-# Relative bounds. Momentum: to sum |p| + sum m c. Forces are antisymmetric to the last bit but for
-# pairs across the ends of the box, whose distance is rounded (to eps box/distance of itself): runs
-# that press particles together there are the few that may have more than round-off.
+SECONDS = 60  # seconds of a run; nearly all take hundredths. Relative bounds. Momentum: to sum |p| + sum m c. Forces are antisymmetric to the last bit except for pairs across the ends of the box, whose distance is rounded (to eps box/distance of itself): the few runs that press particles together there may have more than round-off.
 MOMENTUM, MOMENTUM_FEW, FEW = 1e-12, 1e-6, 0.02
-# Total energy: round-off where it is what is integrated; else to the integrator's order, which is
-# a small number only for a stable run.
+# Total energy: round-off if it is integrated; else to the integrator's order, which is a small number only for a
+# stable run.
 ENERGY, ENERGY_TAME, ENERGY_ANY = 1e-11, 0.05, 0.5
-# Some draws are refused: the message says what is allowed, and that must be allowed.
+# Some draws are refused: the message names an allowed value, which must be accepted.
 ADVICE = [(r"unless (eta) > (\S*)", 1.05), (r"allowed: (t_end) <= ([^,]*),", 1),
           (r"(t_end)=.* breaks at (\S*) and", 0.9)]
 RIEMANN = ["sod", "sod_standard", "strong_shock", "lax", "two_rarefactions"]
@@ -46,7 +42,7 @@ class Program:
         self.cases = [name for name in names(path, "cases") if name in RIEMANN + ["sound_wave"]]
 
     def has_form(self, key, name):
-        """Is this choice one for 1D?"""
+        """True if this choice exists in 1D."""
         refused = subprocess.run([self.path, "run", "sod", f"{key}={name}", "--explain"],
                                  capture_output=True, text=True).stderr
         return "dimension=1 exclude each other" not in refused
@@ -83,7 +79,7 @@ def draw(program, number):
     maybe(0.1, "h_tolerance", log_uniform(rng, 1e-14, 1e-3))
     maybe(0.3, "sinc_n", rng.randint(3, 12))
     unused = {"sinc_n": keys["kernel"] != "sinc", "alpha": keys["viscosity"] in ("none", "time_dependent"),
-              "beta": keys["viscosity"] == "none"}  # are refused
+              "beta": keys["viscosity"] == "none"}  # combinations that are refused
     for key in unused:
         if unused[key]:
             keys.pop(key, None)
@@ -118,7 +114,7 @@ def draw_shifting(number):
 
 # Cases with blocks of local steps, and least numbers of particles.
 LOCALS = [("noh_2d", 300, 0.1), ("sedov_2d", 300, 0.05), ("noh_3d", 1000, 0.1), ("sedov_3d", 1000, 0.03)]
-LOCAL_BOUND = 1e-12  # of momentum, and of total energy where that is what is integrated
+LOCAL_BOUND = 1e-12  # of momentum, and of total energy if that is integrated
 
 
 def draw_local(number):
@@ -141,7 +137,7 @@ def draw_local(number):
 
 
 def check_cloud(program, drawn):
-    """What is wrong with such a run (None if nothing), its command, its document."""
+    """The fault of such a run (None if there is none), its command, its document."""
     with tempfile.TemporaryDirectory() as folder:
         done, command = execute(program, *drawn, folder + "/end.csv")
     if not done or done.returncode not in (0, 3):
@@ -160,7 +156,7 @@ def check_cloud(program, drawn):
 
 
 def wrong_numbers(value, path=""):
-    """Paths of what is not finite in a document."""
+    """Paths of numbers in a document that are not finite."""
     if isinstance(value, dict):
         return [w for k, v in value.items() for w in wrong_numbers(v, path + "/" + k)]
     if isinstance(value, list):
@@ -185,13 +181,13 @@ def check_particles(rows):
 
 
 def tame(keys):
-    """Time step and scheme are those that a newcomer would get, and the start is orderly."""
+    """True if time step and scheme are defaults, and the start is orderly."""
     return keys["n"] >= 30 and not {"cfl", "alpha", "beta", "jitter", "lattice", "pair_width"} & set(keys) and (
         keys["eta"] == "auto" and keys["viscosity"] == "constant")
 
 
 def check_document(document, rows, keys):
-    """What a run that ended well owes; None if all is well."""
+    """The fault of a run that ended well (None if there is none)."""
     wrong = wrong_numbers({k: document[k] for k in ("conservation", "cost", "time")})
     low, high = document["window"]
     if any(low <= row["x"] <= high for row in rows):
@@ -211,7 +207,7 @@ def check_document(document, rows, keys):
 
 
 def momentum_error(document, rows):
-    """Relative to sum |p| + sum m c: the document's is relative to sum |p|, however small."""
+    """Relative to sum |p| + sum m c; the document's is relative to sum |p|, however small."""
     p = sum(row["m"] * abs(row["vx"]) for row in rows)
     sound = sum(row["m"] * math.sqrt(document["settings"]["gamma"] * row["P"] / row["rho"])
                 for row in rows)
@@ -229,7 +225,7 @@ def execute(program, case, keys, threads, snapshot):
 
 
 def check_run(program, case, keys, threads, folder):
-    """What is wrong with a run (None if nothing), its command, its document."""
+    """The fault of a run (None if there is none), its command, its document."""
     snapshot = folder + "/end.csv"
     done, command = execute(program, case, keys, threads, snapshot)
     for pattern, factor in ADVICE:
@@ -255,7 +251,7 @@ def check_run(program, case, keys, threads, folder):
 
 
 def same_in_units(path):
-    """Sod's tube in other units, by powers of two: the same answer to the last bit, none refused."""
+    """Sod's tube in other units, by powers of two: the same result to the last bit, and no unit is refused."""
     def l1(mass, pressure, length):
         speed = 2.0 ** ((pressure - mass) // 2)
         keys = ["left=%.17g 0 %.17g" % (2.0 ** mass, 2.0 ** pressure),

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Python module, against laws and the program, not against figures.
+"""The Python module, against physical laws and the program, not against stored figures.
 
   python_module.py PROGRAM LIBRARY MODULE_FOLDER
 
@@ -41,10 +41,10 @@ def solutions():
     star = sphproof.star(*SOD)
     between = (x > 0.2 * star["speed"][1] + 1e-9) & (x < 0.2 * star["speed"][3] - 1e-9)
     assert between.sum() > 20 and abs(state.P[between] - star["P"]).max() < 1e-14
-    # mass between -0.5 and 0.5 is that of the start: nothing flows through the ends yet
+    # the mass between -0.5 and 0.5 is the initial one: no gas crosses the ends yet
     fine = (numpy.arange(20000) + 0.5) / 20000 - 0.5
     assert abs(sphproof.riemann(*SOD, fine, 0.2).rho.mean() - 0.5625) < 1e-4
-    # mirrored, the flow is mirrored
+    # the mirrored tube has the mirrored flow
     mirrored = sphproof.riemann(*SOD[::-1], -x, t=0.2)
     assert abs(mirrored.rho - state.rho)[between].max() < 1e-14 and abs(mirrored.v + state.v).max() < 1e-13
     grid = sphproof.sedov(numpy.full((2, 3), 0.1), 1.0)
@@ -55,7 +55,7 @@ def solutions():
     for vortex in (sphproof.gresho(r), sphproof.yee(5 * r)):
         R = r if vortex.v[-1] == 0 else 5 * r
         slope = numpy.gradient(vortex.P, R)
-        assert abs(slope - vortex.rho * vortex.v ** 2 / R)[2:-2].max() < 0.02  # the pull of the pressure
+        assert abs(slope - vortex.rho * vortex.v ** 2 / R)[2:-2].max() < 0.02  # the pressure gradient is the centripetal force
     wave = sphproof.wave(x, 0.3)
     assert abs(wave.P - wave.rho ** 1.4).max() < 1e-13
     assert "allowed" in refused(2, sphproof.wave, x, 1e9)

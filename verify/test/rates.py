@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""rates.py SPHPROOF: `sphproof rates` against rates that independent code computed (data:
-rates_2d.csv and rates_3d.csv: one evaluation on rates_*_particles.csv, h to 1e-14, of which every
-ninth particle stands there), in any order of columns, and in 1D. (What --check says: the transcripts
-and test_rate_check.)"""
+"""rates.py SPHPROOF: `sphproof rates` against rates that independent code computed (data: rates_2d.csv and
+rates_3d.csv: one evaluation for rates_*_particles.csv, with h to 1e-14, of which every ninth particle is kept), in
+any order of columns, and in 1D. (Messages of --check: the transcripts and test_rate_check.)"""
 import csv
 import os
 import sys
@@ -36,7 +35,7 @@ def table(path):
 
 
 def against_data(dim):
-    """Every value of the file, relative to the largest one of its column and set."""
+    """Every value of the file, relative to the largest one in its column and set."""
     rows, worst = table(os.path.join(DATA, "rates_%dd.csv" % dim)), 0
     axes = "xyz"[:dim]
     for name in SETS:
@@ -82,7 +81,7 @@ def any_order():
 
 
 def line():
-    """In 1D as a run starts; and a case is a source, too."""
+    """In 1D rates are those at the start of a run; a case may be the source, too."""
     write("line.csv", "x,vx,m,u\n" + "".join("%r,%r,0.1,2.5\n" % (0.05 + 0.1 * i, 0.1 * (i % 3)) for i in range(10)))
     document = rates("line.csv", "lo=0", "hi=1", "kernel=cubic_spline", "eta=2.3", "gradient=standard")
     assert document["dim"] == 1 and len(document["particles"]) == 10

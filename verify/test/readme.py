@@ -24,7 +24,7 @@ def keys(program, readme):
     inside = text.split(begin, 1)[1].split(end, 1)[0].strip() if begin in text else ""
     if inside != table:
         sys.exit("the table of keys differs from `sphproof list keys --markdown`")
-    # what is wrapped for people is whole: compare with what is written for programs
+    # the wrapped text is compared with the document's
     keys_ = json.loads(subprocess.run([program, "list", "keys", "--json", "-"], capture_output=True, text=True,
                                       check=True).stdout)["families"]["keys"]
     said = " ".join(subprocess.run([program, "list", "keys"], capture_output=True, text=True,
@@ -39,8 +39,8 @@ def keys(program, readme):
     print("the table of keys is the program's")
 
 
-# The pages whose stories are tried, in this order. What else they say to type is tried, too, but for that of cases/README.md,
-# whose commands have a measurement of their own.
+# The pages whose stories are tried, in this order, and so are the commands within their sentences, except those of
+# cases/README.md, which have a measurement of their own.
 PAGES = ("README.md", "cases/README.md", "src/README.md", "verify/README.md", "reports/README.md")
 
 
@@ -48,7 +48,7 @@ def pages(folder, names=PAGES):
     return "\n".join(open(os.path.join(folder, name), encoding="utf-8").read() for name in names)
 
 
-# What stands for the words in capitals of what the text says to type; None: tried elsewhere.
+# Replacements for words in capitals in commands; None: tried elsewhere.
 PLACES = {
     "sphproof COMMAND --help": "sphproof run --help",
     "sphproof converge sod kernel=cubic_spline eta=4.8":
@@ -62,7 +62,7 @@ PLACES = {
         "cc -shared -fPIC -O2 -Isrc/include/sphproof -o try/mine.so verify/examples/wendland_c8.c -lm && "
         "sphproof kernel try/mine.so --dim 3",
     "sphproof converge sod kernel=./mine.so":
-        "sphproof converge sod kernel=./try/mine.so --n 100,200,300,400  # exit 1",  # others' gates
+        "sphproof converge sod kernel=./try/mine.so --n 100,200,300,400  # exit 1",  # gates of another kernel
     "sphproof gradient cloud.csv --operator ia --kernel wendland_c2 --dim 2 --eta 2":
         "printf 'x,y,volume,f\\n0,0,1,2\\n1,0,1,3\\n0,1,1,4\\n1,1,1,5\\n' >try/cloud.csv; "
         "sphproof gradient try/cloud.csv --operator ia --kernel wendland_c2 --dim 2 --eta 2",
@@ -80,7 +80,7 @@ PLACES = {
 
 
 def inline(text):
-    """What the text says to type within its sentences."""
+    """The commands within the text's sentences."""
     found = []
     text = re.sub(r"```.*?```", "", text, flags=re.S)
     for span in re.findall(r"`([^`]+)`", text):
@@ -138,7 +138,7 @@ def scripts(program, source, work):
             code, out, said = run(in_source(script) + " " + line)
             if code or script not in out or said or os.path.exists(folder):
                 sys.exit("%s %s: exit %d\n%s%s" % (script, line, code, out, said))
-    # what is built is a program that says how it was called; nothing is compiled
+    # the "built" program prints its arguments; nothing is compiled
     os.makedirs(folder)
     for name in ("meson", "ninja", "python3"):
         stub(os.path.join(work, "bin", name), "exit 0\n")
@@ -166,7 +166,7 @@ def scripts(program, source, work):
 
 
 def cpu():
-    """What all commands that ended have taken, s of a processor."""
+    """CPU time of all commands that have ended, in s."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -175,7 +175,7 @@ def stories(source, work):
     tree = os.path.join(work, "tree")
     shutil.rmtree(work, ignore_errors=True)
     shutil.copytree(source, tree, ignore=shutil.ignore_patterns("build*", ".git", "out"))
-    # where a build stands in a tree, and with its options, so that ccache has it already
+    # the same folder and options as in a tree, so that ccache finds the objects
     subprocess.run(["meson", "setup", "build", "-Dtests=false"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["ninja", "-C", "build"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
     print("  %6.1f s  the build" % cpu())
@@ -186,7 +186,7 @@ def stories(source, work):
     if len(commands) < 12:
         sys.exit("README: only %d commands in the stories" % len(commands))
     commands += inline(pages(tree, [name for name in PAGES if "cases" not in name]))
-    # the job's report, a small share of it: the whole one and its summary are for the test `report`
+    # a small share of the job's report: the test `report` makes the whole one and its summary
     commands += [command.replace("--nightly", "--quick --shard 7/60") for command in job(text)
                  if command.startswith("reports/run")]
     for command in commands:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""real_codes.py SPHPROOF: PySPH, which nobody here wrote, computes Sod's tube and Gresho's vortex by its code file, within its
-file's gates; it starts from our particles; and what is planted into it is told: another gamma, viscosity, particles of its own."""
+"""real_codes.py SPHPROOF: PySPH, an independent code, computes Sod's tube and Gresho's vortex with its code file,
+within the file's gates; it starts from our particles; and planted faults are detected: another gamma, viscosity,
+particles of its own."""
 import os
 import shutil
 import subprocess
@@ -17,7 +18,7 @@ def document(*words, status=0):
 
 
 def gates(case, status, keys=()):
-    """Of the code file; each n once, without neighbours."""
+    """The ladder of the code file; each n once, without replicates."""
     found = document("converge", case, *keys, "--replicates", "1", "--jobs", "2", status=status != "pass")
     told = [order["status"] for order in found["orders"] if order["gate"]]
     assert told == [status], (case, told, found["orders"])

@@ -17,7 +17,7 @@ import tempfile
 LAYERS = ("src", "reference", "reports", "verify", "cases")
 TEXTS = (".c", ".h", ".def", ".py", ".sh", ".md", ".txt", ".ini", ".build", ".options")
 SKIP = {os.path.join("reports", "out"), os.path.join("verify", "fuzz", "corpus")}
-# made by the build or a run, or given by the system, or an example's file that the user has
+# made by the build or a run, part of the system, or an example's file that the user has
 FOREIGN = {"config.h", "version.h", "family_names.h", "cmocka.h", "summary.md", "my_kernel.c", "file.c", "cloud.csv", "mine.h",
            "particles.csv", "theirs.csv", "mine.csv", "out.csv", "kh.csv", "code.sh"}
 
@@ -35,7 +35,7 @@ HEADING = re.compile(r"\"([A-Z][\w ,]+)\"\s+in\s+(?:the\s+|\w+/)README|README(?:
 
 
 def unmarked(text):
-    """A comment's words in one line, without the stars and hashes of its lines."""
+    """The words of a comment in one line, without the stars and hashes of its lines."""
     return re.sub(r"\s*\n\s*(?:\*(?!/)|#)?\s*", " ", text)
 
 
@@ -50,7 +50,7 @@ def code(path, text):
 
 
 def tree(source):
-    """path: text, of everything that may refer or be referred to."""
+    """path: text, of every file that may refer to others or be referred to."""
     texts = {}
     for name in sorted(os.listdir(source)):
         if os.path.isfile(os.path.join(source, name)) and name.endswith(TEXTS):
@@ -69,7 +69,7 @@ def tree(source):
 
 
 def there(reference, paths):
-    """Is there such a file: a whole path, the end of one, or a pattern of either?"""
+    """True if such a file exists: a whole path, the end of one, or a pattern of either."""
     parts = reference.count("/")
     for path in paths:
         end = "/".join(path.split("/")[-parts - 1:])
@@ -134,7 +134,7 @@ GOOD = {
     "src/loop_one.c": "/* CONVENTIONS eq. 1.1, see add_up and README, \"Adding things\" */\nint add_up(void);\n",
     "src/two.h": "/* CONVENTIONS eqs. 1.1\n * and 1.2, section 1 of CONVENTIONS; loop_one.c */\n",
 }
-BAD = {  # what is added to a file, and what must be said of it
+BAD = {  # text added to a file, and the expected message
     "an equation": ("src/two.h", "/* CONVENTIONS eqs. 1.1 to 1.3 */", "no equation 1.3"),
     "an equation of the page": ("src/CONVENTIONS.md", "as eq. 1.7 says", "no equation 1.7"),
     "an equation twice": ("src/CONVENTIONS.md", "- (1.1) P = 2", "twice"),

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""report.py SPHPROOF FOLDER: the report as a whole, into FOLDER: killed, resumed, repeated on an
-unchanged night without gnuplot, and repeated with damaged entries after a night that was better, what
-is found and that results are the same; its history; its files, that it stands alone, that each plot can
-be drawn again, that kept results are the computed ones, and what happens when things fail."""
+"""report.py SPHPROOF FOLDER: the report as a whole, in FOLDER: killed and resumed; repeated on an unchanged night
+without gnuplot; repeated with damaged entries after a better night, whose changes it reports with the same results.
+Its history; its files; the page needs no other file; each plot can be drawn again; kept results are the computed
+ones; and failures of all kinds."""
 import base64
 import glob
 import json
@@ -36,13 +36,13 @@ def read(*path):
 
 
 def unsealed(page):
-    """The page with what is folded, as its script inflates it."""
+    """The unfolded page, as its script inflates it."""
     return re.sub(r'(<div class="sealed") data-z="([^"]*)">',
                   lambda part: part[1] + ">" + zlib.decompress(base64.b64decode(part[2])).decode(), page)
 
 
 def lasting(value):
-    """Everything that must be the same in a report and in one from its cache."""
+    """Members that must be the same in a report and in one from its cache."""
     if isinstance(value, dict):
         drop = ("seconds", "date", "found", "history")
         return {k: lasting(v) for k, v in value.items() if k not in drop}
@@ -50,7 +50,7 @@ def lasting(value):
 
 
 def computed(value):
-    """Everything that must be the same in two reports of one program."""
+    """Members that must be the same in two reports of one program."""
     if isinstance(value, dict):
         drop = ("cost", "cpu_s", "wall_s", "seconds", "date", "found", "history", "bench", "ns_per_point", "ns_per_pair",
                 "cpu_s_without_skip", "saves") + (("spread",) if "saves" in value else ())
@@ -63,14 +63,14 @@ def entries():
 
 
 def kill_one():
-    """A report killed once it has kept some results; these, with their inodes."""
+    """A report killed after it has kept some results; these, with their inodes."""
     running = subprocess.Popen([program, "report", "--out", folder, "--jobs", "2", "--quiet"], start_new_session=True)
     while running.poll() is None and len(entries()) < 5:
         time.sleep(0.05)
     expect("nothing to kill:", running.poll() is None)
     os.killpg(running.pid, signal.SIGKILL)
     running.wait()
-    for _ in range(200):  # its processes may still be about to end
+    for _ in range(200):  # its processes may take a moment to end
         try:
             os.killpg(running.pid, 0)
         except ProcessLookupError:
@@ -156,8 +156,8 @@ for arguments, status in ((["--jobs", "0"], 2), (["--quick", "--nightly"], 2), (
     expect("exit status of %s:" % arguments, done.returncode == status and done.stderr
            and not done.stdout, done)
 
-# what survived the night before and breaks down now fails the report, its page, its JUnit file and its exit status;
-# entries that are damaged are computed again
+# a run that survived the night before and breaks down now fails the report, its page, its JUnit file and its exit
+# status; damaged entries are computed again
 night = json.loads(read("history.jsonl").splitlines()[-1])
 lost = next(path for path, value in night["figures"].items() if path.startswith("stress") and value == "broke_down")
 night["figures"][lost] = "ok"

@@ -23,7 +23,7 @@ def is_type(value, name):
 
 
 class Validator:
-    """faults(value, schema, path) yields a text per departure."""
+    """faults(value, schema, path) yields a text for each violation."""
 
     def __init__(self, root):
         self.root = root
@@ -162,7 +162,7 @@ def main():
     validator, bad = Validator(schema), 0
     with tempfile.TemporaryDirectory() as folder:
         for words in COMMANDS:
-            # plug-ins stand beside the program
+            # plug-ins are beside the program
             words = [os.path.join(os.path.dirname(program), w) if w.endswith(".so") else w for w in words]
             done = subprocess.run([program, *words, "--json", "-"], capture_output=True, text=True,
                                   cwd=folder, timeout=60)
@@ -183,7 +183,7 @@ def main():
                     faults = ["diff: " + same.stderr]
                     print("%s: %s" % (" ".join(words), faults[0]))
             bad += bool(faults)
-            # the validator must be able to fail: each document without its parts is wrong
+            # the validator must be able to fail: each document without one of its parts is wrong
             for name in () if faults else ("schema", "machine", "date"):
                 broken = {key: part for key, part in document.items() if key != name}
                 if validator.valid(broken, schema):

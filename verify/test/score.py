@@ -200,7 +200,7 @@ def load(score):
 
 
 def stable_draw(expect, score):
-    """Of hundred mutants twenty; then one line less, and others before it."""
+    """Draws twenty of a hundred mutants; then with one line less, and others before it."""
     choose = load(score).choose
 
     def drawn(names, seed):
@@ -216,7 +216,7 @@ def stable_draw(expect, score):
 
 
 def near_to_constants(expect, score):
-    """Who comes past mutants of a file is near to its constants; of a file with no other mutant everybody is."""
+    """The tests near a file's constants are those that reach its mutants; for a file without other mutants all tests."""
     drawn = [types.SimpleNamespace(number=1, file="a.h"), types.SimpleNamespace(number=2, file="b.c"),
              types.SimpleNamespace(number=0, file="a.h"), types.SimpleNamespace(number=0, file="c.h")]
     judge = types.SimpleNamespace(reached={1: {"one"}, 2: {"two"}})
@@ -241,7 +241,8 @@ def failing_thread(expect):
 
 
 def sound_without(expect):
-    """A constant is compiled in place: whether a test that notices it is sound, a copy made before tells."""
+    """A constant is compiled in place: a copy of the build made before decides whether the test that notices it is
+    sound."""
     import trial
     asked = []
     table = types.SimpleNamespace(build="/build", units={"t": {"seconds": 1, "failed": "", "reached": [], "differs": []}},
@@ -259,7 +260,7 @@ def sound_without(expect):
 
 
 def in_rounds(expect, score):
-    """Cheap tests come first; what they notice is not asked again, and what survives is told once."""
+    """Cheap tests come first; mutants that they notice are not tried again, and survivors are reported once."""
     import trial
     table = trial.Table.__new__(trial.Table)
     table.build = "/build"

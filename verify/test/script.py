@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What scripts share that test the program of sys.argv[1] from outside: calls of it, files, what was expected in vain."""
+"""Functions shared by scripts that test the program of sys.argv[1] from outside: calls of it, files, failed
+expectations."""
 import json
 import os
 import subprocess
@@ -20,7 +21,7 @@ def check(good, *what):
 
 
 def call(*words, status=None, **how):
-    """The program, run to its end, which must have this status."""
+    """Runs the program to its end; it must have this status."""
     done = subprocess.run([program, *words], **{"capture_output": True, "text": True, "timeout": 300, "stdin": subprocess.DEVNULL, **how})
     assert status is None or done.returncode == status, (words, done)
     return done
@@ -47,7 +48,7 @@ def read(path):
 
 
 def play(*acts):
-    """Does them in turn, in an empty folder, and ends the script."""
+    """Runs the tests in turn, in an empty folder, and ends the script."""
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         for act in acts:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""slurm.py SPHPROOF DATA [--night FOLDER]: `--engine slurm` on a cluster of two nodes on this host. The
-results must be those of this machine alone, nothing that is finished may be computed again, and nothing
-may be lost by a node that loses its power, by kill -9 of who submitted or of a worker.
-Tasks that are requeued, preempted, out of time or killed are done again, or it is said which.
-With --night a whole quick report in FOLDER, and a task beyond its --time; Slurm must then be here, else the test is skipped."""
+"""slurm.py SPHPROOF DATA [--night FOLDER]: `--engine slurm` on a cluster of two nodes on this host. The results must
+be those of this machine alone; finished computations must not be computed again, nor be lost by a power failure of a
+node, by kill -9 of the submitting process or of a worker. Tasks that are requeued, preempted, out of time or killed
+are done again, or the message names them. With --night a whole quick report in FOLDER, and a task beyond its --time;
+then the test is skipped if Slurm is not installed."""
 import contextlib
 import functools
 import glob
@@ -39,7 +39,7 @@ def expect(what, well, got=""):
 
 
 def fixed(value):
-    """Everything that may not differ from what one machine alone says."""
+    """Members that must be the same as on one machine alone."""
     if isinstance(value, dict):
         return {k: fixed(v) for k, v in value.items() if k not in TIMES}
     return [fixed(v) for v in value] if isinstance(value, list) else value
@@ -65,13 +65,13 @@ def entries(cache):
 
 
 def queue():
-    """State of each task that is not over: "1_2" -> RUNNING."""
+    """State of each task that has not ended: "1_2" -> RUNNING."""
     said = subprocess.run(["squeue", "-h", "-r", "-o", "%i %T"], capture_output=True, text=True).stdout
     return {task: state for task, state in map(str.split, said.splitlines()) if state != "COMPLETING"}
 
 
 def test_same(nodes):
-    """A study on two nodes; and again, when all is there and Slurm is not asked."""
+    """A study on two nodes; and again with all results in the cache, when Slurm is not asked."""
     running = start(QUICK, "same", "--engine-tasks", "2", "--json", "same.json")
     said = running.communicate()[1]
     expect("exit", running.returncode in (0, 1), said)
@@ -84,7 +84,7 @@ def test_same(nodes):
 
 
 def test_code():
-    """Another code, of which a template and the program stand beside its file, which is named from this folder on."""
+    """Another code with a template and a program beside its file, which is named relative to this folder."""
     os.mkdir("mine")
     for name, text in (("mine/code.sh", "#!/bin/sh\nexec %s run $(cat keys) --quiet --snapshot $1_1.csv\n" % program),
                        ("mine/keys.in", "@CASE@ n=@N@ t_end=@T_END@ seed=@SEED@\n"),
@@ -107,7 +107,7 @@ def kill(nodes):
 
 
 def hold(nodes):
-    """Waits for a new task that is at its first computation, the long one, and stops it there: its name."""
+    """Waits for a new task at its first computation, the long one, and stops it there. Returns its name."""
     def new():
         return [task for task, state in queue().items() if state == "RUNNING" and "_" in task and task not in held]
 
@@ -130,7 +130,7 @@ def scontrol(*words):
 
 
 def test_again(nodes):
-    """Tasks that Slurm itself ends before they are done: it starts them again, or else they are submitted again."""
+    """Tasks that Slurm itself ends early: it starts them again, or else they are submitted again."""
     urgent = ["sbatch", "--partition=urgent", "--nodes=2", "--output=/dev/null", "--wrap", "sleep 1"]
     for what, end, more, said in (
             ("requeued", lambda job: scontrol("requeue", job), (), None),
@@ -151,8 +151,8 @@ def test_again(nodes):
 
 
 def test_given_up(nodes, end, state, *more):
-    """A task that never gets done is submitted three times in all; then it is said what is missing, and where the
-    log is; nothing that is finished is lost."""
+    """A task that never completes is submitted three times in all; then the message names what is missing, and the
+    log; finished computations are kept."""
     subprocess.run([program, *HELD, "--cache", "given-up", "--shard", "2/2"], stdout=subprocess.DEVNULL)
     kept = entries("given-up")
     expect("given up: something to lose", len(kept) == 3, kept)
@@ -172,9 +172,9 @@ def test_given_up(nodes, end, state, *more):
 
 
 def test_interrupt(nodes):
-    """Ctrl-C asks once; with y its own tasks are cancelled. Without a terminal they go on."""
+    """Ctrl-C asks once; with y its own tasks are cancelled. Without a terminal they continue."""
     others = queue().keys()
-    for answer, left in ((b"n", True), (b"y", False)):  # each with a cache of its own: all is to be computed
+    for answer, left in ((b"n", True), (b"y", False)):  # each with a cache of its own, so that everything is computed
         cache = "interrupted-" + answer.decode()
         lead, follow = pty.openpty()
         running = subprocess.Popen([program, *LONG, "--cache", cache, *SLURM, "--engine-tasks", "1"],
@@ -197,7 +197,7 @@ def test_interrupt(nodes):
 
 
 def test_power(nodes):
-    """kill -9 of who submitted, then a node without power: a second call attaches, and Slurm starts the
+    """kill -9 of the submitting process, then a power failure of a node: a second call attaches, and Slurm starts the
     task on the other node."""
     first = start(LONG, "power", "--engine-tasks", "2", start_new_session=True)
     nodes.wait(lambda: nodes.tasks("n0") and len(entries("power")) >= 3 and len(queue()) == 1, "task on n0")
@@ -210,7 +210,7 @@ def test_power(nodes):
     kept = entries("power")
     expect("something to lose", len(kept) == 3 and len(before) == 1, (kept, before))
     second = start(LONG, "power", "--json", "power.json")
-    yield  # seconds go by until Slurm knows
+    yield  # Slurm notices it after some seconds
     expect("attached", queue().keys() <= before.keys(), (queue(), before))
     said = second.communicate(timeout=100)[1]
     expect("a node without power", second.returncode in (0, 1), said)
@@ -220,7 +220,7 @@ def test_power(nodes):
 
 
 def test_report(nodes):
-    """A quick report, of which a node dies in the middle, is the one of this machine alone."""
+    """A quick report, during which a node fails, is that of this machine alone."""
     shutil.rmtree(night, ignore_errors=True)
     words = [program, "report", "--quick", "--quiet", "--history", os.devnull, "--out"]
     running = subprocess.Popen([*words, night + "/slurm", *SLURM, "--engine-tasks", "8"])
@@ -258,7 +258,7 @@ def main():
                 next(power)
                 test_interrupt(nodes)
                 next(power, None)
-                nodes.start("n0")  # which had no power
+                nodes.start("n0")  # which had a power failure
                 nodes.wait(lambda: nodes.states() == ["idle", "idle"], "two idle nodes", 60)
                 test_again(nodes)
                 test_given_up(nodes, lambda task: kill(nodes), "FAILED")

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""snapshots.py SPHPROOF: snapshots on the way (`run --snapshot-every`). The run knows nothing of them: its results
-are those of a run without, to the last bit; and each is, to the last bit, what a run leaves that ends there. What
-cannot be written is said and takes nothing else with it. (Intervals and refusals: test_snapshots, the transcripts.)"""
+"""snapshots.py SPHPROOF: snapshots during a run (`run --snapshot-every`). They do not affect the run: its results are
+those of a run without them, to the last bit; and each is, to the last bit, that of a run that ends there. A snapshot
+that cannot be written is reported and affects nothing else. (Intervals and refusals: test_snapshots, the
+transcripts.)"""
 import csv
 import glob
 import json
@@ -11,12 +12,12 @@ import resource
 
 from script import call, expect, play, read
 
-# words, end, interval in the end, which of the snapshots are compared with runs that end there
+# arguments, end, interval in units of the end, numbers of the snapshots that are compared with runs that end there
 RUNS = [(["sod", "n=200"], 0.2, 0.07, (0, 1, 7, 14)),
         (["sound_wave", "n=64", "viscosity=none"], 0.5, 0.002, (1, 2, 250, 499)),  # several within each step
         (["strong_shock", "n=100", "integrator=leapfrog", "skip=none"], 0.006, 0.11, (1, 8)),
         (["gresho", "n=16^2", "viscosity=cullen_dehnen"], 0.4, 0.3, (0, 2)),
-        (["kelvin_helmholtz_mode", "n=16^2"], 0.9, 0.09, (2, 7, 11)),  # has stops of its own
+        (["kelvin_helmholtz_mode", "n=16^2"], 0.9, 0.09, (2, 7, 11)),  # it has stops of its own
         (["noh_3d", "n=12^3", "integrator=vl2"], 0.05, 0.5, (0, 1))]
 
 
@@ -30,7 +31,7 @@ def get(path):
 
 
 def seen(path):
-    """A document but for times and memory."""
+    """A document without times and memory."""
     document = json.loads(get(path))
     for name in ("wall_s", "cpu_s", "peak_rss_bytes"):
         document["cost"].pop(name)
@@ -72,8 +73,8 @@ def rows(path):
 
 
 def test_late():
-    """A resumed run that is asked for a snapshot within its next step: it was on its way to another time. The step is
-    made anew; one that was predicted for the other time would miss by 1.06e-3 here."""
+    """A resumed run with a snapshot within its next step, which was predicted for another time. The step is repeated;
+    with the old prediction it would be off by 1.06e-3 here."""
     words = ["sod", "n=100", "--quiet"]
     first = run(words, "--checkpoint", "late.state", "--every", "0")
     again = run(words, "--checkpoint", "late.state", "--resume", "--snapshot", "late.csv", "--snapshot-every", "0.1985")
@@ -85,7 +86,7 @@ def test_late():
 
 
 def test_trouble():
-    """One file cannot be written: the others and all results are there, and it is said."""
+    """One file cannot be written: that is reported, and the others and all results are there."""
     os.makedirs("lost_0002.csv/full")
     done = run(["sod", "n=64"], "--snapshot", "lost.csv", "--snapshot-every", "0.05", "--json", "lost.json")
     expect("one is lost", done.returncode == 4 and "lost_0002.csv" in done.stderr, (done.returncode, done.stderr))

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""starts.py SPHPROOF: what runs start from, and what is at the ends of their boxes.
+"""starts.py SPHPROOF: initial states of runs, and the ends of their boxes.
 
-Particles of a file are the same as those of the case that wrote it; a file beside a case file is
-found from anywhere; without a reference there are no errors but null; walls and gravity of a case
-are those of `rates` with the same words."""
+Particles of a file are those of the case that wrote it; a file beside a case file is found from any folder; without a
+reference errors are null; walls and gravity of a case are those of `rates` with the same words."""
 import sys
 
 from script import call, json_of, play, read, write
@@ -33,7 +32,7 @@ def found(*words):
 
 
 def rows(path):
-    """The names and the particles, without what the snapshot says of its run."""
+    """The names and the particles, without the comments about the run."""
     return [line for line in read(path).split("\n")[:-1] if line[0] != "#"]
 
 
@@ -67,7 +66,7 @@ def files():
     case = "./alone.ini"
     write(case, CASE % ("none", ""))
     alone = found("run", case, "--snapshot", theirs)
-    # their first guess of the density is another one
+    # their first guess of the density differs
     demand(apart(ours, theirs) <= 1e-8, "particles of a file move otherwise without a reference")
     demand(all(v is None for f, e in alone["errors"].items() if e for v in e.values()), "errors of what is not known")
     demand(alone["conservation"]["energy"] <= 1e-12, "conservation without a reference")
@@ -77,7 +76,7 @@ def files():
 
 
 def ends():
-    """A case's boundary and gravity against the same words of rates; defaults by the case file."""
+    """A case's boundary and gravity against the same words of rates; defaults from the case file."""
     start, case = "start.csv", "./ends.ini"
     for boundary in ("periodic reflecting", "open", "reflecting"):
         write(case, CASE % ("none", "boundary = %s\ngravity = 0.25 -1" % boundary))
@@ -92,10 +91,10 @@ def ends():
     walls = found("rates", "gresho", "n=24^2", "boundary=reflecting")
     demand(walls["particles"] != found("rates", "gresho", "n=24^2")["particles"], "walls change nothing")
     demand(found("rates", "gresho", "n=24^2")["settings"]["boundary"] == "periodic", "boundary by default")
-    # momentum that walls take is no error: along them it is kept
+    # momentum that walls take is no error: along them it is conserved
     run = found("run", "rest_2d", "n=16^2", "t_end=0.2", "boundary=periodic,reflecting")
     demand(run["conservation"]["momentum"] <= 1e-13, "momentum along walls")
-    # layers that are kept drag what is beside them: nobody asks for momentum along them
+    # fixed layers drag the gas beside them: momentum along them is not checked
     keys = ["kernel=cubic_spline", "eta=1.8", "gradient=standard", "viscosity=constant"]
     run = found("run", "rest_2d", "n=28^2", "t_end=0.05", "boundary=periodic,fixed", *keys)
     demand(run["conservation"]["momentum"] == 0, "momentum along layers")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stress.py SPHPROOF [GROUP ...]: the stress test of these groups (or what round-off comes to, blasts, and
-random tubes) holds what it promises.
+"""stress.py SPHPROOF [GROUP ...]: results of the stress test of these groups (or of round-off, blasts, and random
+tubes).
 
-Every cell has an outcome, and a reason unless it is ok; the default scheme survives what the seed
+Every cell has an outcome, and a reason unless it is ok; the default scheme survives everything that the seed
 program's method survives; and a cell's command, run by itself, ends as the cell says."""
 import json
 import math
@@ -10,7 +10,7 @@ import shlex
 import subprocess
 import sys
 
-COMMANDS = 24  # done again, spread over the cells
+COMMANDS = 24  # number of commands repeated, spread over the cells
 
 
 def fail(text):
@@ -26,7 +26,7 @@ def stress(program, groups):
 
 
 def check_again(program, cell):
-    """The cell's own command; true if it could be compared."""
+    """Runs the cell's own command; true if it could be compared."""
     words = shlex.split(cell["command"])
     done = subprocess.run([program, *words[1:], "--json", "-"], capture_output=True, text=True,
                           timeout=120)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""studies.py SPHPROOF: `sphproof converge` with a cache from outside: any number of jobs, a second
-time, damaged entries, kill -9 in the middle, two at once, other mathematics; its progress in a log and on a terminal."""
+"""studies.py SPHPROOF: `sphproof converge` with a cache, from outside: any number of jobs, a second time, damaged
+entries, kill -9 in the middle, two at once, other mathematical functions; its progress in a log and on a terminal."""
 import glob
 import json
 import os
@@ -14,13 +14,13 @@ from script import call, expect, play, program
 
 QUICK = ["converge", "sod", "--n", "40,60,80,120", "t_end=0.1", "--vary", "gradient",
          "--replicates", "1"]
-# long enough to be killed in the middle: half a second a run and more
+# long enough to be killed in the middle: a run takes half a second and more
 LONG = ["converge", "sod", "--n", "100,140,200,6400", "t_end=0.1", "kernel=wendland_c6", "eta=9", "skip=none",
         "integrator=rk3", "volume_element=energy", "--replicates", "1"]
 
 
 def study(*words):
-    """Exit status, document without its date, what was said."""
+    """Exit status, document without its date, error output."""
     done = call(*words, "--json", "-")
     found = json.loads(done.stdout) if done.stdout else {}
     found.pop("date", None)
@@ -108,7 +108,7 @@ BITS = "import math\n"\
 
 
 def test_mathematics():
-    """Where sin, exp and pow have other last bits, nothing is found that was kept elsewhere."""
+    """Results are not taken from a cache of a machine where sin, exp and pow have other last bits."""
     usual = subprocess.run([sys.executable, "-c", BITS], capture_output=True).stdout
     kept = []
     for words in ("", "-AVX2,-FMA", "-AVX2_Usable,-FMA_Usable"):
@@ -142,7 +142,7 @@ def test_progress():
 
 
 def test_colors():
-    """On a terminal that knows them, unless NO_COLOR says something; elsewhere if they are asked for."""
+    """On a terminal with colours, unless NO_COLOR is set; elsewhere on request."""
     for change, words, colored in (({}, (), True), ({"NO_COLOR": ""}, (), True), ({"NO_COLOR": "0"}, (), False),
                                    ({"TERM": "dumb"}, (), False), ({"TERM": None}, (), False),
                                    ({"NO_COLOR": "1"}, ("--color", "always"), True), ({}, ("--color", "never"), False)):

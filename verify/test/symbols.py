@@ -24,7 +24,7 @@ EXPORTED = set("TDRBVWCiI")
 
 
 def sources(source):
-    """path of every C file from the top, slashes as underscores: that path."""
+    """path of every C file from the top, with slashes as underscores: that path."""
     files = {}
     for layer in ("src", "reference", "reports", "cases", "verify"):
         for folder, _, names in os.walk(os.path.join(source, layer)):
@@ -36,7 +36,7 @@ def sources(source):
 
 
 def source_of(member, files):
-    """The file that an object is made of; objects carry the end of its path, slashes as underscores."""
+    """The file that an object is made of; the object's name ends with the file's path, with slashes as underscores."""
     name = re.sub(r"\.o(bj)?$", "", os.path.basename(member))
     found = [path for flat, path in files.items() if flat == name or flat.endswith("_" + name)]
     if found:
@@ -56,7 +56,7 @@ def prefixes(path):
 
 @functools.lru_cache(maxsize=None)
 def names_of(nm, library, changed):
-    """What nm says of a library that was changed then."""
+    """The output of nm for a library with this time of change."""
     out = subprocess.run([nm, "-A", "-g", library], capture_output=True, text=True)
     if out.returncode:
         sys.exit("%s %s: %s" % (nm, library, out.stderr.strip()))
@@ -77,7 +77,7 @@ def symbols(nm, library):
 
 
 def twice_cloned(nm, libraries):
-    """What is compiled for several instruction sets in more than one object: name, objects."""
+    """Names that are compiled for several instruction sets in more than one object: name, objects."""
     homes = {}
     for library in libraries:
         out = subprocess.run([nm, "-A", library], capture_output=True, text=True, check=True)
@@ -88,7 +88,7 @@ def twice_cloned(nm, libraries):
 
 
 def circles(source, nm, libraries):
-    """Sets of files each of which reaches every other through the names that it takes."""
+    """Sets of files each of which reaches every other through the names that it uses."""
     files, paths, home, takes = sources(source), {}, {}, {}
     for library in libraries:
         for member, symbol, defined in symbols(nm, library):

@@ -14,7 +14,7 @@ export BUILD="$work/build"
 
 reports/compare >"$work/same.log" 2>&1 || { cat "$work/same.log"; exit 1; }
 grep -q '^well: ' "$work/same.log"
-# timings may differ, nothing else
+# times may differ, nothing else
 if grep '^worse' "$work/same.log" | grep -v '_s$\|seconds$\|ns_per_[a-z]*$\|merit$\|bytes$'; then exit 1; fi
 grep -q '^## sphproof: All ' "$work/same.log"
 echo "a tree against itself: the same"

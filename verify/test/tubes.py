@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""tubes.py SPHPROOF [COUNT [FIRST]]: what is left out, and round-off, change nothing.
+"""tubes.py SPHPROOF [COUNT [FIRST]]: skipped work and round-off change nothing.
 
-COUNT shock tubes drawn at random (draw number FIRST, FIRST + 1, ...; the same ones every time),
-the default scheme and others. Left out or not: the same figures, and momentum to round-off; with
-skip=none every particle is in every step. A start that is moved by 1e-13 of the spacing moves no
-figure of the default scheme by more than 1e-13 times AMPLIFICATION. And runs that are healthy, but
-a lot of work, end. Total energy stays to round-off though widths are loosely solved, and gas sleeps.
-The commands that disagree are printed."""
+COUNT random shock tubes (draw number FIRST, FIRST + 1, ...; the same ones every time), with the default scheme and
+others. With and without skips figures are the same, and momentum is to round-off; with skip=none every particle is in
+every step. A displacement of the start by 1e-13 of the spacing changes no figure of the default scheme by more than
+1e-13 times AMPLIFICATION. Healthy runs with much work end. Total energy is conserved to round-off though widths are
+loosely solved, and gas is inactive. Commands that disagree are printed."""
 import json
 import math
 import random
@@ -19,7 +18,7 @@ from properties import execute, log_uniform, momentum_error, read_particles
 
 SAME, MOMENTUM, MOVED, AMPLIFICATION = 1e-9, 1e-13, 1e-13, 1e4
 DENSITIES, PRESSURES = 100, 1000  # largest ratios
-WINDOW = "-0.49871 0.49913"  # no particle of a lattice on its edge, nor on that of a bin
+WINDOW = "-0.49871 0.49913"  # no particle of a lattice is at its edge, or at that of a bin
 OTHERS = [{"kernel": "cubic_spline", "gradient": "ia", "viscosity": "reconstructed"},
           {"kernel": "cubic_spline", "eta": 4.8, "integrator": "modified_leapfrog"},
           {"kernel": "quartic_spline", "formulation": "lagrangian", "integrator": "vl2"},
@@ -27,7 +26,7 @@ OTHERS = [{"kernel": "cubic_spline", "gradient": "ia", "viscosity": "reconstruct
           {"viscosity": "fading"}, {"grade": 0.5}]
 LEBLANC = {"gamma": 5 / 3, "t_end": 0.4, "mass_ratio": 1e-3, "left": "1 0 0.066667",
            "right": "1e-3 0 6.6667e-11"}
-TELLING = [119, 216, 722]  # draws in which a pair stands between two widths of one step
+TELLING = [119, 216, 722]  # draws in which a pair's distance lies between two widths of one step
 HEALTHY = [{"n": 400, "kernel": "cubic_spline", "eta": 2, "formulation": "lagrangian",
             "integrator": "vl2", **LEBLANC},
            {"n": 3200, "left": "10.51 0 0.006665", "right": "0.03605 0 1.511", "t_end": 0.027}]
@@ -91,7 +90,7 @@ def difference(a, b):
 
 
 def settle(program, keys):
-    """A t_end that the mirrored tube allows: the refusal says it."""
+    """The t_end that the mirrored tube allows, from the refusal."""
     done = subprocess.run([program, "run", "sod", *("%s=%s" % item for item in keys.items())],
                           capture_output=True, text=True)
     allowed = re.search(r"allowed: t_end <= ([^,]*),", done.stderr).group(1)
@@ -99,7 +98,7 @@ def settle(program, keys):
 
 
 def check_draw(program, number, folder, worst):
-    """What is wrong with a draw: lines of text."""
+    """The faults of a draw: lines of text."""
     keys, default = draw(number)
     settle(program, keys)
     auto, none = (Run(program, dict(keys, skip=skip), folder) for skip in ("auto", "none"))
@@ -129,7 +128,7 @@ def check_draw(program, number, folder, worst):
 
 
 def check_loose(program, number, folder):
-    """What is wrong with a draw whose widths are solved to a hundredth: lines of text."""
+    """The faults of a draw whose widths are solved to a hundredth: lines of text."""
     keys = dict(draw(number)[0], **LOOSE)
     settle(program, keys)
     run = Run(program, keys, folder)

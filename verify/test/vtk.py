@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""vtk.py SPHPROOF: legacy files of VTK, as text and binary, with arrays as SCALARS, VECTORS and FIELD, are judged as the
-table of the same particles is; every file that is cut off anywhere is told. (Other refusals: test_readers_text_faults.)"""
+"""vtk.py SPHPROOF: legacy files of VTK, as text and binary, with arrays as SCALARS, VECTORS and FIELD, are judged
+like the table of the same particles; every truncated file is reported. (Other refusals: test_readers_text_faults.)"""
 import itertools
 import json
 import random
@@ -16,21 +16,21 @@ def judged(path):
     return said("judge", path, "--case", "taylor_green", "--time", "0", "--allow-far", "--json", "-")
 
 
-# kinds of whole numbers, as letters of struct; each document has two of them, the next ones in turn
+# types of integers, as letters of struct; each document has two of them, the next ones in turn
 LETTERS = {b"unsigned_int": "I", b"vtkIdType": "i", b"char": "b", b"unsigned_char": "B", b"short": "h", b"unsigned_short": "H",
            b"int": "i", b"long": "q", b"unsigned_long": "Q", b"vtktypeint64": "q"}
 WHOLE = itertools.cycle(LETTERS)
 
 
 def make(points, binary, field, grid, kind):
-    """As DualSPHysics (SCALARS, VECTORS) or PySPH's converter (FIELD) have it; names as theirs."""
+    """As DualSPHysics (SCALARS, VECTORS) or PySPH's converter (FIELD) writes it, with their names."""
     def numbers(rows, of):
         if binary:
             return struct.pack(">%d%s" % (len(rows) * len(rows[0]), of[0]), *(v for row in rows for v in row)) + b"\n"
         return "".join(" ".join(map(repr, row)) + "\n" for row in rows).encode()
 
     n = len(points)
-    paired = field != grid  # offsets and connectivity, as version 5.1 has cells
+    paired = field != grid  # offsets and connectivity, as in version 5.1
     text = b"# vtk DataFile Version %s\nparticles\n" % (b"5.1" if paired else b"3.0") + (b"BINARY\n" if binary else b"ASCII\n")
     text += b"DATASET UNSTRUCTURED_GRID\n" if grid else b"DATASET POLYDATA\n"
     text += b"POINTS %d %s\n" % (n, kind) + numbers([(x, y, 0.0) for x, y, *_ in points], kind.decode())

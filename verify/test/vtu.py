@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""vtu.py SPHPROOF [DRAWS] [--others] [--seed SEED]: snapshots for ParaView (`--snapshot F.vtu`). In random setups of 1, 2 and 3
-dimensions every number is, to the last bit, that of the same run's CSV; what belongs to the whole run is there; a series
-has a collection; judge finds in them what it finds in CSV, also packed and appended as other programs write them.
-With --others VTK and meshio, where one is installed for this Python or the system's, must read the same bits."""
+"""vtu.py SPHPROOF [DRAWS] [--others] [--seed SEED]: snapshots for ParaView (`--snapshot F.vtu`). In random setups in
+1, 2 and 3 dimensions every number is, to the last bit, that of the same run's CSV; values of the whole run are there;
+a series has a collection; judge finds the same as in CSV, also if arrays are compressed and appended as other
+programs write them. With --others VTK and meshio, if one is installed for this Python or the system's, must read the
+same bits."""
 import base64
 import json
 import os
@@ -67,7 +68,7 @@ def run(*words, status=0):
 
 
 def setup(draw):
-    """The words of a run: few particles, a random start and time."""
+    """The arguments of a run: few particles, a random start and time."""
     state = lambda: "%.3g %.3g %.3g" % (draw.uniform(0.2, 2), draw.uniform(-0.3, 0.3), draw.uniform(0.2, 2))
     side = draw.randint(12, 18)
     return draw.choice([
@@ -128,7 +129,7 @@ def compare(csv, said, n, arrays, fields):
 
 
 def packed(path, to, raw, single_blocks):
-    """The same file as VTK's own writer leaves it: zlib, appended, sizes of 32 bits."""
+    """The same file as written by VTK: zlib, appended, sizes of 32 bits."""
     root = tree.parse(path).getroot()
     root.set("compressor", "vtkZLibDataCompressor")
     root.attrib.pop("header_type")
@@ -178,7 +179,7 @@ def random_setups(draw):
                 assert got == want, (word, words)
                 again = sorted(name for name in os.listdir(".") if name.startswith("again"))
                 assert len(again) == (12 if word == "vtk" else 1)
-                for name in again:  # what they write of it; meshio keeps no fields, VTK's text has 6 to 12 digits
+                for name in again:  # files that they write; meshio keeps no fields, VTK's text has 6 to 12 digits
                     if word == "vtk" and "Ascii" not in name:
                         assert judged(name) == result, (name, words)
                     else:
@@ -187,7 +188,7 @@ def random_setups(draw):
 
 
 def series():
-    """A collection names all that are there, each with its time; one that could not be written is left out."""
+    """A collection names all snapshots, each with its time; one that could not be written is left out."""
     os.makedirs("a & b/lost_0001.vtu/full")
     run("run", "sod", "n=64", "t_end=0.05", "--snapshot", "a & b/s \"1\".vtu", "--snapshot-every", "0.02")
     root = tree.parse("a & b/s \"1\".pvd").getroot()

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The quick suite does not depend on the machine that it runs on: runs it as things are, then under each
-condition of the table in worlds.py, and prints a table: condition, passed, failed, skipped, seconds.
+"""The quick suite does not depend on the machine: runs it as things are, then under each condition of the table in
+worlds.py, and prints a table: condition, passed, failed, skipped, seconds.
 
   world.py run SOURCE BUILD WORK [--only NAME,...] [--test NAME ...] [--no-suite NAME ...]
   world.py try WORK [--only NAME,...]    the test of this test, on a small project
   world.py list                          the conditions
 
-BUILD has been built; only conditions that concern the tree itself build again, in WORK. A condition that
-cannot be set up here is listed as "not tried", with the reason.
-Each condition has a sign that it holds, which is looked for before the suite runs: without it, it was not
-tried either. `try` makes a project with one planted fault for each condition, a test that fails where the
-sign is seen, and wants exactly this test to be reported under this condition.
+BUILD must be built; only conditions that concern the tree itself build again, in WORK. A condition that cannot be set
+up is listed as "not tried", with the reason.
+Each condition has a sign that it holds, which is tested before the suite runs: without the sign the condition was not
+tried either. `try` makes a project with one planted fault for each condition, a test that fails if the sign is seen,
+and requires that exactly this test is reported under this condition.
 Exit status 1: a test failed under a condition, or nothing could be tried."""
 import argparse
 import glob
@@ -28,14 +28,14 @@ import worlds  # noqa: E402
 
 
 def clean_environment():
-    """Ours, without what `meson test` adds to it."""
+    """The environment without what `meson test` adds to it."""
     return {name: value for name, value in os.environ.items()
             if name not in ("MALLOC_PERTURB_", "ASAN_OPTIONS", "UBSAN_OPTIONS", "MSAN_OPTIONS")
             and not name.startswith("MESON_")}
 
 
 class Outcome:
-    """What the tests under one condition did: names of tests by result."""
+    """The results of the tests under one condition: names of tests by result."""
 
     def __init__(self, seconds, results):
         self.seconds = seconds
@@ -70,7 +70,7 @@ def run_tests(world, selection):
 
 
 def sign_missing(world, condition):
-    """Why a process that is started in there does not see that the condition holds; None: it does."""
+    """Why a process started in there does not see that the condition holds; None: it does."""
     command = [*world.prefix, *world.wrapper, sys.executable, os.path.abspath(__file__), "sign", condition.name, world.source]
     done = subprocess.run(command, env=world.environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                           stderr=subprocess.PIPE, text=True, errors="replace", check=False, cwd=world.build)
@@ -92,7 +92,7 @@ def try_condition(condition, place, selection):
 
 
 def print_row(name, outcome, plain):
-    """One row of the table; below it what failed, and what was skipped here only."""
+    """One row of the table; below it failures, and tests that were skipped here only."""
     if isinstance(outcome, str):
         print("%-34s not tried: %s" % (name, outcome), flush=True)
         return
@@ -106,7 +106,7 @@ def print_row(name, outcome, plain):
 
 
 def go_through(conditions, place, select):
-    """Runs and prints everything; {name: outcome}. select(condition): which tests."""
+    """Runs and prints everything; {name: outcome}. select(condition): the tests."""
     print("%-34s %6s %6s %7s %7s" % ("condition", "passed", "failed", "skipped", "seconds"), flush=True)
     outcomes, plain = {}, None
     for condition in conditions:
@@ -158,7 +158,7 @@ def planted_for(condition):
 
 
 def complaints_about(name, outcome, so_already):
-    """What is wrong with this row of the table of planted faults."""
+    """The faults in this row of the table of planted faults."""
     condition = worlds.named(name)
     allowed = {name, *so_already, *condition.implies}
     if name not in outcome.failed:
@@ -174,11 +174,11 @@ def try_all(arguments):
     work = os.path.realpath(arguments.work)
     build = os.path.join(work, "planted-build")
     shutil.rmtree(build, ignore_errors=True)
-    # Our folder is in the build, as it is by night.
+    # The work folder is in the build, as it is by night.
     place = worlds.Place(os.path.join(work, "planted"), build, os.path.join(build, "worlds"), clean_environment())
     plant(place)
     outcomes = go_through(worlds.chosen(arguments.only), place, planted_for)
-    # A machine may be so already: then the fault shows as things are, too, and must.
+    # A machine may already have the condition: then the fault must show as things are, too.
     with worlds.World(worlds.CONDITIONS[0], place) as world:
         so_already = sorted(c.name for c in worlds.CONDITIONS if c.sign and not sign_missing(world, c))
     plain = outcomes.pop("as it is")

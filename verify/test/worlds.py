@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The conditions under which world.py runs the quick suite: how each is set up, and by what sign a process
-sees that it holds. A new condition is one entry of CONDITIONS."""
+"""The conditions under which world.py runs the quick suite: how each is set up, and the sign by which a process sees
+that it holds. A new condition is one entry of CONDITIONS."""
 import datetime
 import locale
 import os
@@ -24,7 +24,7 @@ class NotBuilt(Exception):
 
 
 class Place:
-    """Where the tree, its build and our own folder are, and the environment to start from."""
+    """Paths of the tree, its build and the work folder, and the environment to start from."""
 
     def __init__(self, source, build, work, environment):
         self.source, self.build, self.work, self.environment = source, build, work, environment
@@ -32,8 +32,8 @@ class Place:
 
 
 class World:
-    """One condition, set up while the `with` lasts. Tests run as prefix + meson test, each of them behind
-    wrapper, with this environment."""
+    """One condition, set up while the `with` lasts. Tests run as prefix + meson test, each of them behind wrapper,
+    with this environment."""
 
     def __init__(self, condition, place):
         self.name, self.condition, self.place = condition.name, condition, place
@@ -56,7 +56,7 @@ class World:
         while self.endings:
             self.endings.pop()()
 
-    # ---- what conditions are made of ----
+    # ---- parts of conditions ----
 
     def variables(self, **values):
         """Environment variables; None: unset."""
@@ -67,7 +67,7 @@ class World:
                 self.environment[name] = value
 
     def inside(self, *words):
-        """Tests run inside this command. Where it does not even start `true`, the condition is not tried."""
+        """Tests run inside this command. If it does not even start `true`, the condition is not tried."""
         self.prefix += words
         done = subprocess.run(self.prefix + ["true"], env=self.environment, capture_output=True, text=True,
                               errors="replace", check=False)
@@ -95,7 +95,7 @@ class World:
                 raise NotBuilt(done.stdout.strip()[-300:].replace("\n", " | "))
 
     def free_of(self, folder):
-        """What is mounted over this folder hides neither tree nor build."""
+        """A mount over this folder must hide neither tree nor build."""
         for needed in self.place.source, self.place.build, self.place.work:
             if os.path.commonpath([needed, folder]) == folder:
                 raise NotTried("%s is in %s" % (needed, folder))
@@ -117,7 +117,7 @@ def uptime(seconds):
 
 
 def preload(world, code):
-    """Programs begin with these functions of C in place of the library's."""
+    """Programs start with these C functions in place of the library's."""
     source, library = os.path.join(world.folder, "preload.c"), os.path.join(world.folder, "preload.so")
     with open(source, "w", encoding="ascii") as file:
         file.write("#define _GNU_SOURCE\n#include <dlfcn.h>\n#include <sys/stat.h>\n#include <sys/time.h>\n#include <time.h>\n#include <unistd.h>\n"
@@ -156,7 +156,7 @@ time_t time(time_t *t)
 }
 """
 
-# Files follow the clock: their times are later by as much, and are set earlier.
+# File times follow the clock: they are later by the shift when read, and earlier when set.
 FILE_TIMES = """
 static int later(int code, struct stat *s)
 {
@@ -196,7 +196,7 @@ int futimens(int f, const struct timespec t[2])
 
 
 def date(*when):
-    """The wall clock goes on from this date, in UTC."""
+    """The wall clock starts at this date, in UTC."""
     def set_up(world):
         if struct.calcsize("P") != 8:
             raise NotTried("only on systems of 64 bits")
@@ -206,7 +206,7 @@ def date(*when):
 
 
 def jumping(world):
-    """Four times a second the wall clock goes five minutes forwards or back; the monotonic one does not."""
+    """Four times a second the wall clock jumps five minutes forwards or back; the monotonic one does not."""
     preload(world, """
 static time_t ahead(void)
 {
@@ -267,7 +267,7 @@ def can_write(folder, size=1):
 
 
 def home(world):
-    """A home whose files change what gnuplot and git do, if they are asked."""
+    """A home whose files would change the behaviour of gnuplot and git."""
     folder = os.path.join(world.folder, "home")
     os.mkdir(folder)
     for name, text in ((".gnuplot", "set decimalsign ','\nset terminal dumb\nexit\n"),
@@ -299,7 +299,7 @@ def temporary_file_system(world):
 
 
 def temporary_full(world):
-    """/tmp itself, where tests have another place for their files."""
+    """/tmp itself, for tests that put their files elsewhere."""
     world.free_of("/tmp")
     folder = os.path.join(world.folder, "tmp")
     os.mkdir(folder)
@@ -369,7 +369,7 @@ def not_root(world):
     os.chmod(world.folder, 0o755)
 
     def leave_out(folder, names):
-        """Our own folder, which the build may hold, and this copy in it."""
+        """The work folder, which the build may contain, and this copy in it."""
         return [name for name in names if os.path.join(folder, name) == world.place.work]
 
     shutil.copytree(world.place.build, copy, symlinks=True, ignore=leave_out)
@@ -390,7 +390,7 @@ def one_core(world):
 
 
 def many_cores(world):
-    """Programs are told of 64 cores; as many tests run at once as usual."""
+    """Programs see 64 cores; as many tests run at once as usual."""
     preload(world, """
 long sysconf(int name)
 {
@@ -402,7 +402,7 @@ long sysconf(int name)
 
 
 class Condition:
-    """implies: other conditions whose sign is seen under this one, too."""
+    """implies: other conditions whose sign is also seen under this one."""
 
     def __init__(self, name, set_up, sign, implies=()):
         self.name, self.set_up, self.sign, self.implies = name, set_up, sign, list(implies)
@@ -467,7 +467,7 @@ CONDITIONS = [
 
 
 def all_at_once(world):
-    """What can hold together: for a first look, and for conditions that only matter together."""
+    """Conditions that can hold together: for a first look, and for those that only matter together."""
     for name in ("time zone UTC-3.30", "locale de_DE.ISO-8859-1", "HOME read-only", "XDG variables relative", "TERM unset",
                  "umask 077", "CI=true", "POSIXLY_CORRECT", "PYTHONOPTIMIZE=1", "stdin closed", "TMPDIR elsewhere", "no network",
                  "one core", "64 threads asked for", "ulimit -n 64", "uptime 100 s"):
@@ -485,7 +485,8 @@ def named(name):
 
 
 def chosen(words):
-    """The conditions with these names or parts of names, comma between them; always as things are first."""
+    """The conditions with these names or parts of names, separated by commas; always with the condition "as things
+    are" first."""
     wanted = [word for word in words.split(",") if word]
     for word in wanted:
         if not any(word in condition.name for condition in CONDITIONS):

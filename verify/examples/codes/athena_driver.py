@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs Athena++ (https://www.athena-astro.app), a code on a grid, from an initial state of particles in text.
+"""Runs Athena++ (https://www.athena-astro.app), a grid code, from an initial state of particles as text.
 
-  athena_driver.py PROGRAM PARAMETERS ic.csv out      writes out_000.csv and out_001.csv, a line a cell
+  athena_driver.py PROGRAM PARAMETERS ic.csv out      writes out_000.csv and out_001.csv, with a line for each cell
 
-PROGRAM is an Athena++ with HDF5 whose problem generator is from_array. In 2D particles stand on a square lattice, and each
-becomes a cell; in 1D the mass, momentum and energy of a particle are spread evenly over the space between its neighbours of
-the same gas, and gathered in as many cells of equal size."""
+PROGRAM is Athena++ with HDF5 and the problem generator from_array. In 2D particles lie on a square lattice, and each
+becomes a cell; in 1D the mass, momentum and energy of a particle are spread evenly over the interval between its
+neighbours in the same gas, and summed over as many cells of equal size."""
 import subprocess
 import sys
 
@@ -17,7 +17,7 @@ program, parameters, start, out = sys.argv[1:5]
 
 
 def read(path):
-    """Columns by name, and what lines `# key = value` say."""
+    """Columns by name, and the values of lines `# key = value`."""
     with open(path, encoding="ascii") as file:
         lines = file.read().splitlines()
     said = dict(line[1:].split("=", 1) for line in lines if line.startswith("#"))
@@ -26,7 +26,7 @@ def read(path):
 
 
 def spread(x, u, ends):
-    """Shares of particles in cells: a sparse matrix as lists of cell, particle, share."""
+    """The share of each particle in each cell: a sparse matrix as lists of cell, particle, share."""
     order = np.argsort(x)
     x, u, n, length = x[order], u[order], len(x), ends[1] - ends[0]
     gap = (np.roll(x, -1) - x) % length
@@ -48,7 +48,7 @@ ends = np.array([side.split(":") for side in said["box"].split()], dtype=float)
 dim, n = len(ends), len(columns["x"])
 v = [columns.get(name, np.zeros(n)) for name in ("vx", "vy", "vz")]
 energy = columns["u"] + 0.5 * sum(component**2 for component in v)
-cons = columns["m"] * np.array([np.ones(n), *v, energy])  # of each particle
+cons = columns["m"] * np.array([np.ones(n), *v, energy])  # conserved quantities of each particle
 if dim == 1:
     shape = [n]
     cells = cons @ spread(columns["x"], columns["u"], ends[0]).T

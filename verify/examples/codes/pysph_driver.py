@@ -20,7 +20,7 @@ KERNELS = {"cubic": (CubicSpline, 1.2), "quintic": (QuinticSpline, 1.2)}  # kern
 
 
 def read(path):
-    """Columns by name, and what lines `# key = value` say."""
+    """Columns by name, and the values of lines `# key = value`."""
     with open(path, encoding="ascii") as file:
         lines = file.read().splitlines()
     said = dict(line[1:].split("=", 1) for line in lines if line.startswith("#"))

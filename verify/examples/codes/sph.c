@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_PAIRS = 200 }; /* for each particle */
+enum { MOST_PAIRS = 200 }; /* per particle */
 
 struct particle {
     double x[2], v[2], a[2], vel[2]; /* vel: v at the time of x */
@@ -36,7 +36,7 @@ static void fail(const char *text, const char *what)
     exit(1);
 }
 
-/* W of support h; *dw: dW/dr. */
+/* The kernel W with support radius h; *dw is dW/dr. */
 static double kernel(double r, double h, double *dw)
 {
     static const double pi = 3.14159265358979323846;
@@ -51,7 +51,7 @@ static int by_x(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* All pairs nearer than reach: particles stand in the order of x. */
+/* Finds all pairs nearer than `reach`; particles are sorted by x. */
 static void find_pairs(double reach)
 {
     qsort(p, (size_t)n, sizeof *p, by_x);
@@ -71,7 +71,8 @@ static void find_pairs(double reach)
         }
 }
 
-/* h = eta (m/rho)^(1/dim) by Newton's method, density, factors f of the equations of motion. */
+/* Solves h = eta (m/rho)^(1/dim) by Newton's method; computes the density and the factors f of the
+ * equations of motion. */
 static void find_density(void)
 {
     const double eta = dim == 1 ? 3.2 : 4;
@@ -104,7 +105,8 @@ static void find_density(void)
     }
 }
 
-/* Of a pair: relative velocity, W'/r of both, their product with the distance. */
+/* Computes the relative velocity of a pair and W'/r with either h; returns velocity times
+ * distance. */
 static double approach(const struct pair *k, double dv[2], double *own, double *other)
 {
     const double r = k->r > 0 ? k->r : 1e-300;
@@ -114,7 +116,7 @@ static double approach(const struct pair *k, double dv[2], double *own, double *
     return dv[0] * k->d[0] + dv[1] * k->d[1];
 }
 
-/* Accelerations, d_entropy; the longest step that is allowed. */
+/* Computes accelerations and d_entropy; returns the longest time step allowed. */
 static double find_rates(void)
 {
     double dv[2], own, other, step = HUGE_VAL;

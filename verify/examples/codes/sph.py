@@ -51,7 +51,7 @@ def find_pairs(x, box, reach):
 
 
 class Gas:
-    """The state and the equations of motion; arrays of n x dim, or of n."""
+    """The state and the equations of motion; arrays have n x dim or n elements."""
 
     def __init__(self, x, v, m, u, box, gamma, fault):
         self.x, self.v, self.m, self.u, self.box = x, v, m, u, box
@@ -65,7 +65,7 @@ class Gas:
         return np.bincount(i, values, self.n)
 
     def find_density(self):
-        """h_i = eta (m_i/rho_i)^(1/d) by Newton's method; also factors f_i of the equations of motion."""
+        """Solves h_i = eta (m_i/rho_i)^(1/d) by Newton's method; computes the factors f_i of the equations of motion."""
         m, dim = self.m, self.dim
         for attempt in range(60):
             if attempt == 0 or self.h.max() > reach:
@@ -95,14 +95,14 @@ class Gas:
         return div / (div + curl + 1e-4 * self.c / self.h)
 
     def rates(self, v, u):
-        """dv/dt, du/dt, and the longest step that is allowed."""
+        """dv/dt, du/dt, and the longest time step allowed."""
         i, j, apart, r = self.find_density()
         m, rho, h, dim = self.m, self.rho, self.h, self.dim
         pressure = (self.gamma - 1) * rho * u
         self.c = np.sqrt(self.gamma * pressure / rho)
         push = self.f * pressure / rho**2
         dv = v[i] - v[j]
-        # W' / r of i's and of j's smoothing length
+        # W'/r with the smoothing lengths of i and of j
         own, other = (kernel(r / h[k], dim)[1] / (h[k]**(dim + 1) * r) for k in (i, j))
         switch = self.balsara(i, j, apart, dv, own)
         towards = np.minimum((dv * apart).sum(1) / r, 0)
@@ -136,7 +136,7 @@ class Gas:
 
 
 def read(path):
-    """x from the lower corner of the box, v, m, u, box, gamma, time."""
+    """x relative to the lower corner of the box, v, m, u, box, gamma, time."""
     if path.endswith("5"):
         import h5py
         with h5py.File(path, "r") as file:

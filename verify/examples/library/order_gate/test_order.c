@@ -11,7 +11,7 @@
 
 #include <sphproof/convergence.h>
 
-/* One turn of a circle of radius 1 about a mass of 1, in so many steps: how far from the start? */
+/* The error after one circular orbit of radius 1 around a mass of 1, in this number of steps. */
 static double my_error(int steps)
 {
     const double dt = 2 * 3.14159265358979323846 / steps;
