@@ -11,7 +11,7 @@
 #ifdef HAVE_HDF5
 #include "h5.h"
 
-enum { HEADER_NUMBERS_MAX = 4096 };
+enum { HEADER_NUMBERS_MAX = 4096, HEADER_TEXT_MAX = 4096 };
 
 static hid_t file_of(const struct snapshot_source *source)
 {
@@ -154,12 +154,11 @@ int hdf5_numbers(const struct snapshot_source *source, const char *group, const 
     struct entry e;
     int count = -1;
     if (!open_entry(source, group, name, &e)) return -1;
-    double *all = calloc((size_t)e.count, sizeof *all);
-    if (all && is_number(e.type) && read_entry(&e, h5.T_NATIVE_DOUBLE_g, all)) {
+    double all[HEADER_NUMBERS_MAX];
+    if (is_number(e.type) && read_entry(&e, h5.T_NATIVE_DOUBLE_g, all)) {
         count = (int)e.count;
         for (int i = 0; i < count && i < max; i++) values[i] = all[i];
     }
-    free(all);
     close_entry(&e);
     return count;
 }
@@ -168,7 +167,7 @@ void hdf5_text(const struct snapshot_source *source, const char *group, const ch
                char *text, size_t size)
 {
     struct entry e;
-    char *all = NULL;
+    char *all = NULL, fixed[HEADER_TEXT_MAX] = "";
     *text = '\0';
     if (!open_entry(source, group, name, &e)) return;
     const bool is_text = e.count == 1 && h5.Tget_class(e.type) == H5T_STRING,
@@ -177,9 +176,8 @@ void hdf5_text(const struct snapshot_source *source, const char *group, const ch
     if (variable && read_entry(&e, e.type, &all) && all) {
         snprintf(text, size, "%s", all);
         h5.free_memory(all);
-    } else if (is_text && !variable && length < 1 << 16 && (all = calloc(1, length + 1))) {
-        if (read_entry(&e, e.type, all)) snprintf(text, size, "%s", all);
-        free(all);
+    } else if (is_text && !variable && length < sizeof fixed && read_entry(&e, e.type, fixed)) {
+        snprintf(text, size, "%s", fixed);
     }
     status_clean(text);
     close_entry(&e);

@@ -103,6 +103,15 @@ static const char *value_of(const struct tag *tag, const char *key, char value[W
 
 /* ---- bytes ---- */
 
+/* As malloc; sets the error if there is no memory. */
+static void *allocate(const struct vtk *vtk, size_t size)
+{
+    void *memory = malloc(size);
+    if (!memory)
+        error_set(vtk->error, STATUS_ENVIRONMENT, "no memory for %.200s", vtk->source->path);
+    return memory;
+}
+
 static int digit_of(char c)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -158,12 +167,12 @@ static bool unpack(const struct vtk *vtk, struct array array, size_t blocks, uns
 {
     if (blocks > want) return false;
     const size_t sizes = (3 + blocks) * vtk->head;
-    unsigned char *head = malloc(sizes + sizeof(uint64_t));
+    unsigned char *head = allocate(vtk, sizes + sizeof(uint64_t));
     bool well = head && fetch(&array, sizes, head, &array.at);
     const size_t left = (size_t)(array.end - array.at);
     const uint64_t block = well ? size_at(vtk, head + vtk->head) : 0;
     const uint64_t last = well ? size_at(vtk, head + 2 * vtk->head) : 0;
-    uint64_t *packed = well ? malloc((blocks + 1) * sizeof *packed) : NULL;
+    uint64_t *packed = well ? allocate(vtk, (blocks + 1) * sizeof *packed) : NULL;
     well = packed != NULL;
     size_t all = 0, made = 0;
     for (size_t k = 0; well && k < blocks; k++) {
@@ -171,7 +180,7 @@ static bool unpack(const struct vtk *vtk, struct array array, size_t blocks, uns
         well = packed[k] <= left - all;
         all += well ? packed[k] : 0;
     }
-    unsigned char *bytes = well ? malloc(all + 1) : NULL;
+    unsigned char *bytes = well ? allocate(vtk, all + 1) : NULL;
     well = bytes && fetch(&array, all, bytes, NULL);
     for (size_t k = 0, taken = 0; well && k < blocks; taken += packed[k++]) {
         const uint64_t full = k + 1 < blocks || !last ? block : last;
@@ -271,7 +280,7 @@ static bool take_numbers(const struct vtk *vtk, const struct array *array, doubl
                       "and Int and UInt of 8 to 64 bits",
                       array->name, array->type);
     if (array->text) return take_text(vtk, array, to, n);
-    unsigned char *bytes = malloc(width * n + sizeof(uint64_t));
+    unsigned char *bytes = allocate(vtk, width * n + sizeof(uint64_t));
     bool well = bytes && take_bytes(vtk, array, bytes, width * n);
     if (well && vtk->swapped) turn(bytes + vtk->head, n, width);
     for (size_t i = 0; well && i < n; i++)
@@ -322,12 +331,8 @@ static bool take_points(const struct vtk *vtk, const struct array *array, int co
 {
     const bool vector = column == SNAPSHOT_X || column == SNAPSHOT_VX || column == SNAPSHOT_AX;
     if (column < 0 || (!vector && array->components > 1) || array->components > 3) return true;
-    double *all = malloc((file->n * array->components + 1) * sizeof *all);
-    bool well = all != NULL;
-    if (well && !take_numbers(vtk, array, all, file->n * array->components)) {
-        free(all);
-        return false;
-    }
+    double *all = allocate(vtk, (file->n * array->components + 1) * sizeof *all);
+    bool well = all && take_numbers(vtk, array, all, file->n * array->components);
     for (size_t c = 0; well && c < array->components; c++) {
         const enum snapshot_column to = (enum snapshot_column)(column + (int)c);
         if (file->column[to]) {
@@ -336,11 +341,12 @@ static bool take_points(const struct vtk *vtk, const struct array *array, int co
                           snapshot_column_names[to]);
         }
         well = snapshot_file_make(file, to);
+        if (!well)
+            error_set(vtk->error, STATUS_ENVIRONMENT, "no memory for %.200s", vtk->source->path);
         for (size_t i = 0; well && i < file->n; i++)
             file->column[to][i] = all[i * array->components + c];
     }
     free(all);
-    if (!well) error_set(vtk->error, STATUS_ENVIRONMENT, "no memory for %.200s", vtk->source->path);
     const double epsilon = !strcmp(array->type, "Float32") ? 6e-8 : 1.2e-16;
     double *precision = &file->precision[column != SNAPSHOT_X];
     *precision = fmax(*precision, epsilon);

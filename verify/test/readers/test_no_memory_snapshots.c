@@ -26,8 +26,13 @@ static enum status read_file(struct error *error)
 TEST(formats)
 {
     static const char *const names[] = {
-        "csv/table.csv",       "splash/splash.ascii",     "gadget/one.gadget", "gadget/two.gadget",
-        "gadget/plain.gadget", "gadget/two_other.gadget", "phantom/big"};
+        "csv/table.csv",       "splash/splash.ascii",
+        "gadget/one.gadget",   "gadget/two.gadget",
+        "gadget/plain.gadget", "gadget/two_other.gadget",
+        "phantom/big",         "vtu/text",
+        "vtu/binary",          "vtu/appended",
+        "vtu/packed",
+    };
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         char path[4096];
         snprintf(path, sizeof path, "%s/%s", test_word(1), names[k]);

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Every layout in HDF5 is refused with "no memory" at each allocation that fails, with masses in a
+ * column and in the header. */
+#include "test.h"
+
+#ifdef HAVE_HDF5
+#include "made_layouts.h"
+#include "made_no_memory.h"
+#include "snapshot_file.h"
+
+static enum status read_file(struct error *error)
+{
+    const struct snapshot_options options = {.here = true};
+    struct snapshot_file file;
+    const enum status status = snapshot_read(path_of("m.hdf5"), &options, &file, error);
+    snapshot_file_free(&file);
+    return status;
+}
+
+TEST(layouts_without_memory)
+{
+    for (size_t k = 0; k < LAYOUTS; k++)
+        for (int header = 0; header < 2; header++) {
+            struct item items[ITEMS_MAX];
+            items_of(&layouts[k], items);
+            for (size_t f = 0; header && f < layouts[k].count; f++)
+                if (layouts[k].fields[f].column == SNAPSHOT_M) items[f].path[0] = '\0';
+            write_items(path_of("m.hdf5"), items, layouts[k].count);
+            without_memory(read_file, 3, true);
+        }
+}
+#endif
