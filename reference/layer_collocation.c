@@ -85,13 +85,13 @@ static void fill(const struct equations *of, const struct layer *layer, const st
     }
 }
 
-/* The eigenvalue with the greatest imaginary part; NaN where none has one. */
+/* The eigenvalue with the greatest imaginary part; 0 where none has one, NaN without memory. */
 static double complex fastest(gsl_matrix *matrix)
 {
     const size_t n = matrix->size1;
     gsl_vector_complex *values = gsl_vector_complex_alloc(n);
     gsl_eigen_nonsymm_workspace *space = gsl_eigen_nonsymm_alloc(n);
-    double complex best = (double)NAN;
+    double complex best = values && space ? 0 : (double)NAN;
     double growth = 0;
     if (values && space) {
         gsl_eigen_nonsymm_params(0, 1, space);

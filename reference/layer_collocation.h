@@ -8,5 +8,5 @@
 #include "layer.h"
 
 /* omega of the fastest growing mode: eigenvalues of the primitive equations at this number of
- * Chebyshev points (>= 8). NaN: no growing mode, or no memory. */
+ * Chebyshev points (>= 8). 0: no growing mode; NaN: no memory. */
 double complex layer_mode_collocation(const struct layer *layer, int points);

@@ -146,6 +146,7 @@ bool layer_mode_find(const struct layer *layer, struct layer_mode *mode)
     enum { START_POINTS = 32, ROUNDS = 40 };
     *mode = (struct layer_mode){.layer = *layer};
     double complex last = layer_mode_collocation(layer, START_POINTS), omega = last * (1 + 1e-4);
+    mode->omega = last;
     if (!(cimag(last) > 0)) return false;
     double complex defect = mismatch(layer, last, mode->v, mode->p);
     double done = (double)INFINITY; /* the last step, relative */

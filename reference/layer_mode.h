@@ -35,7 +35,7 @@ struct layer_mode {
 };
 
 /* By shooting (Runge & Kutta 8(9), secants to the complex root), to some 1e-11. False: no growing
- * mode was found, or no memory. The layer is valid. */
+ * mode was found; or no memory, then mode->omega is NaN. The layer is valid. */
 bool layer_mode_find(const struct layer *layer, struct layer_mode *mode);
 
 /* Amplitudes at y: within the walls, or anywhere in a periodic layer. */

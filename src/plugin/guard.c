@@ -109,6 +109,7 @@ struct stream {
     int file;
     char *text;
     size_t length, room, most, seen;
+    bool failed; /* no memory */
 };
 
 static void take(struct stream *stream, const char *bytes, size_t n)
@@ -118,6 +119,7 @@ static void take(struct stream *stream, const char *bytes, size_t n)
     if (stream->length + n > stream->room) {
         const size_t room = 2 * stream->room + n;
         char *text = realloc(stream->text, room);
+        stream->failed = stream->failed || !text;
         if (!text) return;
         stream->text = text;
         stream->room = room;
@@ -245,6 +247,8 @@ static enum status watch(pid_t pid, double limit, struct stream *streams,
                        guard_watched->complete;
     verdict->begun = guard_watched->begun;
     take_printed(verdict, &streams[1]);
+    if (sound && streams[0].failed)
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for the answer of a process");
     if (sound && take_answer(verdict, &streams[0], &status, error)) return status;
     explain(verdict, guard_watched, ending, limit, outcome);
     return verdict->begun ? STATUS_CHECK_FAILED : STATUS_BAD_INPUT;

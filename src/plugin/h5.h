@@ -12,9 +12,10 @@
     X(Aclose)                                                                                      \
     X(Acreate2)                                                                                    \
     X(Aexists_by_name)                                                                             \
-    X(Aget_space) X(Aget_type) X(Aopen_by_name) X(Aread) X(Awrite) X(Dclose) X(Dcreate2)           \
-        X(Dget_space) X(Dget_type) X(Dopen2) X(Dread) X(Dwrite) X(Eset_auto2) X(Fclose) X(Fcreate) \
-            X(Fflush) X(Fget_file_image) X(Fopen) X(Gclose) X(Gcreate2) X(Iget_type) X(Lexists)    \
+    X(Aget_space)                                                                                  \
+    X(Aget_type) X(Aopen_by_name) X(Aread) X(Awrite) X(Dclose) X(Dcreate2) X(Dget_space)           \
+        X(Dget_type) X(Dopen2) X(Dread) X(Dwrite) X(Eset_auto2) X(Fclose) X(Fcreate) X(Fflush)     \
+            X(Fget_file_image) X(Fopen) X(Gclose) X(Gcreate2) X(Iget_type) X(Lexists)              \
                 X(Literate_by_name) X(Oclose) X(Oexists_by_name) X(Oopen) X(Pclose) X(Pcreate)     \
                     X(Pset_fapl_core) X(Pset_obj_track_times) X(Sclose) X(Screate)                 \
                         X(Screate_simple) X(Sget_simple_extent_dims) X(Sget_simple_extent_ndims)   \
@@ -27,8 +28,8 @@
     X(P_CLS_DATASET_CREATE_ID_g)                                                                   \
     X(P_CLS_FILE_ACCESS_ID_g)                                                                      \
     X(T_C_S1_g)                                                                                    \
-    X(T_NATIVE_DOUBLE_g) X(T_NATIVE_INT_g) X(T_NATIVE_SCHAR_g) X(T_NATIVE_UINT_g)                  \
-        X(T_NATIVE_UINT64_g)
+    X(T_NATIVE_DOUBLE_g)                                                                           \
+    X(T_NATIVE_INT_g) X(T_NATIVE_SCHAR_g) X(T_NATIVE_UINT_g) X(T_NATIVE_UINT64_g)
 
 /* h5.Fopen is H5Fopen. */
 struct h5 {

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "list.h"
+#include "places.h"
 
 enum { N = PIECES_NODES, TAIL = N / 4, LEAVES_MAX = 1 << 15 };
 
@@ -370,7 +371,9 @@ enum status pieces_find(struct pieces *pieces, const struct kernel *kernel, int 
             refine(pieces, pieces->edge[i - 1], pieces->edge[i], pieces->edge[i + 1], 1. / 128,
                    &pieces->doubt[i]);
     find_noise(pieces);
-    return STATUS_OK;
+    const enum status status = places_find(pieces, error);
+    if (status) pieces_free(pieces);
+    return status;
 }
 
 void pieces_free(struct pieces *pieces)
@@ -378,6 +381,7 @@ void pieces_free(struct pieces *pieces)
     free(pieces->edge);
     free(pieces->declared);
     free(pieces->doubt);
+    free(pieces->places);
     *pieces = (struct pieces){0};
 }
 

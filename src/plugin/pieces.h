@@ -46,6 +46,8 @@ struct pieces {
     double max_w, max_dw;     /* largest |w|, |dw| found in [0, 1] */
     double noise_w, noise_dw; /* noise of the series: round-off of the evaluation */
     double grain;             /* typical relative error of w, in units of max_w */
+    double *places;           /* place_count, increasing; see places.h */
+    int place_count;
     struct pieces_first first[PIECES_FIRST];
     double node[PIECES_NODES];                 /* of a series, on ]-1, 1[ */
     double cosine[PIECES_NODES][PIECES_NODES]; /* T_k(node j) at [j][k] */

@@ -45,35 +45,28 @@ static int make_centres(const struct pieces *pieces, double *centre)
     return distinct(centre, n);
 }
 
-void places_make(struct places *places, const struct pieces *pieces)
+enum status places_find(struct pieces *pieces, struct error *error)
 {
     const size_t room = (size_t)pieces->n + 1 + DECIMALS + DENOMINATORS * DENOMINATORS +
                         3 * (size_t)pieces->terms.constant_count;
     const size_t each = 1 + 2 * (DIGITS_TO - DIGITS_FROM + 1);
     double *centre = malloc(room * sizeof *centre);
-    *places = (struct places){.q = malloc(room * each * sizeof *places->q)};
-    if (centre && places->q) {
-        places->centres = make_centres(pieces, centre);
-        for (int i = 0; i < places->centres; i++) {
-            double *q = places->q + places->n;
-            int n = 0;
-            q[n++] = centre[i];
-            for (int digit = DIGITS_FROM; digit <= DIGITS_TO; digit++) {
-                q[n++] = centre[i] + pow(10, -digit);
-                q[n++] = fabs(centre[i] - pow(10, -digit));
-            }
-            places->n += n;
+    double *q = pieces->places = malloc(room * each * sizeof *q);
+    const int centres = centre && q ? make_centres(pieces, centre) : 0;
+    int n = 0;
+    for (int i = 0; i < centres; i++) {
+        q[n++] = centre[i];
+        for (int digit = DIGITS_FROM; digit <= DIGITS_TO; digit++) {
+            q[n++] = centre[i] + pow(10, -digit);
+            q[n++] = fabs(centre[i] - pow(10, -digit));
         }
-        places->n = distinct(places->q, places->n);
-        while (places->n && places->q[places->n - 1] >= 1) places->n--;
     }
     free(centre);
-}
-
-void places_free(struct places *places)
-{
-    free(places->q);
-    *places = (struct places){0};
+    if (!centres) return error_set(error, STATUS_ENVIRONMENT, "no memory for places");
+    n = distinct(q, n);
+    while (q[n - 1] >= 1) n--; /* 0 is the first */
+    pieces->place_count = n;
+    return STATUS_OK;
 }
 
 /* Stores the absolute value, since a compiler may add the negative of what the source subtracts. */

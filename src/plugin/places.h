@@ -7,14 +7,8 @@
 
 #include "pieces.h"
 
-struct places {
-    double *q; /* n, increasing */
-    int n, centres;
-};
-
-/* n = 0 if there is no memory. Free with places_free. */
-void places_make(struct places *places, const struct pieces *pieces);
-void places_free(struct places *places);
+/* Finds the places of these pieces, which own them, for pieces_find. STATUS_ENVIRONMENT: no memory. */
+enum status places_find(struct pieces *pieces, struct error *error);
 
 /* The i-th random number in [0, 1[ of the sequence for seed (splitmix64, Steele et al. 2014). */
 double places_random(uint64_t seed, uint64_t i);

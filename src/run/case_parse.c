@@ -543,7 +543,7 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
     struct error reason;
     if (problem_prepare(&problem, &trial, file->dimension, &reason) ||
         settings_scheme(&trial, file->dimension, &scheme, &reason))
-        return error_set(error, STATUS_BAD_INPUT, "%.160s: %.340s", path, reason.message);
+        return error_set(error, reason.status, "%.160s: %.340s", path, reason.message);
     return check_fields(&parser, problem.problem);
 }
 

@@ -30,7 +30,10 @@ enum status mode_prepare(struct prepared *p, const struct layer *layer, const do
     const double amplitude = settings_real(settings, SETTING_amplitude);
     const char *fault = layer_fault(layer);
     if (fault) return error_set(error, STATUS_BAD_INPUT, "%s", fault);
-    if (!layer_mode_find(layer, &start->mode))
+    const bool found = layer_mode_find(layer, &start->mode);
+    if (!found && isnan(creal(start->mode.omega)))
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for a mode");
+    if (!found)
         return error_set(error, STATUS_BAD_INPUT,
                          "waves=%g: no mode of %g waves in the box grows in a layer of width %g",
                          settings_real(settings, SETTING_waves),

@@ -95,9 +95,13 @@ static enum status write_results(const struct suite *suite, const struct options
     const char *junit = options_value(options, "junit");
     enum status status = junit ? suite_output_junit(suite, junit, error) : STATUS_OK;
     if (status || !options->json) return status;
-    json_t *document = result_new("verify");
+    json_t *document = result_new("verify"), *failures = headline_list(suite);
     suite_output_json(suite, document);
-    json_object_set_new(document, "failures", headline_list(suite));
+    json_object_set_new(document, "failures", failures);
+    if (!failures) {
+        json_decref(document);
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for the failures");
+    }
     return options_write(options, document, error);
 }
 

@@ -214,28 +214,31 @@ void judge_sum(const struct prepared *problem, const struct snapshot *s, const d
 /* Sums over the snapshot and over the particles that a run of the case would start with in this
  * box, on the case's own lattice. A case that starts from a glass has no sums of the start, because
  * a glass takes long to make. */
-static void measure_sums(struct judged *judged)
+static enum status measure_sums(struct judged *judged, struct error *error)
 {
     const struct prepared *p = &judged->run.problem;
     const struct snapshot *s = &judged->result.snapshot;
     struct run_settings plain = judged->run.asked;
     struct initial initial = {0};
-    struct error ignored = {0};
+    struct error reason = {0};
     struct run start;
     double x[3] = {0}, v[3] = {0};
     judge_sum(p, s, x, &judged->sums);
     if (!judged->boxed || p->problem->liquid)
-        return; /* plates and viscosity change the sums of a liquid */
+        return STATUS_OK; /* plates and viscosity change the sums of a liquid */
     plain.settings.value[SETTING_lattice] = plain.file.settings.value[SETTING_lattice];
     plain.settings.value[SETTING_equal_masses] = plain.file.settings.value[SETTING_equal_masses];
-    if (!run_resolve(&start, &plain, &ignored) &&
+    if (!run_resolve(&start, &plain, &reason) &&
         settings_choice(&start.settings, SETTING_lattice) != LATTICE_GLASS &&
-        !initial_create(&initial, &start.problem, &start.settings, &ignored))
+        !initial_create(&initial, &start.problem, &start.settings, &reason))
         for (size_t i = 0; i < initial.n; i++) {
             for (int d = 0; d < p->domain.dim; d++) x[d] = initial.x[d][i], v[d] = initial.v[d][i];
             add_to_sums(p, x, v, initial.m[i], initial.u[i], 0, &judged->start);
         }
     initial_free(&initial);
+    return reason.status == STATUS_ENVIRONMENT
+               ? error_set(error, reason.status, "%.200s: %.280s", judged->path, reason.message)
+               : STATUS_OK;
 }
 
 /* Rms velocity across x in planar flows, in the radial direction in circular ones. */
@@ -471,7 +474,7 @@ static bool wrong_mass(const struct judged *judged)
 static enum status measure_start(struct judged *judged, bool glance, struct error *error)
 {
     struct judge_start *start = &judged->of_start;
-    measure_sums(judged);
+    if (measure_sums(judged, error)) return error->status;
     const double ratio =
         judged->start.mass > 0 ? judged->sums.mass / judged->start.mass : (double)NAN;
     if (glance) return STATUS_OK;

@@ -7,7 +7,6 @@
 
 #include <gsl/gsl_errno.h>
 
-#include "places.h"
 
 struct certificate_sink {
     struct property_sink sink;
@@ -39,7 +38,6 @@ static void measure_lattices(struct certificate *certificate)
 enum status certificate_measure(struct certificate *certificate, const struct kernel *kernel,
                                 int dim, const struct terms *terms, struct error *error)
 {
-    struct places places;
     *certificate = (struct certificate){.kernel = kernel, .dim = dim};
     if (pieces_find(&certificate->pieces, kernel, dim, terms, error) ||
         measure_spectrum_make(&certificate->spectrum, &certificate->pieces, error)) {
@@ -48,9 +46,6 @@ enum status certificate_measure(struct certificate *certificate, const struct ke
     }
     certificate->terms = certificate->pieces.terms;
     certificate->looks_single = pieces_look_single(&certificate->pieces);
-    places_make(&places, &certificate->pieces);
-    certificate->places = places.n;
-    places_free(&places);
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
     measure_moments(&certificate->pieces, &certificate->moments);
     measure_class(&certificate->pieces, &certificate->class);

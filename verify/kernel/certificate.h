@@ -23,7 +23,6 @@ struct certificate {
     struct measure_fourier fourier;
     struct terms terms;
     bool looks_single;
-    int places;     /* number of likely places of faults that were tested */
     double pairing; /* see measure_pairing */
     struct {        /* lattice sums against width: multiples of the mean spacing */
         double eta, density, gradient;

@@ -121,7 +121,7 @@ static void print_resolution(const struct certificate *c, FILE *stream)
             "dW/dh at %ld\n"
             "random h from 1e-%d to 1e%d. A fault narrower than %.2g in q that begins at none of "
             "these places may be missed.\n",
-            c->terms.samples, width, (unsigned long long)c->terms.seed, c->places,
+            c->terms.samples, width, (unsigned long long)c->terms.seed, c->pieces.place_count,
             c->terms.samples / 4, decades, decades, 2 * width);
 }
 
@@ -189,9 +189,10 @@ static json_t *resolution_json(const struct certificate *c)
 {
     const double decades = c->terms.single ? 6 : 30;
     return json_pack("{s:I, s:o, s:i, s:I, s:[f,f], s:I}", "samples", (json_int_t)c->terms.samples,
-                     "width", result_number(2. / (double)c->terms.samples), "places", c->places,
-                     "widths", (json_int_t)(c->terms.samples / 4), "width_range", pow(10, -decades),
-                     pow(10, decades), "seed", (json_int_t)c->terms.seed);
+                     "width", result_number(2. / (double)c->terms.samples), "places",
+                     c->pieces.place_count, "widths", (json_int_t)(c->terms.samples / 4),
+                     "width_range", pow(10, -decades), pow(10, decades), "seed",
+                     (json_int_t)c->terms.seed);
 }
 
 void certificate_json(const struct certificate *c, double h, json_t *document)

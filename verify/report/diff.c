@@ -157,19 +157,17 @@ static bool says_broke_down(const struct metric *metric)
 static void leave_out_broken(struct diff *diff)
 {
     struct difference *list = diff->list;
-    bool *out = calloc(diff->count + 1, sizeof *out);
-    for (size_t i = 0; out && i < diff->count; i++) {
+    for (size_t i = 0; i < diff->count; i++) {
         if (!says_broke_down(list[i].old) && !says_broke_down(list[i].new)) continue;
         const char *path = path_of(&list[i]);
         const size_t object = object_length(path);
         for (size_t k = 0; k < diff->count; k++)
-            if (!out[k] && within(path, object, path_of(&list[k]))) out[k] = true;
+            list[k].broken = list[k].broken || within(path, object, path_of(&list[k]));
     }
     size_t kept = 0;
-    for (size_t i = 0; out && i < diff->count; i++)
-        if (!out[i]) list[kept++] = list[i];
-    if (out) diff->left_out = diff->count - kept, diff->count = kept;
-    free(out);
+    for (size_t i = 0; i < diff->count; i++)
+        if (!list[i].broken) list[kept++] = list[i];
+    diff->left_out = diff->count - kept, diff->count = kept;
 }
 
 static void leave_out_times(struct diff *diff)

@@ -14,6 +14,7 @@ struct difference {
     enum metric_verdict verdict;
     double amount; /* see metric_judge */
     bool regression;
+    bool broken; /* a figure of a run that broke down */
 };
 
 struct diff {

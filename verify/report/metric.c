@@ -49,8 +49,9 @@ static void add(struct metrics *metrics, struct metric metric, const char *path)
         metrics->room = room;
     }
     metric.path = strdup(path);
-    metric.word = metric.word ? strdup(metric.word) : NULL;
-    if (!metric.path) metrics->failed = true;
+    const char *word = metric.word;
+    metric.word = word ? strdup(word) : NULL;
+    if (!metric.path || (word && !metric.word)) metrics->failed = true;
     metric.number = metrics->count;
     metrics->list[metrics->count++] = metric;
 }

@@ -4,6 +4,7 @@
  * after cmocka.h, in tests of meson.build's list `wraps`. */
 #pragma once
 
+#include <errno.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 
@@ -16,7 +17,9 @@ static int spared; /* number of calls that may fail without an error */
 
 static bool fails(void)
 {
-    return left >= 0 && left-- == 0;
+    const bool now = left >= 0 && left-- == 0;
+    if (now) errno = ENOMEM;
+    return now;
 }
 
 /* WRAP(name, parameters, arguments, new) defines the function that the linker calls in place of
@@ -47,7 +50,7 @@ void __wrap_free(void *memory)
 
 /* Lets each call for memory of `work` fail once: `work` must return the error, and free all blocks.
  * There must be at least `least` calls; if not `all`, later calls need not be errors. */
-static void without_memory(enum status work(struct error *error), int least, bool all)
+static inline void without_memory(enum status work(struct error *error), int least, bool all)
 {
     for (int k = 0;; k++) {
         struct error error = {0};

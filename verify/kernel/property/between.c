@@ -110,12 +110,7 @@ static void look_at_random(struct walk *walk)
 
 static void look_at_places(struct walk *walk)
 {
-    struct places places;
-    places_make(&places, walk->pieces);
-    for (int i = 0; i < places.n; i++) look(walk, places.q[i]);
-    if (!places.n)
-        property_keep(walk->value, (double)NAN, 0, 0, "no memory for the places to look at");
-    places_free(&places);
+    for (int i = 0; i < walk->pieces->place_count; i++) look(walk, walk->pieces->places[i]);
 }
 
 void property_between(const struct pieces *pieces, struct property_sink *sink)

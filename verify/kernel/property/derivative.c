@@ -103,14 +103,11 @@ static void compare_formula(const struct pieces *pieces, struct property_sink *s
     const struct terms *terms = &pieces->terms;
     const double decades = terms->single ? 6 : 30;
     struct property_worst random = {0}, likely = {0};
-    struct places places;
     for (uint64_t i = 0; i < (uint64_t)terms->samples / 4; i++)
         compare_at(pieces, places_random(terms->seed, 2 * i),
                    pow(10, decades * (2 * places_random(terms->seed, 2 * i + 1) - 1)), &random);
     property_take_worst(sink, &random);
-    places_make(&places, pieces);
-    for (int i = 0; i < places.n; i++) compare_at(pieces, places.q[i], 1, &likely);
-    places_free(&places);
+    for (int i = 0; i < pieces->place_count; i++) compare_at(pieces, pieces->places[i], 1, &likely);
     property_take_worst(sink, &likely);
 }
 
