@@ -311,5 +311,4 @@ def main():
     sys.exit(failed > 0)
 
 
-if __name__ == "__main__":
-    main()
+main()

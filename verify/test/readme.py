@@ -33,6 +33,10 @@ def keys(program, readme):
     whole = whole.split("\nkeys: ")[1].split("\ncode_keys: ")[0].splitlines()[1:]
     if not [k["name"] for k in keys_] == [line.split()[0] for line in whole] == re.findall(r"^\| `?(\w+)", table, flags=re.M)[1:]:
         sys.exit("sphproof list keys: not the same keys in the table, the document and the list of everything")
+    helped = subprocess.run([program, "help", "list"], capture_output=True, text=True, check=True).stdout
+    whole = json.loads(subprocess.run([program, "list", "--json", "-"], capture_output=True, text=True, check=True).stdout)
+    if helped.split("FAMILY: ")[1].split("\n\n")[0].split() != list(whole["families"]):
+        sys.exit("sphproof help list: other families than those of its document")
     for key in keys_:
         if " ".join(key["label"].split()) not in said or "| %s | %s |" % (key["allowed"], key["label"]) not in table:
             sys.exit("sphproof list keys: what %s means is cut" % key["name"])

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""studies.py SPHPROOF: `sphproof converge` with a cache, from outside: any number of jobs, a second time, damaged
-entries, kill -9 in the middle, two at once, other mathematical functions; its progress in a log and on a terminal."""
+"""studies.py SPHPROOF: `sphproof converge` with a cache on a processor with other mathematics; its progress on a terminal;
+what is deleted from a cache by its age. (Damaged entries, kill -9 and two at once: test_cache, faults.py; cold and warm: exits.py.)"""
 import glob
 import json
 import os
 import pty
-import signal
 import subprocess
 import sys
 import time
@@ -14,92 +13,13 @@ from script import call, expect, play, program
 
 QUICK = ["converge", "sod", "--n", "40,60,80,120", "t_end=0.1", "--vary", "gradient",
          "--replicates", "1"]
-# long enough to be killed in the middle: a run takes half a second and more
+# long enough for its progress to be shown: half a second a run and more
 LONG = ["converge", "sod", "--n", "100,140,200,6400", "t_end=0.1", "kernel=wendland_c6", "eta=9", "skip=none",
         "integrator=rk3", "volume_element=energy", "--replicates", "1"]
 
 
-def study(*words):
-    """Exit status, document without its date, error output."""
-    done = call(*words, "--json", "-")
-    found = json.loads(done.stdout) if done.stdout else {}
-    found.pop("date", None)
-    return done.returncode, found, done.stderr
-
-
-def without_times(found):
-    for level in found.get("levels", ()):
-        level.pop("cpu_s", None)
-    return found
-
-
 def entries():
     return glob.glob("cache/*/*")
-
-
-def test_cache():
-    _, alone, _ = study(*QUICK)
-    _, first, _ = study(*QUICK, "--cache", "cache", "--jobs", "2")
-    expect("entries", len(entries()) == 8, entries())
-    before = {name: os.stat(name).st_mtime_ns for name in entries()}
-    inodes = {name: os.stat(name).st_ino for name in entries()}
-    _, second, _ = study(*QUICK, "--cache", "cache")
-    expect("a second time, times and all", first == second)
-    expect("written again", inodes == {name: os.stat(name).st_ino for name in entries()}, before)
-    expect("jobs and cache", without_times(alone) == without_times(first))
-    for damage in (lambda text: text[: len(text) // 2], lambda text: text[:-1], lambda text: b"",
-                   lambda text: text.replace(b'"l1":', b'"l1": ', 1),
-                   lambda text: text[:300] + bytes([text[300] ^ 1]) + text[301:]):
-        name = entries()[3]
-        with open(name, "rb") as file:
-            text = file.read()
-        with open(name, "wb") as file:
-            file.write(damage(text))
-        _, again, stderr = study(*QUICK, "--cache", "cache", "--jobs", "3")
-        expect("a damaged entry", without_times(again) == without_times(alone), stderr)
-        with open(name, "rb") as file:
-            expect("a damaged entry, mended", len(file.read()) > 300)
-    status, _, stderr = study(*QUICK, "--cache", "/dev/null/cache")
-    expect("no place for a cache", status == 4 and "/dev/null" in stderr, stderr)
-
-
-def test_kill():
-    for name in entries():
-        os.remove(name)
-    running = subprocess.Popen([program, *LONG, "--cache", "cache", "--quiet", "--jobs", "2"], start_new_session=True)
-    for _ in range(1000):
-        if len([name for name in entries() if name.endswith(".entry")]) >= 3 or running.poll() is not None:
-            break
-        time.sleep(0.01)
-    expect("nothing to kill", running.poll() is None)
-    os.killpg(running.pid, signal.SIGKILL)
-    running.wait()
-    whole = [name for name in entries() if name.endswith(".entry")]
-    expect("entries after kill -9", len(whole) == 3, entries())
-    inodes = {name: os.stat(name).st_ino for name in whole}
-    status, resumed, stderr = study(*LONG, "--cache", "cache")
-    expect("resumed", status in (0, 1) and len(resumed["levels"]) == 4, stderr)
-    expect("computed twice", inodes == {name: os.stat(name).st_ino for name in whole})
-    _, alone, said = study(*LONG, "--jobs", "2")
-    expect("resumed, other results", without_times(resumed) == without_times(alone))
-    expect("progress in a log", "\r" not in said and "\033" not in said, said)
-
-
-def test_two_at_once():
-    for name in entries():
-        os.remove(name)
-    both = [subprocess.Popen([program, *QUICK, "--cache", "cache", "--jobs", "2", "--json", "%d.json" % i],
-                             stdout=subprocess.DEVNULL) for i in range(2)]
-    for one in both:
-        one.wait()
-    _, alone, _ = study(*QUICK)
-    for i in range(2):
-        with open("%d.json" % i, encoding="utf-8") as file:
-            document = json.load(file)
-        document.pop("date", None)
-        expect("two at once", without_times(document) == without_times(dict(alone)))
-    expect("two at once, entries", len(entries()) == 8 and all(n.endswith(".entry") for n in entries()),
-           entries())
 
 
 BITS = "import math\n"\
@@ -111,6 +31,8 @@ def test_mathematics():
     """Results are not taken from a cache of a machine where sin, exp and pow have other last bits."""
     usual = subprocess.run([sys.executable, "-c", BITS], capture_output=True).stdout
     kept = []
+    said = call(*QUICK, "--cache", "cache").stderr
+    expect("progress in a log", "\r" not in said and "\033" not in said, said)
     for words in ("", "-AVX2,-FMA", "-AVX2_Usable,-FMA_Usable"):
         other = dict(os.environ, GLIBC_TUNABLES="glibc.cpu.hwcaps=" + words) if words else dict(os.environ)
         bits = subprocess.run([sys.executable, "-c", BITS], capture_output=True, env=other).stdout
@@ -168,4 +90,4 @@ def test_prune():
         expect("entries not used for %s days" % days, len(entries()) == left and found["removed"] == 8 - left, found)
 
 
-play(test_cache, test_kill, test_two_at_once, test_mathematics, test_progress, test_colors, test_prune)
+play(test_mathematics, test_progress, test_colors, test_prune)
