@@ -20,13 +20,11 @@ static const double bound = 0.01;
 /* Runs of every kernel with one gradient in one dimension, from few neighbours to many. */
 static const struct crowd {
     int dim;
-    bool nightly; /* only at night; other crowds run day and night */
     const char *gradient, *case_name;
-    const char *day, *night; /* sizes */
-    int by_day[LADDER_MAX + 1], by_night[LADDER_MAX + 1];
+    const char *day, *night;                              /* sizes */
+    int by_day[LADDER_MAX + 1], by_night[LADDER_MAX + 1]; /* numbers of neighbours; 0 ends */
 } crowds[] = {
     {2,
-     false,
      "standard",
      "rest_2d",
      "n=16^2 t_end=3",
@@ -34,7 +32,6 @@ static const struct crowd {
      {16, 36, 54, 80, 110},
      {12, 16, 20, 24, 30, 36, 44, 54, 66, 80, 110, 140}},
     {3,
-     false,
      "standard",
      "rest_3d",
      "n=8^3 t_end=1.5",
@@ -42,15 +39,14 @@ static const struct crowd {
      {60, 100, 160},
      {40, 60, 80, 110, 160, 220, 320, 450}},
     {2,
-     false,
      "ia",
      "rest_2d",
      "n=16^2 t_end=3",
      "n=32^2 t_end=8",
      {36, 54, 80, 110},
      {16, 20, 24, 30, 36, 44, 54, 66, 80, 110, 140}},
-    {3, true, "ia", "rest_3d", "", "n=13^3 t_end=3", {0}, {60, 110, 160, 220, 320, 450}},
-    {2, true, "corrected", "rest_2d", "", "n=32^2 t_end=8", {0}, {16, 24, 36, 54, 80, 110, 140}},
+    {3, "ia", "rest_3d", "", "n=13^3 t_end=3", {0}, {60, 110, 160, 220, 320, 450}},
+    {2, "corrected", "rest_2d", "", "n=32^2 t_end=8", {0}, {16, 24, 36, 54, 80, 110, 140}},
 };
 enum { CROWDS = sizeof crowds / sizeof *crowds };
 
@@ -90,7 +86,6 @@ enum status pairing_plan(struct pairing *pairing, bool nightly, struct pool *poo
     for (size_t c = 0; c < CROWDS; c++) {
         const struct crowd *crowd = &crowds[c];
         const int *ladder = nightly ? crowd->by_night : crowd->by_day;
-        if (crowd->nightly && !nightly) continue;
         for (size_t k = 0; k < kernel_family.n; k++)
             for (const int *neighbours = ladder; *neighbours; neighbours++) {
                 struct pairing_run *of = &pairing->runs[pairing->count++];

@@ -193,7 +193,6 @@ static char *last_column(char *line)
 static void add_filtered(struct buffer *to, const char *text)
 {
     bool cpu_column = false;
-    int closed = -1; /* indentation of "asked" and of other objects that grow with every new key */
     char line[LINE_MAX];
     for (const char *next; *text; text = next) {
         size_t length = strcspn(text, "\n");
@@ -202,12 +201,6 @@ static void add_filtered(struct buffer *to, const char *text)
         snprintf(line, sizeof line, "\n%.*s", (int)length, text);
         /* progress reports of a slow machine */
         if (strstr(line, " s left") || strstr(line, " (0 %), ")) continue;
-        const int indentation = (int)strspn(line + 1, " ");
-        if (closed >= 0) {
-            if (indentation == closed) closed = -1;
-            continue;
-        }
-        if (strstr(line, "\"settings\": {") || strstr(line, "\"plan\": [")) closed = indentation;
         for (size_t k = 0; k < sizeof left_out / sizeof *left_out; k++) {
             char *at = strstr(line, left_out[k]);
             if (!at) continue;
