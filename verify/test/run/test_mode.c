@@ -283,22 +283,6 @@ TEST(amplitudes_leave_room_to_grow)
     }
 }
 
-/* Sides of a box that differ by rounding count as equal. */
-TEST(layers_need_a_square)
-{
-    for (int part = -3; part <= 3; part += 2) {
-        char keys[96];
-        snprintf(keys, sizeof keys, "kind=kelvin_helmholtz_mode|lo=0|hi=2 %.17g",
-                 2 + 2 * 0.5e-12 * part);
-        if (abs(part) > 1)
-            prepared_refused(2, keys, "");
-        else
-            made(keys);
-    }
-    /* exactly 1e-12 of a side, which few doubles can be */
-    made("kind=kelvin_helmholtz_mode|lo=0|hi=1.000088900582341 1.000088900583341");
-}
-
 /* Sinuous and varicose modes differ. Without the key gravity is that of the layer. */
 TEST(keys_choose_the_mode)
 {
