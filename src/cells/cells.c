@@ -246,7 +246,7 @@ static bool reserve_images(struct cells_images *images, size_t points)
 }
 
 /* Adds the wall images along one axis of all points so far, including the images of earlier walls,
- * so that corners get theirs. */
+ * so that corners get images, too. */
 static bool mirror(struct cells *cells, size_t n, int axis, double reach)
 {
     struct cells_images *images = &cells->images;

@@ -191,10 +191,10 @@ static struct pressure find_pressure(const struct cells_method *method, const st
     if (method->formulation == FORMULATION_VANILLA_ICE)
         return (struct pressure){
             .own = {.V = *pairs_own(pairs, RECORD_VOLUME), .P = *pairs_own(pairs, RECORD_PRESSURE)},
-            .V = pairs_theirs(pairs, RECORD_VOLUME),
-            .P = pairs_theirs(pairs, RECORD_PRESSURE)};
+            .V = pairs_others(pairs, RECORD_VOLUME),
+            .P = pairs_others(pairs, RECORD_PRESSURE)};
     const double *own = pairs_own(pairs, RECORD_LAGRANGIAN),
-                 *b = pairs_theirs(pairs, RECORD_LAGRANGIAN), *grad_h = b + pairs->lanes->stride,
+                 *b = pairs_others(pairs, RECORD_LAGRANGIAN), *grad_h = b + pairs->lanes->stride,
                  *Z = grad_h + pairs->lanes->stride;
     return (struct pressure){
         .own = {.b = own[0],
@@ -204,7 +204,7 @@ static struct pressure find_pressure(const struct cells_method *method, const st
         .b = b,
         .grad_h = grad_h,
         .Z = Z,
-        .m = method->number ? Z : pairs_theirs(pairs, RECORD_WEIGHT)};
+        .m = method->number ? Z : pairs_others(pairs, RECORD_WEIGHT)};
 }
 
 /* Adds force, energy rate and signal speed of all neighbours in the lanes. With vanilla_ice both
@@ -225,9 +225,9 @@ ALWAYS_INLINE void add_body(enum formulation formulation, int dim, enum energy e
                            *restrict G_j = lane(lanes, LANE_GX_J),
                            *restrict r = lane(lanes, LANE_R),
                            *restrict closing = lane(lanes, LANE_CLOSING),
-                           *restrict v = pairs_theirs(pairs, RECORD_VELOCITY),
-                           *restrict c = pairs_theirs(pairs, RECORD_SOUND),
-                           *restrict h_inverse = pairs_theirs(pairs, RECORD_H_INVERSE);
+                           *restrict v = pairs_others(pairs, RECORD_VELOCITY),
+                           *restrict c = pairs_others(pairs, RECORD_SOUND),
+                           *restrict h_inverse = pairs_others(pairs, RECORD_H_INVERSE);
     double *restrict reaction = lane(lanes, LANE_REACTION);
     const double *own_v = pairs_own(pairs, RECORD_VELOCITY);
     const double own_c = *pairs_own(pairs, RECORD_SOUND),
@@ -505,8 +505,8 @@ CLONES static double find_signal(const struct pairs *pairs)
 {
     const struct lanes *lanes = pairs->lanes;
     const double *restrict r = lane(lanes, LANE_R), *restrict closing = lane(lanes, LANE_CLOSING),
-                           *restrict c = pairs_theirs(pairs, RECORD_SOUND),
-                           *restrict h_inverse = pairs_theirs(pairs, RECORD_H_INVERSE);
+                           *restrict c = pairs_others(pairs, RECORD_SOUND),
+                           *restrict h_inverse = pairs_others(pairs, RECORD_H_INVERSE);
     const double own_c = *pairs_own(pairs, RECORD_SOUND),
                  own_h_inverse = *pairs_own(pairs, RECORD_H_INVERSE);
     struct signals signals = {{0}, {0}};

@@ -9,17 +9,17 @@
 
 /* q with h_i and with h_j; if the pair has one common h, q is for this h and q_j holds 1/h. */
 CLONES static void widths(enum pair_width width, int count, const double *restrict r,
-                          double h_inverse, const double *restrict theirs, double *restrict q,
+                          double h_inverse, const double *restrict others, double *restrict q,
                           double *restrict q_j)
 {
 #pragma omp simd
     for (int k = 0; k < count; k++) {
         if (width == PAIR_WIDTH_MEAN) {
             q[k] = r[k] * h_inverse;
-            q_j[k] = r[k] * theirs[k];
+            q_j[k] = r[k] * others[k];
         } else {
-            const double both = width == PAIR_WIDTH_MAX ? least(h_inverse, theirs[k])
-                                                        : 0.5 * (h_inverse + theirs[k]);
+            const double both = width == PAIR_WIDTH_MAX ? least(h_inverse, others[k])
+                                                        : 0.5 * (h_inverse + others[k]);
             q[k] = r[k] * both;
             q_j[k] = both;
         }
@@ -33,15 +33,15 @@ ALWAYS_INLINE double power(double x, int n)
     return y;
 }
 
-/* Replaces w'(q) by s = C h^-(d+1) w'(q)/r (negative). theirs: 1/h of each pair; NULL: h_inverse
+/* Replaces w'(q) by s = C h^-(d+1) w'(q)/r (negative). others: 1/h of each pair; NULL: h_inverse
  * for all. */
 CLONES static void standard_sizes(int dim, int count, double constant, double h_inverse,
-                                  const double *restrict theirs, const double *restrict r_inverse,
+                                  const double *restrict others, const double *restrict r_inverse,
                                   double *restrict dw)
 {
 #pragma omp simd
     for (int k = 0; k < count; k++) {
-        const double inverse = theirs ? theirs[k] : h_inverse;
+        const double inverse = others ? others[k] : h_inverse;
         dw[k] =
             constant * (dim == 2 ? power(inverse, 3) : power(inverse, 4)) * dw[k] * r_inverse[k];
     }
@@ -50,7 +50,7 @@ CLONES static void standard_sizes(int dim, int count, double constant, double h_
 /* The mean of the gradients at h_i and h_j in one loop, from w'(q_i) and w'(q_j); vanilla_ice needs
  * nothing else. */
 ALWAYS_INLINE void standard_means_body(int dim, int count, double constant, double h_inverse,
-                                       const double *restrict theirs, const struct lanes *lanes)
+                                       const double *restrict others, const struct lanes *lanes)
 {
     const ptrdiff_t stride = lanes->stride;
     const double *restrict x = lane(lanes, LANE_DX),
@@ -61,19 +61,19 @@ ALWAYS_INLINE void standard_means_body(int dim, int count, double constant, doub
     const double own = constant * power(h_inverse, dim + 1);
 #pragma omp simd
     for (int k = 0; k < count; k++) {
-        const double other = constant * (dim == 2 ? power(theirs[k], 3) : power(theirs[k], 4));
+        const double other = constant * (dim == 2 ? power(others[k], 3) : power(others[k], 4));
         const double s = 0.5 * (own * dw[k] * r_inverse[k] + other * dw_j[k] * r_inverse[k]);
         for (int a = 0; a < dim; a++) G[a * stride + k] = s * x[a * stride + k];
     }
 }
 
 CLONES static void standard_means(int dim, int count, double constant, double h_inverse,
-                                  const double *restrict theirs, const struct lanes *lanes)
+                                  const double *restrict others, const struct lanes *lanes)
 {
     if (dim == 2)
-        standard_means_body(2, count, constant, h_inverse, theirs, lanes);
+        standard_means_body(2, count, constant, h_inverse, others, lanes);
     else
-        standard_means_body(3, count, constant, h_inverse, theirs, lanes);
+        standard_means_body(3, count, constant, h_inverse, others, lanes);
 }
 
 /* Replaces w(q) by the matrix weight, computed from w'(q). */
@@ -107,9 +107,9 @@ CLONES static void along(int count, const double *restrict s, const double *rest
 }
 
 /* Arguments of matrix_along: lanes, and the matrices of the particle (own) and of its neighbours
- * (theirs). */
+ * (others). */
 struct by_matrices {
-    const double *x, *w, *w_j, *own, *theirs;
+    const double *x, *w, *w_j, *own, *others;
     double *G, *G_i, *G_j;
     ptrdiff_t stride;
 };
@@ -118,7 +118,7 @@ struct by_matrices {
  * `both`. The caller writes out the axes: nested loops would not be vectorised. */
 ALWAYS_INLINE void matrix_along(int dim, bool both, int a, ptrdiff_t n, const struct by_matrices *m)
 {
-    const double *restrict x = m->x, *restrict C = m->theirs, *restrict w = m->w,
+    const double *restrict x = m->x, *restrict C = m->others, *restrict w = m->w,
                            *restrict w_j = m->w_j;
     double *restrict G = m->G, *restrict G_i = m->G_i, *restrict G_j = m->G_j;
     const ptrdiff_t stride = m->stride;
@@ -140,13 +140,13 @@ ALWAYS_INLINE void matrix_along(int dim, bool both, int a, ptrdiff_t n, const st
 
 /* Negative matrix gradients along all axes. */
 ALWAYS_INLINE void matrix_body(int dim, bool both, int count, const struct lanes *lanes,
-                               const double *own, const double *theirs)
+                               const double *own, const double *others)
 {
     const struct by_matrices m = {.x = lane(lanes, LANE_DX),
                                   .w = lane(lanes, LANE_W),
                                   .w_j = lane(lanes, LANE_W_J),
                                   .own = own,
-                                  .theirs = theirs,
+                                  .others = others,
                                   .G = lane(lanes, LANE_GX),
                                   .G_i = lane(lanes, LANE_GX_I),
                                   .G_j = lane(lanes, LANE_GX_J),
@@ -160,16 +160,16 @@ ALWAYS_INLINE void matrix_body(int dim, bool both, int count, const struct lanes
 }
 
 CLONES static void by_matrix(int dim, bool both, int count, const struct lanes *lanes,
-                             const double *own, const double *theirs)
+                             const double *own, const double *others)
 {
     if (dim == 2 && both)
-        matrix_body(2, true, count, lanes, own, theirs);
+        matrix_body(2, true, count, lanes, own, others);
     else if (dim == 2)
-        matrix_body(2, false, count, lanes, own, theirs);
+        matrix_body(2, false, count, lanes, own, others);
     else if (both)
-        matrix_body(3, true, count, lanes, own, theirs);
+        matrix_body(3, true, count, lanes, own, others);
     else
-        matrix_body(3, false, count, lanes, own, theirs);
+        matrix_body(3, false, count, lanes, own, others);
 }
 
 /* Number of positive values. */
@@ -190,14 +190,14 @@ CLONES static void mean(int count, const double *restrict a, const double *restr
 
 /* Weight of the standard gradient for each pair: 1 if either matrix is unusable, otherwise the mean
  * of the particles' weights (NULL: 0). */
-CLONES static void standard_shares(int count, double own, const double *restrict theirs,
+CLONES static void standard_shares(int count, double own, const double *restrict others,
                                    double own_share, const double *restrict shares,
                                    double *restrict part)
 {
 #pragma omp simd
     for (int k = 0; k < count; k++) {
         const double mean_share = shares ? 0.5 * (own_share + shares[k]) : 0;
-        part[k] = least(own, theirs[k]) > 0 ? mean_share : 1;
+        part[k] = least(own, others[k]) > 0 ? mean_share : 1;
     }
 }
 
@@ -217,14 +217,14 @@ static void pair_shapes(const struct cells *cells, const struct pairs *pairs, bo
     const struct shapes *shapes = &cells->shapes;
     const struct lanes *lanes = pairs->lanes;
     const double h_inverse = *pairs_own(pairs, RECORD_H_INVERSE),
-                 *theirs = pairs_theirs(pairs, RECORD_H_INVERSE), *r = lane(lanes, LANE_R);
+                 *others = pairs_others(pairs, RECORD_H_INVERSE), *r = lane(lanes, LANE_R);
     if (method->pair_width == PAIR_WIDTH_MEAN) {
         (by_w ? shapes->pair_w : shapes->pair_dw)(method->kernel, (size_t)pairs->count, r,
-                                                  h_inverse, theirs, shape, shape_j);
+                                                  h_inverse, others, shape, shape_j);
         return;
     }
     double *q = lane(lanes, LANE_Q);
-    widths(method->pair_width, pairs->count, r, h_inverse, theirs, q, lane(lanes, LANE_Q_J));
+    widths(method->pair_width, pairs->count, r, h_inverse, others, q, lane(lanes, LANE_Q_J));
     (by_w ? shapes->w : shapes->dw)(method->kernel, (size_t)pairs->count, q, shape);
     for (int k = 0; k < pairs->count; k++) shape_j[k] = shape[k];
 }
@@ -237,11 +237,11 @@ static void standard_pair(const struct cells *cells, const struct pairs *pairs)
     const int dim = method->box.dim, count = pairs->count;
     const double C = method->kernel->constant[dim], *r_inverse = lane(lanes, LANE_R_INVERSE),
                  h_inverse = *pairs_own(pairs, RECORD_H_INVERSE),
-                 *theirs = pairs_theirs(pairs, RECORD_H_INVERSE);
+                 *others = pairs_others(pairs, RECORD_H_INVERSE);
     const bool mean_width = method->pair_width == PAIR_WIDTH_MEAN;
     double *q = lane(lanes, LANE_Q), *q_j = lane(lanes, LANE_Q_J), *s = lane(lanes, LANE_W),
            *s_j = lane(lanes, LANE_W_J);
-    widths(method->pair_width, count, lane(lanes, LANE_R), h_inverse, theirs, q, q_j);
+    widths(method->pair_width, count, lane(lanes, LANE_R), h_inverse, others, q, q_j);
     cells->shapes.dw(method->kernel, (size_t)count, q, s);
     standard_sizes(dim, count, C, h_inverse, mean_width ? NULL : q_j, r_inverse, s);
     if (!mean_width) {
@@ -249,7 +249,7 @@ static void standard_pair(const struct cells *cells, const struct pairs *pairs)
         return;
     }
     cells->shapes.dw(method->kernel, (size_t)count, q_j, s_j);
-    standard_sizes(dim, count, C, h_inverse, theirs, r_inverse, s_j);
+    standard_sizes(dim, count, C, h_inverse, others, r_inverse, s_j);
 }
 
 /* All pair gradients with gradient=standard. */
@@ -263,7 +263,7 @@ static void standard_gradients(const struct cells *cells, const struct pairs *pa
     if (!both && method->pair_width == PAIR_WIDTH_MEAN) {
         pair_shapes(cells, pairs, false, w, w_j);
         standard_means(dim, count, method->kernel->constant[dim],
-                       *pairs_own(pairs, RECORD_H_INVERSE), pairs_theirs(pairs, RECORD_H_INVERSE),
+                       *pairs_own(pairs, RECORD_H_INVERSE), pairs_others(pairs, RECORD_H_INVERSE),
                        lanes);
         return;
     }
@@ -293,7 +293,7 @@ static void matrix_weights(const struct cells *cells, const struct pairs *pairs)
     if (weight == WEIGHT_W) return;
     pair_shapes(cells, pairs, false, dw, dw_j);
     widths(width, pairs->count, lane(lanes, LANE_R), *pairs_own(pairs, RECORD_H_INVERSE),
-           pairs_theirs(pairs, RECORD_H_INVERSE), q, q_j);
+           pairs_others(pairs, RECORD_H_INVERSE), q, q_j);
     weigh_pairs(gradient, pairs->count, q, dw, w);
     weigh_pairs(gradient, pairs->count, width == PAIR_WIDTH_MEAN ? q_j : q, dw_j, w_j);
 }
@@ -309,18 +309,18 @@ void cells_pair_gradients(const struct cells *cells, const struct pairs *pairs)
     }
     const bool both = method->formulation == FORMULATION_LAGRANGIAN;
     const double *own = pairs_own(pairs, RECORD_MATRIX),
-                 *theirs = pairs_theirs(pairs, RECORD_MATRIX);
+                 *others = pairs_others(pairs, RECORD_MATRIX);
     matrix_weights(cells, pairs);
-    by_matrix(dim, both, count, lanes, own, theirs);
+    by_matrix(dim, both, count, lanes, own, others);
     const bool blended = gradient_of[method->gradient].share;
     const double own_share = blended ? *pairs_own(pairs, RECORD_STEEP) : 0,
-                 *shares = blended ? pairs_theirs(pairs, RECORD_STEEP) : NULL;
+                 *shares = blended ? pairs_others(pairs, RECORD_STEEP) : NULL;
     /* the first entry is positive in a usable matrix, 0 in an unusable one */
-    const bool all_sound = own[0] > 0 && positive(count, theirs) == count,
+    const bool all_sound = own[0] > 0 && positive(count, others) == count,
                any_steep = blended && (own_share > 0 || positive(count, shares) > 0);
     if (all_sound && !any_steep) return;
     double *part = lane(lanes, LANE_K);
-    standard_shares(count, own[0], theirs, own_share, shares, part);
+    standard_shares(count, own[0], others, own_share, shares, part);
     standard_pair(cells, pairs);
     double *s = lane(lanes, LANE_SPARE), *s_i = lane(lanes, LANE_W), *s_j = lane(lanes, LANE_W_J);
     mean(count, s_i, s_j, s);

@@ -10,7 +10,7 @@ ALWAYS_INLINE void close_body(int dim, const struct pairs *pairs)
     const struct lanes *lanes = pairs->lanes;
     const ptrdiff_t stride = lanes->stride;
     const double *restrict x = lane(lanes, LANE_DX), *restrict potential =
-                                                         pairs_theirs(pairs, RECORD_POTENTIAL);
+                                                         pairs_others(pairs, RECORD_POTENTIAL);
     const double *own = pairs_own(pairs, RECORD_POTENTIAL);
     double *restrict G = lane(lanes, LANE_GX);
 #pragma omp simd
@@ -40,11 +40,11 @@ ALWAYS_INLINE void exchange_body(int dim, bool closed, const struct pairs *pairs
     const struct lanes *lanes = pairs->lanes;
     const ptrdiff_t stride = lanes->stride;
     const double *restrict G = lane(lanes, LANE_GX),
-                           *restrict V = pairs_theirs(pairs, RECORD_VOLUME),
-                           *restrict rho = pairs_theirs(pairs, RECORD_DENSITY),
-                           *restrict u = pairs_theirs(pairs, RECORD_HEAT),
-                           *restrict v = pairs_theirs(pairs, RECORD_VELOCITY),
-                           *restrict shift = pairs_theirs(pairs, RECORD_SHIFT);
+                           *restrict V = pairs_others(pairs, RECORD_VOLUME),
+                           *restrict rho = pairs_others(pairs, RECORD_DENSITY),
+                           *restrict u = pairs_others(pairs, RECORD_HEAT),
+                           *restrict v = pairs_others(pairs, RECORD_VELOCITY),
+                           *restrict shift = pairs_others(pairs, RECORD_SHIFT);
     const double *own_v = pairs_own(pairs, RECORD_VELOCITY),
                  *own_shift = pairs_own(pairs, RECORD_SHIFT);
     const double own_V = *pairs_own(pairs, RECORD_VOLUME),

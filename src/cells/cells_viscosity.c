@@ -13,7 +13,7 @@ struct slopes {
 };
 
 struct slope_terms {
-    double own, theirs, noise;
+    double own, others, noise;
 };
 
 /* Contribution of one axis for the neighbour in lane k. The caller writes out the axes: nested
@@ -44,11 +44,11 @@ ALWAYS_INLINE void slopes_body(int dim, bool projected, const struct pairs *pair
     const struct slopes slopes = {
         .x = lane(lanes, LANE_DX),
         .own_L = pairs_own(pairs, RECORD_SLOPE),
-        .L = pairs_theirs(pairs, RECORD_SLOPE),
+        .L = pairs_others(pairs, RECORD_SLOPE),
         .own_P = projected ? pairs_own(pairs, RECORD_PROJECTOR) : NULL,
-        .P = projected ? pairs_theirs(pairs, RECORD_PROJECTOR) : NULL,
+        .P = projected ? pairs_others(pairs, RECORD_PROJECTOR) : NULL,
         .own_v = pairs_own(pairs, RECORD_VELOCITY),
-        .v = pairs_theirs(pairs, RECORD_VELOCITY),
+        .v = pairs_others(pairs, RECORD_VELOCITY),
         .stride = lanes->stride,
     };
     const double *restrict r_inverse = lane(lanes, LANE_R_INVERSE);
@@ -60,14 +60,14 @@ ALWAYS_INLINE void slopes_body(int dim, bool projected, const struct pairs *pair
     for (int k = 0; k < count; k++) {
         const struct slope_terms x = slope_along(dim, projected, 0, k, &slopes),
                                  y = slope_along(dim, projected, 1, k, &slopes);
-        struct slope_terms sum = {x.own + y.own, x.theirs + y.theirs, x.noise + y.noise};
+        struct slope_terms sum = {x.own + y.own, x.others + y.others, x.noise + y.noise};
         if (dim == 3) {
             const struct slope_terms z = slope_along(dim, projected, 2, k, &slopes);
-            sum.own += z.own, sum.theirs += z.theirs, sum.noise += z.noise;
+            sum.own += z.own, sum.others += z.others, sum.noise += z.noise;
         }
         const double per_r2 = r_inverse[k] * r_inverse[k];
         slope_i[k] = sum.own * per_r2;
-        slope_j[k] = sum.theirs * per_r2;
+        slope_j[k] = sum.others * per_r2;
         if (projected) noise[k] = sum.noise * r_inverse[k];
     }
 }
@@ -102,13 +102,13 @@ ALWAYS_INLINE void viscous_body(enum viscosity viscosity, bool signal_form, int 
     const struct pair_numbers numbers = method->numbers;
     const bool varying = viscosity_varies(viscosity), noisy = viscosity_of[viscosity].noise,
                sloped = viscosity_of[viscosity].midpoint;
-    const double *restrict m = pairs_theirs(pairs, RECORD_WEIGHT),
-                           *restrict h_inverse = pairs_theirs(pairs, RECORD_H_INVERSE),
-                           *restrict c = pairs_theirs(pairs, RECORD_SOUND),
-                           *restrict rho = pairs_theirs(pairs, RECORD_DENSITY),
-                           *restrict alpha = varying ? pairs_theirs(pairs, RECORD_ALPHA) : NULL,
-                           *restrict v = pairs_theirs(pairs, RECORD_VELOCITY),
-                           *restrict factor = method->balsara ? pairs_theirs(pairs, RECORD_BALSARA)
+    const double *restrict m = pairs_others(pairs, RECORD_WEIGHT),
+                           *restrict h_inverse = pairs_others(pairs, RECORD_H_INVERSE),
+                           *restrict c = pairs_others(pairs, RECORD_SOUND),
+                           *restrict rho = pairs_others(pairs, RECORD_DENSITY),
+                           *restrict alpha = varying ? pairs_others(pairs, RECORD_ALPHA) : NULL,
+                           *restrict v = pairs_others(pairs, RECORD_VELOCITY),
+                           *restrict factor = method->balsara ? pairs_others(pairs, RECORD_BALSARA)
                                                               : lane(lanes, LANE_ONE);
     const double
         *restrict slope_i = lane(lanes, LANE_SLOPE_I),
@@ -178,7 +178,7 @@ static bool all_still(const struct cells_method *method, const struct pairs *pai
     const struct lanes *lanes = pairs->lanes;
     const int dim = method->box.dim, count = pairs->neighbours;
     const double *own_v = pairs_own(pairs, RECORD_VELOCITY),
-                 *v = pairs_theirs(pairs, RECORD_VELOCITY),
+                 *v = pairs_others(pairs, RECORD_VELOCITY),
                  limit = method->still * *pairs_own(pairs, RECORD_SOUND);
     static const double none[CELLS_SQUARE];
     /* in moving gas the first neighbour usually settles it */
@@ -189,7 +189,7 @@ static bool all_still(const struct cells_method *method, const struct pairs *pai
                      rate = limit * *pairs_own(pairs, RECORD_H_INVERSE);
         for (int k = 0; k < dim * dim; k++)
             if (!(fabs(own_L[k]) <= rate)) return false;
-        if (!lanes_agree(dim * dim, count, lanes->stride, none, pairs_theirs(pairs, RECORD_SLOPE),
+        if (!lanes_agree(dim * dim, count, lanes->stride, none, pairs_others(pairs, RECORD_SLOPE),
                          rate))
             return false;
     }
@@ -219,7 +219,7 @@ bool cells_viscosity(const struct cells *cells, const struct pairs *pairs)
 /* True if the pressures of some pair differ enough for the conductivity of shocks. */
 CLONES static bool any_shock(const struct pairs *pairs)
 {
-    const double *restrict P = pairs_theirs(pairs, RECORD_PRESSURE);
+    const double *restrict P = pairs_others(pairs, RECORD_PRESSURE);
     const double own_P = *pairs_own(pairs, RECORD_PRESSURE);
     int any = 0;
 #pragma omp simd reduction(| : any)
@@ -235,10 +235,10 @@ CLONES static double conducted(int dim, double alpha_u, double alpha_s, const st
     const int count = pairs->count;
     const double *x = lane(lanes, LANE_DX),
                  *G = lane(lanes, LANE_GX), *restrict r_inverse = lane(lanes, LANE_R_INVERSE);
-    const double *restrict m = pairs_theirs(pairs, RECORD_WEIGHT),
-                           *restrict rho = pairs_theirs(pairs, RECORD_DENSITY),
-                           *restrict P = pairs_theirs(pairs, RECORD_PRESSURE),
-                           *restrict u = pairs_theirs(pairs, RECORD_HEAT);
+    const double *restrict m = pairs_others(pairs, RECORD_WEIGHT),
+                           *restrict rho = pairs_others(pairs, RECORD_DENSITY),
+                           *restrict P = pairs_others(pairs, RECORD_PRESSURE),
+                           *restrict u = pairs_others(pairs, RECORD_HEAT);
     const double own_m = *pairs_own(pairs, RECORD_WEIGHT),
                  own_P = *pairs_own(pairs, RECORD_PRESSURE),
                  own_rho = *pairs_own(pairs, RECORD_DENSITY),
@@ -275,7 +275,7 @@ ALWAYS_INLINE void approaches_in(int dim, const struct pairs *pairs, double *res
 {
     const struct lanes *lanes = pairs->lanes;
     const double *own_v = pairs_own(pairs, RECORD_VELOCITY),
-                 *restrict v = pairs_theirs(pairs, RECORD_VELOCITY),
+                 *restrict v = pairs_others(pairs, RECORD_VELOCITY),
                  *restrict G = lane(lanes, LANE_GX);
 #pragma omp simd
     for (int k = 0; k < pairs->count; k++) found[k] = approach(dim, lanes->stride, k, own_v, v, G);
@@ -293,5 +293,5 @@ double cells_divergence(const struct cells *cells, const struct pairs *pairs)
 {
     double *found = lane(pairs->lanes, LANE_SPARE);
     approaches(cells->method.box.dim, pairs, found);
-    return -lanes_dot(pairs_theirs(pairs, RECORD_VOLUME), found, pairs->count);
+    return -lanes_dot(pairs_others(pairs, RECORD_VOLUME), found, pairs->count);
 }

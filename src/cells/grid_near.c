@@ -83,7 +83,7 @@ CLONES static size_t take_plainly(const struct grid *grid, size_t cell, const fl
         const size_t from = first + begin;
         const float *restrict x = grid->place[0] + from, *restrict y = grid->place[1] + from,
                               *restrict z = grid->place[2] + from,
-                              *restrict theirs = grid->radius2 + from;
+                              *restrict others = grid->radius2 + from;
         float at_x[COPIED], at_y[COPIED], at_z[COPIED];
         uint8_t near[COPIED];
 #pragma omp simd
@@ -94,7 +94,7 @@ CLONES static size_t take_plainly(const struct grid *grid, size_t cell, const fl
             const float dx = outside(at_x[k], x0, x1), dy = outside(at_y[k], y0, y1),
                         dz = outside(at_z[k], z0, z1);
             const float r2 = dx * dx + dy * dy + dz * dz;
-            const float widest = theirs[k] > radius2 ? theirs[k] : radius2;
+            const float widest = others[k] > radius2 ? others[k] : radius2;
             near[k] = r2 <= widest;
         }
         uint16_t marks;
@@ -105,7 +105,7 @@ CLONES static size_t take_plainly(const struct grid *grid, size_t cell, const fl
             to->x[0][count] = at_x[k];
             to->x[1][count] = at_y[k];
             to->x[2][count] = at_z[k];
-            to->radius2[count] = theirs[k];
+            to->radius2[count] = others[k];
         }
         put_marks(to->marks, at + begin, marks);
     }
@@ -205,12 +205,12 @@ take_in_vectors(const struct grid *grid, size_t cell, const float moved[3],
                          d = _mm512_max_ps(_mm512_max_ps(above, below), none);
             r2 = _mm512_add_ps(r2, _mm512_mul_ps(d, d));
         }
-        const __m512 theirs = _mm512_loadu_ps(grid->radius2 + first + begin);
+        const __m512 others = _mm512_loadu_ps(grid->radius2 + first + begin);
         const __mmask16 near =
-            _mm512_mask_cmp_ps_mask(there, r2, _mm512_max_ps(theirs, own), _CMP_LE_OQ);
+            _mm512_mask_cmp_ps_mask(there, r2, _mm512_max_ps(others, own), _CMP_LE_OQ);
         for (int a = 0; a < 3; a++)
             _mm512_storeu_ps(to->x[a] + count, _mm512_maskz_compress_ps(near, x[a]));
-        _mm512_storeu_ps(to->radius2 + count, _mm512_maskz_compress_ps(near, theirs));
+        _mm512_storeu_ps(to->radius2 + count, _mm512_maskz_compress_ps(near, others));
         put_marks(to->marks, at + begin, near);
         count += (size_t)_mm_popcnt_u32(near);
     }

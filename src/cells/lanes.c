@@ -159,9 +159,9 @@ struct lanes_list lanes_partners(const struct cells *cells, size_t slot, struct 
     int kept = 0;
     if (cells->pair_level >= 0) /* keep the pairs that move from this level to a finer one */
         for (int32_t k = 0; k < count; k++) {
-            const unsigned own = kinds[slot], theirs = kinds[slots[k]];
-            const unsigned before = (own & 15) > (theirs & 15) ? own & 15 : theirs & 15,
-                           after = own >> 4 > theirs >> 4 ? own >> 4 : theirs >> 4;
+            const unsigned own = kinds[slot], others = kinds[slots[k]];
+            const unsigned before = (own & 15) > (others & 15) ? own & 15 : others & 15,
+                           after = own >> 4 > others >> 4 ? own >> 4 : others >> 4;
             lanes->slots[kept] = slots[k];
             kept += before == (unsigned)cells->pair_level && after > before;
         }
@@ -222,12 +222,12 @@ CLONES static double dot(const double *restrict a, const double *restrict b, int
 }
 
 CLONES static bool agree(int axes, int count, ptrdiff_t stride, const double *restrict own,
-                         const double *restrict theirs, double limit)
+                         const double *restrict others, double limit)
 {
     int k = 0;
     for (; k + GRID_LANES <= count; k += GRID_LANES)
         for (int a = 0; a < axes; a++) {
-            const double *restrict values = theirs + a * stride + k;
+            const double *restrict values = others + a * stride + k;
             double apart = 0;
 #pragma omp simd reduction(+ : apart)
             for (int l = 0; l < GRID_LANES; l++)
@@ -236,7 +236,7 @@ CLONES static bool agree(int axes, int count, ptrdiff_t stride, const double *re
         }
     for (; k < count; k++)
         for (int a = 0; a < axes; a++)
-            if (!(fabs(theirs[a * stride + k] - own[a]) <= limit)) return false;
+            if (!(fabs(others[a * stride + k] - own[a]) <= limit)) return false;
     return true;
 }
 
@@ -252,8 +252,8 @@ double lanes_dot(const double *a, const double *b, int count)
     return dot(a, b, count);
 }
 
-bool lanes_agree(int axes, int count, ptrdiff_t stride, const double *own, const double *theirs,
+bool lanes_agree(int axes, int count, ptrdiff_t stride, const double *own, const double *others,
                  double limit)
 {
-    return agree(axes, count, stride, own, theirs, limit);
+    return agree(axes, count, stride, own, others, limit);
 }

@@ -195,7 +195,7 @@ static inline double *lanes_sentinel(const struct cells *cells, const struct lan
 /* True if the first count values along each axis agree with the particle's own value within the
  * limit. The values of the neighbours along each axis are `stride` doubles apart. Where they
  * disagree, the first vector usually shows it, so the loop ends early. */
-bool lanes_agree(int axes, int count, ptrdiff_t stride, const double *own, const double *theirs,
+bool lanes_agree(int axes, int count, ptrdiff_t stride, const double *own, const double *others,
                  double limit);
 
 /* Gathers the records of a slot's list and computes the geometry of its pairs. Returns the number

@@ -23,7 +23,7 @@ static inline const double *pairs_own(const struct pairs *pairs, enum lanes_fiel
 }
 
 /* The neighbours' values of a field; further components follow at a distance of lanes->stride. */
-static inline const double *pairs_theirs(const struct pairs *pairs, enum lanes_field field)
+static inline const double *pairs_others(const struct pairs *pairs, enum lanes_field field)
 {
     return lane_of(pairs->lanes, pairs->layout, field);
 }

@@ -45,12 +45,12 @@
 #define PAIR(function, shape, dim, attributes)                                                     \
     attributes static void function(                                                               \
         const struct kernel *kernel, size_t n, const double *restrict r, double h_inverse,         \
-        const double *restrict theirs, double *restrict value, double *restrict value_j)           \
+        const double *restrict others, double *restrict value, double *restrict value_j)           \
     {                                                                                              \
         _Pragma("omp simd") for (size_t i = 0; i < n; i++)                                         \
         {                                                                                          \
             value[i] = shape(kernel, r[i] * h_inverse, dim);                                       \
-            value_j[i] = shape(kernel, r[i] * theirs[i], dim);                                     \
+            value_j[i] = shape(kernel, r[i] * others[i], dim);                                     \
         }                                                                                          \
     }
 

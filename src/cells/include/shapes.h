@@ -24,9 +24,9 @@ typedef void shapes_weights(const struct kernel *kernel, size_t n, const double 
                             double h_inverse, const double *V, double *w, double *weight);
 
 /* The shape function at both smoothing lengths of a pair: value at r h_inverse, value_j at r
- * theirs. */
+ * others. */
 typedef void shapes_pair(const struct kernel *kernel, size_t n, const double *r, double h_inverse,
-                         const double *theirs, double *value, double *value_j);
+                         const double *others, double *value, double *value_j);
 
 struct shapes {
     shapes_loop *w, *dw;
