@@ -62,7 +62,7 @@ static void add_numbers(struct lanes_layout *layout, enum lanes_field first, enu
 static void begin_layout(struct lanes_layout *layout, enum lanes_geometry geometry, int dim)
 {
     *layout = (struct lanes_layout){.geometry = geometry};
-    add_field(layout, RECORD_PLACE, dim);
+    add_field(layout, RECORD_POSITION, dim);
 }
 
 static void lay_out_force(struct lanes_layout *force, const struct cells_method *method)
@@ -305,7 +305,7 @@ enum status cells_arrange(struct cells *cells, const struct cells_fields *fields
     if (status) return status;
     cells->parts = fields->local ? parts : NULL;
     cells->lists = grid_lists(cells->grid);
-    cells->place = grid_positions(cells->grid);
+    cells->position = grid_positions(cells->grid);
     cells->order = grid_order(cells->grid);
     for (int a = 0; a < 3; a++)
         cells->side[a] = grid_side(cells->grid, a) > 0 ? grid_side(cells->grid, a) : HUGE_VAL;
@@ -322,7 +322,7 @@ ALWAYS_INLINE double separate(int dim, bool wrapped, const struct cells *cells, 
     double r2 = 0;
     for (int k = 0; k < dim; k++) {
         const double side = cells->side[k];
-        x[k] = cells->place[b][k] - cells->place[a][k];
+        x[k] = cells->position[b][k] - cells->position[a][k];
         if (wrapped) x[k] = grid_nearest(x[k], side);
         r2 += x[k] * x[k];
     }

@@ -12,7 +12,7 @@ static void free_all(struct grid *grid)
     free(grid->order);
     free(grid->position);
     free(grid->radius2);
-    for (int a = 0; a < 3; a++) free(grid->place[a]);
+    for (int a = 0; a < 3; a++) free(grid->in_cell[a]);
     free(grid->lists);
     free(grid->part_begin);
     free(grid->part_cell);
@@ -30,7 +30,7 @@ static bool reserve_points(struct grid *grid, size_t n)
     /* read in whole vectors, beyond the last point as well */
     bool floats = (grid->radius2 = calloc(capacity + COPIED, sizeof(float)));
     for (int a = 0; a < 3; a++)
-        floats &= (grid->place[a] = calloc(capacity + COPIED, sizeof(float))) != NULL;
+        floats &= (grid->in_cell[a] = calloc(capacity + COPIED, sizeof(float))) != NULL;
     grid->lists = pages_allocate(capacity * sizeof *grid->lists);
     grid->part_begin = malloc(capacity * sizeof *grid->part_begin);
     grid->part_cell = malloc(capacity * sizeof *grid->part_cell);
@@ -240,7 +240,7 @@ static void place_in_cells(struct grid *grid, const double *const x[], const dou
                                        : grid->box.periodic[a]
                                            ? wrapped(x[a][i], grid->lo[a], grid->side[a])
                                            : x[a][i];
-                grid->place[a][s] =
+                grid->in_cell[a][s] =
                     a < dim ? (float)((grid->position[s][a] - middle[a]) * scale) : 0;
             }
             const double units = radius[i] / grid->unit;
@@ -437,7 +437,7 @@ const struct grid_run *grid_runs(const struct grid *grid, size_t *count)
 
 double grid_bytes(int dim, double n, double neighbours)
 {
-    /* cell_of, order; position; radius2 and place; lists */
+    /* cell_of, order; position; radius2 and in_cell; lists */
     const double point =
         2 * sizeof(uint32_t) + 3 * sizeof(double) + 4 * sizeof(float) + sizeof(struct grid_list);
     /* 2D: lists end with half a vector of sentinels on average. 3D: a bit for each point within the

@@ -84,7 +84,7 @@ struct grid {
                            cells that are candidates; NULL: all are */
     uint32_t *order;
     double (*position)[3];
-    float *place[3], *radius2; /* by slot: position in its cell; radius squared */
+    float *in_cell[3], *radius2; /* by slot: position in its cell; radius squared */
     struct grid_list *lists;
     uint32_t *part_begin, *part_cell;
     size_t parts;

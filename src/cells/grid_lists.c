@@ -67,10 +67,10 @@ CLONES static size_t take_all(const struct grid *grid, size_t cell, const float 
     const int dim = grid->box.dim;
     for (size_t begin = 0; begin < n; begin += COPIED) {
         for (int a = 0; a < dim; a++) {
-            const float *restrict place = grid->place[a] + first + begin, along = moved[a];
+            const float *restrict in_cell = grid->in_cell[a] + first + begin, along = moved[a];
             float *restrict x = to->x[a] + count + begin;
 #pragma omp simd
-            for (int k = 0; k < COPIED; k++) x[k] = place[k] + along;
+            for (int k = 0; k < COPIED; k++) x[k] = in_cell[k] + along;
         }
         memcpy(to->radius2 + count + begin, grid->radius2 + first + begin, COPIED * sizeof(float));
     }
@@ -156,11 +156,11 @@ static struct surroundings find_surroundings(const struct grid *grid, size_t cel
     const uint32_t begin = grid->start[cell];
     struct surroundings around = {.radius2 = grid->radius2[begin]};
     float *lo = around.lo, *hi = around.hi;
-    for (int a = 0; a < 3; a++) lo[a] = hi[a] = grid->place[a][begin];
+    for (int a = 0; a < 3; a++) lo[a] = hi[a] = grid->in_cell[a][begin];
     for (uint32_t s = begin; s < grid->start[cell + 1]; s++) {
         for (int a = 0; a < 3; a++) {
-            lo[a] = grid->place[a][s] < lo[a] ? grid->place[a][s] : lo[a];
-            hi[a] = grid->place[a][s] > hi[a] ? grid->place[a][s] : hi[a];
+            lo[a] = grid->in_cell[a][s] < lo[a] ? grid->in_cell[a][s] : lo[a];
+            hi[a] = grid->in_cell[a][s] > hi[a] ? grid->in_cell[a][s] : hi[a];
         }
         around.radius2 = grid->radius2[s] > around.radius2 ? grid->radius2[s] : around.radius2;
     }
@@ -313,7 +313,7 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
         int32_t *kept = pool_take(pool, marked ? (count + 31) / 32 : count + BEYOND);
         if (!kept) return -1;
         uint16_t *marks = marked ? (uint16_t *)(void *)kept : candidates->marks;
-        const float at[3] = {grid->place[0][s], grid->place[1][s], grid->place[2][s]};
+        const float at[3] = {grid->in_cell[0][s], grid->in_cell[1][s], grid->in_cell[2][s]};
         if (region.all) {
             list->count = grid_find_images(grid->box.dim, candidates, count, at, grid->radius2[s],
                                            side, marks);

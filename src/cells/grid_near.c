@@ -81,8 +81,8 @@ CLONES static size_t take_plainly(const struct grid *grid, size_t cell, const fl
     for (size_t begin = 0; begin < all; begin += COPIED) {
         const size_t n = all - begin < COPIED ? all - begin : COPIED;
         const size_t from = first + begin;
-        const float *restrict x = grid->place[0] + from, *restrict y = grid->place[1] + from,
-                              *restrict z = grid->place[2] + from,
+        const float *restrict x = grid->in_cell[0] + from, *restrict y = grid->in_cell[1] + from,
+                              *restrict z = grid->in_cell[2] + from,
                               *restrict others = grid->radius2 + from;
         float at_x[COPIED], at_y[COPIED], at_z[COPIED];
         uint8_t near[COPIED];
@@ -198,7 +198,7 @@ take_in_vectors(const struct grid *grid, size_t cell, const float moved[3],
         const __mmask16 there = (__mmask16)(n < COPIED ? (1u << n) - 1 : 0xffffu);
         __m512 x[3], r2 = none;
         for (int a = 0; a < 3; a++) {
-            x[a] = _mm512_add_ps(_mm512_loadu_ps(grid->place[a] + first + begin),
+            x[a] = _mm512_add_ps(_mm512_loadu_ps(grid->in_cell[a] + first + begin),
                                  _mm512_set1_ps(moved[a]));
             const __m512 above = _mm512_sub_ps(x[a], _mm512_set1_ps(around->hi[a])),
                          below = _mm512_sub_ps(_mm512_set1_ps(around->lo[a]), x[a]),

@@ -111,9 +111,9 @@ static void gather(const struct cells *cells, const struct lanes_layout *layout,
 {
     const bool wrapped = cells->lists[slot].wrapped;
     const int dim = cells->method.box.dim;
-    struct geometry g = {.at = cells->place[slot],
+    struct geometry g = {.at = cells->position[slot],
                          .side = cells->side,
-                         .x = lane_of(lanes, layout, RECORD_PLACE),
+                         .x = lane_of(lanes, layout, RECORD_POSITION),
                          .d = lane(lanes, LANE_DX),
                          .r = lane(lanes, LANE_R),
                          .r_inverse = lane(lanes, LANE_R_INVERSE),

@@ -14,7 +14,7 @@
 /* Fields of a particle's record; the method decides which of them exist. Records should be short:
  * they are read from the second-level cache again for every neighbour. */
 enum lanes_field {
-    RECORD_PLACE,     /* x y (z) */
+    RECORD_POSITION,  /* x y (z) */
     RECORD_WEIGHT,    /* density: m, or 1; matrix: V; forces: m; switch: m sign(div v) */
     RECORD_ENERGY,    /* density with the energy element: U */
     RECORD_VELOCITY,  /* vx vy (vz) */
@@ -122,7 +122,7 @@ struct cells {
     size_t points;        /* particles and wall images: the number of slots */
     /* results of the grid's last search: */
     const struct grid_list *lists;
-    const double (*place)[3];
+    const double (*position)[3];
     const uint32_t *order;
     double side[3]; /* periods; HUGE_VAL: open */
     struct cells_images {
@@ -180,7 +180,7 @@ static inline double *lanes_record(const struct cells *cells, const struct lanes
                                    size_t slot)
 {
     double *record = cells->records + (ptrdiff_t)slot * layout->size;
-    for (int a = 0; a < cells->method.box.dim; a++) record[a] = cells->place[slot][a];
+    for (int a = 0; a < cells->method.box.dim; a++) record[a] = cells->position[slot][a];
     return record;
 }
 

@@ -103,9 +103,9 @@ static void sort_memory(struct simulation *simulation)
     if (workspace->sorted && simulation->cost.steps < workspace->sorted_at + SORT_EVERY) return;
     const uint32_t *order = grid_order(cells_grid(workspace->cells));
     const size_t slots = cells_points(workspace->cells);
-    ptrdiff_t place = 0;
+    ptrdiff_t next = 0;
     for (size_t slot = 0; slot < slots; slot++) /* skips images */
-        if (order[slot] < (size_t)a->n) a->order[place++] = order[slot];
+        if (order[slot] < (size_t)a->n) a->order[next++] = order[slot];
     /* inactive particles keep the values of their last sums */
     for (size_t k = 0; k < workspace->arrays; k++)
         permute(a, workspace->block + k * workspace->stride);

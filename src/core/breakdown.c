@@ -9,12 +9,12 @@ enum status breakdown_of(const struct simulation *simulation, ptrdiff_t i, const
                          double value, struct error *error)
 {
     const struct particles *a = &simulation->particles;
-    char place[96] = "";
+    char position[96] = "";
     size_t used = 0;
     for (int k = 0; k < a->dim; k++)
-        used += (size_t)snprintf(place + used, sizeof place - used, "%s%c = %.9g", k ? ", " : "",
-                                 "xyz"[k], a -> x[k][i]);
+        used += (size_t)snprintf(position + used, sizeof position - used, "%s%c = %.9g",
+                                 k ? ", " : "", "xyz"[k], a -> x[k][i]);
     return error_set(error, STATUS_BROKE_DOWN,
                      "broke down at t = %.9g: %s of particle %zu at %s is %.9g", simulation->time,
-                     quantity, a->id[i], place, value);
+                     quantity, a->id[i], position, value);
 }

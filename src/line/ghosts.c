@@ -28,7 +28,7 @@ static struct image image_of(ptrdiff_t n, ptrdiff_t k)
 
 /* Position of a particle's image in the walls [0, length]; x: distance from the wall beyond which
  * the image is. */
-static double mirrored_place(const struct image *image, double x, double length)
+static double mirrored_position(const struct image *image, double x, double length)
 {
     return 2 * image->turns * length + (image->mirrored ? x : -x);
 }
@@ -42,9 +42,9 @@ static void fill_mirrored(const struct simulation *simulation, double *array, pt
     for (ptrdiff_t k = 0; k < count; k++) {
         const struct image image = image_of(n, k);
         const double right = array[n - 1 - image.from], left = array[image.from];
-        if (value == GHOST_PLACE) {
-            array[n + k] = hi + mirrored_place(&image, hi - right, length);
-            array[-1 - k] = lo - mirrored_place(&image, left - lo, length);
+        if (value == GHOST_POSITION) {
+            array[n + k] = hi + mirrored_position(&image, hi - right, length);
+            array[-1 - k] = lo - mirrored_position(&image, left - lo, length);
         } else {
             const double sign = value == GHOST_VECTOR && image.mirrored ? -1 : 1;
             array[n + k] = sign * right;
@@ -60,7 +60,7 @@ static void fill_far(const struct simulation *simulation, double *array, ptrdiff
     static const double far = 1e60;
     const ptrdiff_t n = simulation->particles.n;
     for (ptrdiff_t k = 0; k < count; k++) {
-        const double away = value == GHOST_PLACE ? far * (double)(k + 1) : 0;
+        const double away = value == GHOST_POSITION ? far * (double)(k + 1) : 0;
         array[n + k] = array[n - 1] + away;
         array[-1 - k] = array[0] - away;
     }
@@ -71,7 +71,7 @@ void ghosts_set(const struct simulation *simulation, double *array, ptrdiff_t co
 {
     const struct particles *a = &simulation->particles;
     if (simulation->boundary[0] == BOUNDARY_PERIODIC)
-        ghosts_fill(a, array, count, value == GHOST_PLACE ? a->period[0] : 0);
+        ghosts_fill(a, array, count, value == GHOST_POSITION ? a->period[0] : 0);
     else if (simulation->boundary[0] == BOUNDARY_REFLECTING)
         fill_mirrored(simulation, array, count, value);
     else
@@ -89,7 +89,7 @@ enum status ghosts_of_density(struct simulation *simulation, ptrdiff_t count, st
     }
     if (count > line->ghosts_filled) ghosts_set(simulation, a->m, count, GHOST_SCALAR);
     line->ghosts_filled = count;
-    ghosts_set(simulation, a->x[0], count, GHOST_PLACE);
+    ghosts_set(simulation, a->x[0], count, GHOST_POSITION);
     if (simulation->plan.energy_sum) ghosts_set(simulation, a->U, count, GHOST_SCALAR);
     return STATUS_OK;
 }

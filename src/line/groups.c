@@ -254,7 +254,7 @@ static bool sleep_again(struct simulation *simulation)
         (simulation->sleep.on && simulation->sleep.at_rest && found * FEW < groups->count))
         return false;
     /* particles have moved since the last sums */
-    ghosts_set(simulation, a->x[0], line->reach + 1, GHOST_PLACE);
+    ghosts_set(simulation, a->x[0], line->reach + 1, GHOST_POSITION);
     ghosts_set(simulation, a->v[0], line->reach + 1, GHOST_VECTOR);
     for (ptrdiff_t group = 0; group < groups->count; group++)
         if (groups->awake[group] && !stirred_near(groups, group, around)) {

@@ -63,7 +63,7 @@ enum status order_arrange(struct simulation *simulation, struct error *error);
 /* Copies the periodic images of count particles to both ends of an array; shift: added for each
  * period (the period for x, otherwise 0). */
 void ghosts_fill(const struct particles *particles, double *array, ptrdiff_t count, double shift);
-enum ghost_value { GHOST_SCALAR, GHOST_VECTOR, GHOST_PLACE };
+enum ghost_value { GHOST_SCALAR, GHOST_VECTOR, GHOST_POSITION };
 
 /* The same for any boundary of the box: periodic images; mirror images, with vectors reversed; or
  * distant copies of the outermost particles (open ends, and fixed ones, whose layers are

@@ -65,7 +65,7 @@ static bool all_finite(const struct particles *particles)
     return true;
 }
 
-static void sort_places(struct particles *particles)
+static void sort_by_position(struct particles *particles)
 {
     for (ptrdiff_t i = 0; i < particles->n; i++) particles->order[i] = (size_t)i;
     _Static_assert(sizeof(size_t) <= sizeof(double), "an array of numbers has room for indices");
@@ -77,7 +77,7 @@ bool order_sort(struct particles *particles)
 {
     if (!all_finite(particles)) return false;
     bring_round(particles);
-    sort_places(particles);
+    sort_by_position(particles);
     return true;
 }
 
@@ -88,7 +88,7 @@ static bool sort_inside_ends(struct simulation *simulation)
     if (simulation->boundary[0] == BOUNDARY_PERIODIC) return order_sort(a);
     if (!all_finite(a)) return false;
     if (simulation->boundary[0] == BOUNDARY_REFLECTING) bring_back(simulation);
-    sort_places(a);
+    sort_by_position(a);
     return true;
 }
 

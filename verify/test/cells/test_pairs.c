@@ -48,19 +48,19 @@ TEST(test_records)
             struct cells *cells = cells_create(&method, 8);
             assert_non_null(cells);
             expect_layout(&cells->density,
-                          (int[RECORD_FIELDS]){[RECORD_PLACE] = dim,
+                          (int[RECORD_FIELDS]){[RECORD_POSITION] = dim,
                                                [RECORD_WEIGHT] = 1,
                                                [RECORD_ENERGY] = method.energy_element});
             expect_layout(
                 &cells->matrix,
-                (int[RECORD_FIELDS]){[RECORD_PLACE] = dim,
+                (int[RECORD_FIELDS]){[RECORD_POSITION] = dim,
                                      [RECORD_WEIGHT] = 1,
                                      [RECORD_VELOCITY] = method.velocity_gradient ? dim : 0,
                                      [RECORD_H] = blended});
             expect_layout(
                 &cells->force,
                 (int[RECORD_FIELDS]){
-                    [RECORD_PLACE] = dim,
+                    [RECORD_POSITION] = dim,
                     [RECORD_WEIGHT] = dissipates || lagrangian,
                     [RECORD_VELOCITY] = dim,
                     [RECORD_H_INVERSE] = 1,
@@ -76,7 +76,7 @@ TEST(test_records)
                     [RECORD_STEEP] = blended,
                     [RECORD_SLOPE] = sloped ? dim * dim : 0,
                     [RECORD_PROJECTOR] = projected ? symmetric : 0});
-            expect_layout(&cells->shift, jumps ? (int[RECORD_FIELDS]){[RECORD_PLACE] = dim,
+            expect_layout(&cells->shift, jumps ? (int[RECORD_FIELDS]){[RECORD_POSITION] = dim,
                                                                       [RECORD_WEIGHT] = 1,
                                                                       [RECORD_VELOCITY] = dim,
                                                                       [RECORD_H_INVERSE] = 1,
