@@ -301,10 +301,10 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
         find_slots(grid, &region, candidates->slots);
     } else if (drops) {
         const size_t words = (candidates->seen + 31) / 32;
-        int32_t *room = pool_take(pool, words);
-        if (!room) return -1;
+        int32_t *marks = pool_take(pool, words);
+        if (!marks) return -1;
         pool->used += words;
-        grid->reached[cell] = memcpy(room, candidates->marks, words * sizeof *room);
+        grid->reached[cell] = memcpy(marks, candidates->marks, words * sizeof *marks);
     }
     int longest = 0;
     for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++) {
@@ -379,11 +379,11 @@ bool grid_reader_reserve(const struct grid *grid, struct grid_reader *reader)
                  longest = (size_t)grid->longest + BEYOND;
     reader->begin = reader->end = 0;
     reader->slot = SIZE_MAX;
-    if (candidates > reader->room) {
+    if (candidates > reader->capacity) {
         free(reader->candidates);
-        reader->room = candidates + candidates / 2;
-        reader->candidates = malloc(reader->room * sizeof *reader->candidates);
-        if (!reader->candidates) reader->room = 0;
+        reader->capacity = candidates + candidates / 2;
+        reader->candidates = malloc(reader->capacity * sizeof *reader->candidates);
+        if (!reader->candidates) reader->capacity = 0;
     }
     if (longest > reader->longest) {
         free(reader->slots);

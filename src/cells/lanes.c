@@ -23,10 +23,10 @@ bool lanes_reserve(struct cells *cells)
     for (int t = 0; t < cells->method.threads; t++) {
         struct lanes *lanes = &cells->lanes[t];
         if (!grid_reader_reserve(cells->grid, &lanes->reader)) return false;
-        if ((cells->parts || cells->halves) && lanes->room < 2 * (stride + 16)) {
+        if ((cells->parts || cells->halves) && lanes->capacity < 2 * (stride + 16)) {
             free(lanes->slots);
-            lanes->room = 3 * (stride + 16);
-            lanes->slots = malloc((size_t)lanes->room * sizeof *lanes->slots);
+            lanes->capacity = 3 * (stride + 16);
+            lanes->slots = malloc((size_t)lanes->capacity * sizeof *lanes->slots);
             if (!lanes->slots) return false;
         }
         if (lanes->block && stride <= lanes->stride) continue;

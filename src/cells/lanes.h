@@ -94,8 +94,8 @@ struct lanes {
     int64_t pairs;
     struct cells_left_out left_out;
     struct grid_reader reader;
-    int32_t *slots; /* a filtered list, used instead of the grid's */
-    ptrdiff_t room; /* capacity, for two such lists */
+    int32_t *slots;     /* a filtered list, used instead of the grid's */
+    ptrdiff_t capacity; /* capacity, for two such lists */
     struct reactions_chunk chunk;
 };
 

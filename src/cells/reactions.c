@@ -184,7 +184,7 @@ struct lanes_list reactions_partners(const struct cells *cells, size_t slot, con
                           .before = lanes->chunk.before,
                           .beyond = lanes->chunk.beyond,
                           .reacting = lanes->slots,
-                          .alone = lanes->slots + lanes->room / 2};
+                          .alone = lanes->slots + lanes->capacity / 2};
     split_list(&split, &cells->reactions, slots, count);
     const int reacting = split.reacting_count, kept = reacting + split.alone_count;
     memcpy(lanes->slots + reacting, split.alone, (size_t)split.alone_count * sizeof *split.alone);

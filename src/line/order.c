@@ -110,8 +110,8 @@ static void separate(struct simulation *simulation)
         if (count == 1 || (double)count * least_eta < scheme->eta) continue;
         const double before = first > 0 ? x[first - 1] : periodic ? x[a->n - 1] - a->period[0] : lo;
         const double after = end < a->n ? x[end] : periodic ? x[0] + a->period[0] : hi;
-        const double room = fmin(x[first] - before, after - x[first]);
-        const double gap = fmin(1e-3 * a->h[first] / scheme->eta, 0.5 * room / (double)count);
+        const double space = fmin(x[first] - before, after - x[first]);
+        const double gap = fmin(1e-3 * a->h[first] / scheme->eta, 0.5 * space / (double)count);
         for (ptrdiff_t k = 0; k < count; k++)
             x[first + k] += ((double)k - 0.5 * (double)(count - 1)) * gap;
         for (ptrdiff_t i = first; i < end; i++) a->x_old[0][i] = x[i];

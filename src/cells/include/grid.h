@@ -34,10 +34,10 @@ struct grid_list {
 
 /* Work arrays of one thread for reading lists; zero-initialise. */
 struct grid_reader {
-    size_t room, longest;    /* capacity of candidates and of slots */
-    size_t cell, begin, end; /* the cell whose candidates are loaded, and its slots; end 0: none */
-    ptrdiff_t at[3];         /* coordinates of the cell */
-    size_t slot, count;      /* the slot whose list is loaded; number of candidates */
+    size_t capacity, longest; /* capacity of candidates and of slots */
+    size_t cell, begin, end;  /* the cell whose candidates are loaded, and its slots; end 0: none */
+    ptrdiff_t at[3];          /* coordinates of the cell */
+    size_t slot, count;       /* the slot whose list is loaded; number of candidates */
     int32_t *candidates, *slots;
 };
 
