@@ -169,8 +169,8 @@ void cells_switch(struct cells *cells, const struct cells_fields *fields);
 /* Recomputes only signal, from velocities that have changed since cells_forces. */
 void cells_signal(struct cells *cells, const struct cells_fields *fields);
 
-/* Arguments of cells_wake and cells_lull. `asleep` holds CELLS_AWAKE or another of these values for
- * each particle. */
+/* Arguments of cells_wake and cells_fall_asleep. `asleep` holds CELLS_AWAKE or another of these
+ * values for each particle. */
 enum { CELLS_AWAKE, CELLS_ASLEEP, CELLS_JUST_ASLEEP };
 struct cells_quiet {
     const double *disturbance; /* distance of each particle from equilibrium over the tolerance; 0
@@ -187,8 +187,8 @@ void cells_wake(struct cells *cells, const struct cells_fields *fields,
                 const struct cells_quiet *quiet, unsigned char *asleep);
 
 /* Marks as CELLS_JUST_ASLEEP the awake particles that are calm and have calm neighbours. */
-void cells_lull(struct cells *cells, const struct cells_fields *fields,
-                const struct cells_quiet *quiet, unsigned char *asleep);
+void cells_fall_asleep(struct cells *cells, const struct cells_fields *fields,
+                       const struct cells_quiet *quiet, unsigned char *asleep);
 
 /* Squared distance between the points at two slots. */
 double cells_distance2(const struct cells *cells, size_t a, size_t b);

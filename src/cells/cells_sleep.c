@@ -140,19 +140,19 @@ static void arrive_pass(struct cells *cells, const struct cells_fields *fields, 
     cells->quiet->arriving[cells->order[slot]] = expected_at(cells, fields, slot, lanes);
 }
 
-static void lull_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
-                      struct lanes *lanes)
+static void sleep_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
+                       struct lanes *lanes)
 {
     if (calm_around(cells, fields, slot, lanes))
         cells->asleep[cells->order[slot]] = CELLS_JUST_ASLEEP;
 }
 
-void cells_lull(struct cells *cells, const struct cells_fields *fields,
-                const struct cells_quiet *quiet, unsigned char *asleep)
+void cells_fall_asleep(struct cells *cells, const struct cells_fields *fields,
+                       const struct cells_quiet *quiet, unsigned char *asleep)
 {
     cells->quiet = quiet;
     cells->asleep = asleep;
     memset(quiet->arriving, 0, fields->n * sizeof *quiet->arriving);
     lanes_all(cells, fields, arrive_pass);
-    lanes_all(cells, fields, lull_pass);
+    lanes_all(cells, fields, sleep_pass);
 }

@@ -23,11 +23,11 @@ static struct cells_quiet find_quiet(struct simulation *simulation)
                                 .calm = SLEEP_CALM};
 }
 
-static void lull(struct simulation *simulation, const struct cells_quiet *quiet)
+static void fall_asleep(struct simulation *simulation, const struct cells_quiet *quiet)
 {
     struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
-    cells_lull(workspace->cells, &workspace->fields, quiet, workspace->asleep);
+    cells_fall_asleep(workspace->cells, &workspace->fields, quiet, workspace->asleep);
     for (ptrdiff_t i = 0; i < a->n; i++) {
         if (workspace->asleep[i] != CELLS_JUST_ASLEEP) continue;
         workspace->asleep[i] = CELLS_ASLEEP;
@@ -66,7 +66,7 @@ enum status workspace_begin_sleep(struct simulation *simulation, struct error *e
     }
     sleep_scale(simulation);
     const struct cells_quiet quiet = find_quiet(simulation);
-    lull(simulation, &quiet);
+    fall_asleep(simulation, &quiet);
     sleep->awake_count = count_awake(workspace, a->n);
     return STATUS_OK;
 }
@@ -79,7 +79,7 @@ void workspace_update_sleep(struct simulation *simulation)
     if (!workspace->asleep || (simulation->sleep.awake_count == n && !due)) return;
     const struct cells_quiet quiet = find_quiet(simulation);
     cells_wake(workspace->cells, &workspace->fields, &quiet, workspace->asleep);
-    if (due) lull(simulation, &quiet);
+    if (due) fall_asleep(simulation, &quiet);
     simulation->sleep.awake_count = count_awake(workspace, n);
 }
 
