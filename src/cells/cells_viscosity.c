@@ -141,13 +141,13 @@ ALWAYS_INLINE void viscous_body(enum viscosity viscosity, bool signal_form, int 
                                             .closing = closing[k],
                                             .factor = 0.5 * (own_factor + factor[k]),
                                             .noise = noisy ? noise[k] : 0};
-        const struct viscosity_seen seen = viscosity_sees(viscosity, &numbers, &i, &j, &pair);
+        const struct viscosity_terms terms = viscosity_terms_of(viscosity, &numbers, &i, &j, &pair);
         const struct pair_mean_width h_bar = pair_mean_width_inverse(own_h_inverse, h_inverse[k]);
-        double term = signal_form ? pair_viscous_signal(sloped, seen, &i, &j, 1)
-                                  : pair_viscous(seen, &i, &j, h_bar, r[k], 1);
-        term *= seen.factor;
+        double term = signal_form ? pair_viscous_signal(sloped, terms, &i, &j, 1)
+                                  : pair_viscous(terms, &i, &j, h_bar, r[k], 1);
+        term *= terms.factor;
         if (sloped) term = approach(dim, lanes->stride, k, own_v, v, G) > 0 ? term : 0;
-        if (noisy) term += seen.extra;
+        if (noisy) term += terms.extra;
         K[k] = term;
     }
 }

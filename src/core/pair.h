@@ -81,29 +81,29 @@ ALWAYS_INLINE struct pair_mean_width pair_mean_width_inverse(double h_inverse_i,
  * heat), in the form of Monaghan 1992, CONVENTIONS eqs. 5.6 to 5.8: PI = (-alpha cbar mu + beta
  * mu^2)/rhobar, mu = -hbar closing r/(r^2 + 0.01 hbar^2), hbar = (h_i + h_j)/4; 0 if the pair
  * recedes. G: mean of both gradients. */
-ALWAYS_INLINE double pair_viscous(struct viscosity_seen seen, const struct pair_side *i,
+ALWAYS_INLINE double pair_viscous(struct viscosity_terms terms, const struct pair_side *i,
                                   const struct pair_side *j, struct pair_mean_width h_bar, double r,
                                   double G)
 {
     /* mu = -t under/D2. cbar and rhobar are half sums: one half is in alpha_half, and the sum of
      * the densities absorbs the 1/2 of the heating. */
-    const double over = h_bar.over, under = h_bar.under, t = over * r * seen.closing;
-    const double D2 = (r * r * (under * under) + 0.01 * (over * over)) * seen.scale;
-    return i->m * j->m * G * t * (seen.alpha_half * seen.c_sum * D2 + seen.beta * t * under) *
+    const double over = h_bar.over, under = h_bar.under, t = over * r * terms.closing;
+    const double D2 = (r * r * (under * under) + 0.01 * (over * over)) * terms.scale;
+    return i->m * j->m * G * t * (terms.alpha_half * terms.c_sum * D2 + terms.beta * t * under) *
            under / (D2 * D2 * (i->rho + j->rho));
 }
 
 /* The same term with the signal velocity (Monaghan 1997, CONVENTIONS eq. 6.2), for closing = -w_ij
  * > 0: PI = (alpha cbar + (beta/2) closing) closing/rhobar. midpoint: scale differs from 1. */
-ALWAYS_INLINE double pair_viscous_signal(bool midpoint, struct viscosity_seen seen,
+ALWAYS_INLINE double pair_viscous_signal(bool midpoint, struct viscosity_terms terms,
                                          const struct pair_side *i, const struct pair_side *j,
                                          double G)
 {
     /* one division for both quotients, by the scale and by the densities */
-    const double rho_sum = i->rho + j->rho, inverse = 1 / (seen.scale * rho_sum);
-    const double speed = midpoint ? seen.closing * rho_sum * inverse : seen.closing;
-    return i->m * j->m * G * speed * (seen.alpha_half * seen.c_sum + 0.5 * seen.beta * speed) *
-           (seen.scale * inverse);
+    const double rho_sum = i->rho + j->rho, inverse = 1 / (terms.scale * rho_sum);
+    const double speed = midpoint ? terms.closing * rho_sum * inverse : terms.closing;
+    return i->m * j->m * G * speed * (terms.alpha_half * terms.c_sum + 0.5 * terms.beta * speed) *
+           (terms.scale * inverse);
 }
 
 /* --- energy ----------------------------------------------------------------------------------- */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Artificial viscosities. A viscosity is one file in viscosity/ (formula, parameters, defaults,
  * paper: its descriptor) and one line in viscosities.def. The file's function NAME_viscous computes
- * struct viscosity_seen of a pair, from which pair.h forms the term of CONVENTIONS eq. 5.7 or 6.2,
+ * struct viscosity_terms of a pair, from which pair.h forms the term of CONVENTIONS eq. 5.7 or 6.2,
  * in 1D, 2D and 3D. Defaults, plan, sums, records and estimates use only the descriptors and name
  * no viscosity. */
 #ifndef SPHPROOF_VISCOSITY_H
@@ -42,7 +42,7 @@ struct viscosity_pair {
 };
 
 /* Output of a viscosity for one pair. */
-struct viscosity_seen {
+struct viscosity_terms {
     double closing, scale;   /* closing/scale: the closing speed, at least 0 */
     double alpha_half, beta; /* half of the pair's alpha, as c_sum is a sum */
     double c_sum;            /* sum of both sound speeds */
@@ -110,11 +110,11 @@ ALWAYS_INLINE bool viscosity_needs_slope(enum viscosity viscosity)
            viscosity_of[viscosity].find_goal;
 }
 
-ALWAYS_INLINE struct viscosity_seen viscosity_sees(enum viscosity viscosity,
-                                                   const struct pair_numbers *numbers,
-                                                   const struct pair_side *i,
-                                                   const struct pair_side *j,
-                                                   const struct viscosity_pair *pair)
+ALWAYS_INLINE struct viscosity_terms viscosity_terms_of(enum viscosity viscosity,
+                                                        const struct pair_numbers *numbers,
+                                                        const struct pair_side *i,
+                                                        const struct pair_side *j,
+                                                        const struct viscosity_pair *pair)
 {
     switch (viscosity) {
 #define VISCOSITY_CASE(symbol, name, ...)                                                          \
@@ -123,7 +123,7 @@ ALWAYS_INLINE struct viscosity_seen viscosity_sees(enum viscosity viscosity,
         VISCOSITY_LIST(VISCOSITY_CASE, )
 #undef VISCOSITY_CASE
     }
-    return (struct viscosity_seen){0};
+    return (struct viscosity_terms){0};
 }
 
 #endif

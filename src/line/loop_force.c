@@ -77,10 +77,10 @@ ALWAYS_INLINE double pairs_at(ptrdiff_t d, enum formulation formulation, enum vi
             const double G_bar =
                 formulation == FORMULATION_VANILLA_ICE ? G[i] : 0.5 * (G[i] + G_j[i]);
             const struct viscosity_pair pair = {r, closing, .factor = 1};
-            const struct viscosity_seen seen =
-                viscosity_sees(viscosity, &numbers, &left, &right, &pair);
+            const struct viscosity_terms terms =
+                viscosity_terms_of(viscosity, &numbers, &left, &right, &pair);
             const struct pair_mean_width h_bar = pair_mean_width(h[i], h[i + d]);
-            const double half = pair_viscous(seen, &left, &right, h_bar, r, G_bar);
+            const double half = pair_viscous(terms, &left, &right, h_bar, r, G_bar);
             a.i += half;
             a.j += half;
         }

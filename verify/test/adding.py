@@ -281,12 +281,12 @@ def viscosity(tree):
 #ifndef VISCOSITY_QUADRATIC_H
 #define VISCOSITY_QUADRATIC_H
 
-ALWAYS_INLINE struct viscosity_seen quadratic_viscous(const struct pair_numbers *numbers, const struct pair_side *i,
+ALWAYS_INLINE struct viscosity_terms quadratic_viscous(const struct pair_numbers *numbers, const struct pair_side *i,
                                                       const struct pair_side *j, const struct viscosity_pair *pair)
 {
-    struct viscosity_seen seen = constant_viscous(numbers, i, j, pair);
-    seen.alpha_half = 0;
-    return seen;
+    struct viscosity_terms terms = constant_viscous(numbers, i, j, pair);
+    terms.alpha_half = 0;
+    return terms;
 }
 
 #endif

@@ -4,17 +4,17 @@
 #ifndef VISCOSITY_CONSTANT_H
 #define VISCOSITY_CONSTANT_H
 
-ALWAYS_INLINE struct viscosity_seen constant_viscous(const struct pair_numbers *numbers,
-                                                     const struct pair_side *i,
-                                                     const struct pair_side *j,
-                                                     const struct viscosity_pair *pair)
+ALWAYS_INLINE struct viscosity_terms constant_viscous(const struct pair_numbers *numbers,
+                                                      const struct pair_side *i,
+                                                      const struct pair_side *j,
+                                                      const struct viscosity_pair *pair)
 {
-    return (struct viscosity_seen){.closing = largest(pair->closing, 0),
-                                   .scale = 1,
-                                   .alpha_half = 0.5 * numbers->alpha,
-                                   .beta = numbers->beta,
-                                   .c_sum = i->c + j->c,
-                                   .factor = pair->factor};
+    return (struct viscosity_terms){.closing = largest(pair->closing, 0),
+                                    .scale = 1,
+                                    .alpha_half = 0.5 * numbers->alpha,
+                                    .beta = numbers->beta,
+                                    .c_sum = i->c + j->c,
+                                    .factor = pair->factor};
 }
 
 #endif

@@ -6,18 +6,18 @@
 #ifndef VISCOSITY_CULLEN_DEHNEN_H
 #define VISCOSITY_CULLEN_DEHNEN_H
 
-ALWAYS_INLINE struct viscosity_seen cullen_dehnen_viscous(const struct pair_numbers *numbers,
-                                                          const struct pair_side *i,
-                                                          const struct pair_side *j,
-                                                          const struct viscosity_pair *pair)
+ALWAYS_INLINE struct viscosity_terms cullen_dehnen_viscous(const struct pair_numbers *numbers,
+                                                           const struct pair_side *i,
+                                                           const struct pair_side *j,
+                                                           const struct viscosity_pair *pair)
 {
     const double alpha_half = 0.25 * (i->alpha + j->alpha);
-    return (struct viscosity_seen){.closing = largest(pair->closing, 0),
-                                   .scale = 1,
-                                   .alpha_half = alpha_half,
-                                   .beta = 2 * numbers->beta_ratio * alpha_half,
-                                   .c_sum = i->c + j->c,
-                                   .factor = pair->factor};
+    return (struct viscosity_terms){.closing = largest(pair->closing, 0),
+                                    .scale = 1,
+                                    .alpha_half = alpha_half,
+                                    .beta = 2 * numbers->beta_ratio * alpha_half,
+                                    .c_sum = i->c + j->c,
+                                    .factor = pair->factor};
 }
 
 /* xi of eq. 6.7: 1 in compression, 0 in shear. */

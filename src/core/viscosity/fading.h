@@ -8,18 +8,18 @@
 
 static const double fading_below = 0.01;
 
-ALWAYS_INLINE struct viscosity_seen fading_viscous(const struct pair_numbers *numbers,
-                                                   const struct pair_side *i,
-                                                   const struct pair_side *j,
-                                                   const struct viscosity_pair *pair)
+ALWAYS_INLINE struct viscosity_terms fading_viscous(const struct pair_numbers *numbers,
+                                                    const struct pair_side *i,
+                                                    const struct pair_side *j,
+                                                    const struct viscosity_pair *pair)
 {
     const double closing = largest(pair->closing, 0);
-    return (struct viscosity_seen){.closing = closing,
-                                   .scale = 1,
-                                   .alpha_half = 0.5 * numbers->alpha,
-                                   .beta = numbers->beta,
-                                   .c_sum = least(i->c + j->c, closing * (2 / fading_below)),
-                                   .factor = pair->factor};
+    return (struct viscosity_terms){.closing = closing,
+                                    .scale = 1,
+                                    .alpha_half = 0.5 * numbers->alpha,
+                                    .beta = numbers->beta,
+                                    .c_sum = least(i->c + j->c, closing * (2 / fading_below)),
+                                    .factor = pair->factor};
 }
 
 #endif

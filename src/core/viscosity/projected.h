@@ -8,19 +8,19 @@
 #ifndef VISCOSITY_PROJECTED_H
 #define VISCOSITY_PROJECTED_H
 
-ALWAYS_INLINE struct viscosity_seen projected_viscous(const struct pair_numbers *numbers,
-                                                      const struct pair_side *i,
-                                                      const struct pair_side *j,
-                                                      const struct viscosity_pair *pair)
+ALWAYS_INLINE struct viscosity_terms projected_viscous(const struct pair_numbers *numbers,
+                                                       const struct pair_side *i,
+                                                       const struct pair_side *j,
+                                                       const struct viscosity_pair *pair)
 {
-    struct viscosity_seen seen = reconstructed_viscous(numbers, i, j, pair);
-    seen.factor = pair->factor * pair->factor;
+    struct viscosity_terms terms = reconstructed_viscous(numbers, i, j, pair);
+    terms.factor = pair->factor * pair->factor;
     /* m_i m_j PI/2, vanishing towards the sound speed */
     const double c_sum = i->c + j->c, rho_sum = i->rho + j->rho, half_nu = 0.5 * numbers->noise;
     const double inverse = 1 / (c_sum * rho_sum), mach = 2 * pair->closing * rho_sum * inverse;
     const double still_noise = largest(1 - mach * mach, 0);
-    seen.extra = i->m * j->m * half_nu * still_noise * (c_sum * c_sum * inverse) * pair->noise;
-    return seen;
+    terms.extra = i->m * j->m * half_nu * still_noise * (c_sum * c_sum * inverse) * pair->noise;
+    return terms;
 }
 
 /* A A^T. */

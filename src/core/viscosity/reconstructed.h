@@ -22,10 +22,10 @@ ALWAYS_INLINE double reconstructed_damping(double z)
 
 /* The closing speed is closing/scale, so that the pair needs one division. It is 0 if the pair
  * itself recedes: heating uses v_ij, and viscosity must not cool. */
-ALWAYS_INLINE struct viscosity_seen reconstructed_viscous(const struct pair_numbers *numbers,
-                                                          const struct pair_side *i,
-                                                          const struct pair_side *j,
-                                                          const struct viscosity_pair *pair)
+ALWAYS_INLINE struct viscosity_terms reconstructed_viscous(const struct pair_numbers *numbers,
+                                                           const struct pair_side *i,
+                                                           const struct pair_side *j,
+                                                           const struct viscosity_pair *pair)
 {
     const double r = pair->r, near = numbers->near;
     const double sum = i->slope + j->slope, product = i->slope * j->slope;
@@ -34,7 +34,7 @@ ALWAYS_INLINE struct viscosity_seen reconstructed_viscous(const struct pair_numb
     const double one_sided = product > 0 ? 2 * r * product * reconstructed_damping(z * z) : 0;
     const double scale = product > 0 ? sum : 1;
     const double at_midpoint = pair->closing * scale + one_sided;
-    return (struct viscosity_seen){
+    return (struct viscosity_terms){
         .closing = pair->closing > 0 && at_midpoint * scale > 0 ? at_midpoint : 0,
         .scale = scale,
         .alpha_half = 0.5 * numbers->alpha,

@@ -5,18 +5,18 @@
 #ifndef VISCOSITY_TIME_DEPENDENT_H
 #define VISCOSITY_TIME_DEPENDENT_H
 
-ALWAYS_INLINE struct viscosity_seen time_dependent_viscous(const struct pair_numbers *numbers,
-                                                           const struct pair_side *i,
-                                                           const struct pair_side *j,
-                                                           const struct viscosity_pair *pair)
+ALWAYS_INLINE struct viscosity_terms time_dependent_viscous(const struct pair_numbers *numbers,
+                                                            const struct pair_side *i,
+                                                            const struct pair_side *j,
+                                                            const struct viscosity_pair *pair)
 {
     const double alpha_half = 0.25 * (i->alpha + j->alpha);
-    return (struct viscosity_seen){.closing = largest(pair->closing, 0),
-                                   .scale = 1,
-                                   .alpha_half = alpha_half,
-                                   .beta = 2 * numbers->beta_ratio * alpha_half,
-                                   .c_sum = i->c + j->c,
-                                   .factor = pair->factor};
+    return (struct viscosity_terms){.closing = largest(pair->closing, 0),
+                                    .scale = 1,
+                                    .alpha_half = alpha_half,
+                                    .beta = 2 * numbers->beta_ratio * alpha_half,
+                                    .c_sum = i->c + j->c,
+                                    .factor = pair->factor};
 }
 
 static inline void time_dependent_evolve(const struct particles *a, ptrdiff_t first, int len,
