@@ -136,8 +136,7 @@ struct cells {
     struct lanes_layout density, matrix, force, shift; /* shift: viscosity switch */
     struct lanes *lanes;                               /* one for each thread */
     struct lanes_newton newton;
-    const struct cells_quiet
-        *quiet; /* arguments of cells_wake and cells_fall_asleep, for their passes */
+    const struct cells_quiet *quiet; /* arguments of cells_wake and cells_fall_asleep */
     unsigned char *asleep;
     struct reactions reactions;
 };
