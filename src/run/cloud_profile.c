@@ -27,12 +27,12 @@ static void error_values(const struct run_result *result, double *values)
     const struct snapshot *s = &result->snapshot;
     for (size_t i = 0; i < s->n; i++) {
         struct problem_state state;
-        double x[3] = {0}, place[3];
+        double x[3] = {0}, position[3];
         for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i];
         problem_sample(p, x, result->time, &state);
-        problem_place(p, s, i, place);
-        values[i] = window_contains(&p->window, place) ? speed_off(s, i, p->domain.dim, state.v)
-                                                       : (double)NAN;
+        problem_position(p, s, i, position);
+        values[i] = window_contains(&p->window, position) ? speed_off(s, i, p->domain.dim, state.v)
+                                                          : (double)NAN;
     }
 }
 
@@ -80,20 +80,20 @@ static const struct curve over_x = {NULL, false, {"density", "velocity", "pressu
                           over_R = {NULL, true, {"density", "azimuthal", "radial", "pressure"}};
 
 /* The coordinate of a position in the frame that moves with the boost. */
-static double abscissa(const struct curve *curve, const double place[3])
+static double abscissa(const struct curve *curve, const double position[3])
 {
     const struct prepared *p = &curve->result->problem;
     double square = 0;
     for (int d = 0; d < p->domain.dim; d++)
-        square += (place[d] - p->window.centre[d]) * (place[d] - p->window.centre[d]);
-    return curve->around ? sqrt(square) : place[0];
+        square += (position[d] - p->window.centre[d]) * (position[d] - p->window.centre[d]);
+    return curve->around ? sqrt(square) : position[0];
 }
 
-static void quantities(const struct curve *curve, const double place[3], double rho,
+static void quantities(const struct curve *curve, const double position[3], double rho,
                        const double v[3], double P, double values[QUANTITIES])
 {
     double azimuthal, radial;
-    problem_circular(&curve->result->problem, place, v, &azimuthal, &radial);
+    problem_circular(&curve->result->problem, position, v, &azimuthal, &radial);
     const double around[QUANTITIES] = {rho, azimuthal, radial, P},
                  along[QUANTITIES] = {rho, v[0], P};
     for (int q = 0; q < QUANTITIES; q++) values[q] = (curve->around ? around : along)[q];
@@ -102,31 +102,31 @@ static void quantities(const struct curve *curve, const double place[3], double 
 static void measured(const struct curve *curve, size_t i, double *at, double values[QUANTITIES])
 {
     const struct snapshot *s = &curve->result->snapshot;
-    double place[3], v[3];
-    problem_place(&curve->result->problem, s, i, place);
+    double position[3], v[3];
+    problem_position(&curve->result->problem, s, i, position);
     problem_velocity(&curve->result->problem, s, i, v);
-    *at = abscissa(curve, place);
-    quantities(curve, place, s->rho[i], v, s->P[i], values);
+    *at = abscissa(curve, position);
+    quantities(curve, position, s->rho[i], v, s->P[i], values);
 }
 
 /* Exact values at a position in the moving frame. */
-static void exactly(const struct curve *curve, const double place[3], double values[QUANTITIES])
+static void exactly(const struct curve *curve, const double position[3], double values[QUANTITIES])
 {
     const struct prepared *p = &curve->result->problem;
     struct prepared unboosted = *p;
     struct problem_state state;
     for (int d = 0; d < 3; d++) unboosted.boost[d] = 0;
-    problem_sample(&unboosted, place, curve->result->time, &state);
-    quantities(curve, place, state.rho, state.v, state.P, values);
+    problem_sample(&unboosted, position, curve->result->time, &state);
+    quantities(curve, position, state.rho, state.v, state.P, values);
 }
 
 /* Exact values at a coordinate, on the line along x through the window's centre. */
 static void on_curve(const struct curve *curve, double at, double values[QUANTITIES])
 {
     const struct window *window = &curve->result->problem.window;
-    double place[3] = {window->centre[0], window->centre[1], window->centre[2]};
-    place[0] = curve->around ? place[0] + at : at;
-    exactly(curve, place, values);
+    double position[3] = {window->centre[0], window->centre[1], window->centre[2]};
+    position[0] = curve->around ? position[0] + at : at;
+    exactly(curve, position, values);
 }
 
 /* True if the exact values at the particles depend only on the coordinate. */
@@ -135,11 +135,11 @@ static bool holds(const struct curve *curve)
     const struct snapshot *s = &curve->result->snapshot;
     const size_t step = s->n / 97 + 1;
     for (size_t i = 0; i < s->n; i += step) {
-        double place[3], here[QUANTITIES], there[QUANTITIES];
-        problem_place(&curve->result->problem, s, i, place);
-        if (!window_contains(&curve->result->problem.window, place)) continue;
-        exactly(curve, place, here);
-        on_curve(curve, abscissa(curve, place), there);
+        double position[3], here[QUANTITIES], there[QUANTITIES];
+        problem_position(&curve->result->problem, s, i, position);
+        if (!window_contains(&curve->result->problem.window, position)) continue;
+        exactly(curve, position, here);
+        on_curve(curve, abscissa(curve, position), there);
         for (int q = 0; q < QUANTITIES; q++)
             if (!(fabs(here[q] - there[q]) <= 1e-9 * (1 + fabs(here[q])))) return false;
     }
@@ -161,13 +161,13 @@ static void add_particles(const struct curve *curve, json_t *profile)
     const size_t n = result->snapshot.n;
     uint64_t chosen = 1; /* at random: lattices have rows */
     for (size_t i = 0; i < n; i++) {
-        double place[3], at, values[QUANTITIES], exact[QUANTITIES];
+        double position[3], at, values[QUANTITIES], exact[QUANTITIES];
         chosen = chosen * 6364136223846793005u + 1442695040888963407u;
         if ((double)(chosen >> 11) * 0x1p-53 * (double)n > SHOWN) continue;
-        problem_place(&result->problem, &result->snapshot, i, place);
-        if (!window_contains(&result->problem.window, place)) continue;
+        problem_position(&result->problem, &result->snapshot, i, position);
+        if (!window_contains(&result->problem.window, position)) continue;
         measured(curve, i, &at, values);
-        exactly(curve, place, exact);
+        exactly(curve, position, exact);
         append(profile, "", "x", at);
         for (int q = 0; q < QUANTITIES && curve->names[q]; q++) {
             append(profile, "", curve->names[q], values[q]);

@@ -8,7 +8,7 @@ double functional_window_mean(const struct prepared *p, const struct snapshot *s
 {
     double sum = 0, volume = 0, x[3];
     for (size_t i = 0; i < s->n; i++) {
-        problem_place(p, s, i, x);
+        problem_position(p, s, i, x);
         if (!window_contains(&p->window, x)) continue;
         sum += s->volume[i] * field[i];
         volume += s->volume[i];
@@ -58,7 +58,7 @@ static double velocity_measured(const struct prepared *p, const struct snapshot 
     double sum = 0, volume = 0;
     for (size_t i = 0; i < s->n; i++) {
         double x[3], v[3];
-        problem_place(p, s, i, x);
+        problem_position(p, s, i, x);
         problem_velocity(p, s, i, v);
         if (!window_contains(&p->window, x)) continue;
         const double squares = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];

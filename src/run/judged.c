@@ -61,9 +61,9 @@ static double exact_at(const struct run_result *result, size_t i, enum field fie
 
 static bool in_window(const struct run_result *result, size_t i)
 {
-    double place[3];
-    problem_place(&result->problem, &result->snapshot, i, place);
-    return window_contains(&result->problem.window, place);
+    double position[3];
+    problem_position(&result->problem, &result->snapshot, i, position);
+    return window_contains(&result->problem.window, position);
 }
 
 static double signal_of(const struct run_result *result, enum field field)

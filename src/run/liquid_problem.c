@@ -21,7 +21,7 @@ double liquid_amplitude(const struct prepared *p, const struct snapshot *s, liqu
         const double part = problem_window_part(p, s, i);
         double x[3], v[3], m[3] = {0};
         if (!(part > 0)) continue;
-        problem_place(p, s, i, x);
+        problem_position(p, s, i, x);
         problem_velocity(p, s, i, v);
         mode(p, x, m);
         for (int d = 0; d < p->domain.dim; d++) {

@@ -11,7 +11,8 @@ static size_t cells_along(double length, double spacing, size_t most)
     return fit ? fit : 1;
 }
 
-static void place(struct map *map, const struct domain *domain, const struct snapshot *s, size_t i)
+static void bin_particle(struct map *map, const struct domain *domain, const struct snapshot *s,
+                         size_t i)
 {
     const size_t cells[2] = {map->nx, map->ny};
     size_t at[2];
@@ -77,7 +78,7 @@ enum status map_create(struct map *map, const struct domain *domain, const struc
     set_centres(map->y, map->ny, map->lo[1], domain_length(domain, 1));
     set_centres(map->x, map->nx, map->lo[0], domain_length(domain, 0));
     for (size_t i = 0; i < s->n; i++) {
-        place(map, domain, s, i);
+        bin_particle(map, domain, s, i);
         cover(map, s, i);
     }
     return STATUS_OK;

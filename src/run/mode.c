@@ -109,7 +109,7 @@ static struct projection project(const struct prepared *p, const struct snapshot
     struct sums sums = {0};
     for (size_t i = 0; i < s->n; i++) {
         double x[3], v[3], at[2];
-        problem_place(p, s, i, x);
+        problem_position(p, s, i, x);
         problem_velocity(p, s, i, v);
         to_mode(start, x, at);
         add_particle(&sums, start, at, (x[1] - p->domain.lo[1]) / domain_length(&p->domain, 1),

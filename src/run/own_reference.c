@@ -136,7 +136,7 @@ struct errand {
 };
 
 /* A position in the window, the same for the same k. */
-static void place_in(const struct prepared *p, int k, double x[3])
+static void position_of(const struct prepared *p, int k, double x[3])
 {
     /* multiples of irrational numbers avoid symmetric positions */
     static const double steps[3] = {0.7548776662466927, 0.5698402909980532, 0.3819660112501051};
@@ -161,7 +161,7 @@ static enum status try_calls(const void *context, json_t **reply, struct error *
     for (int k = 0; k < TRIES; k++) {
         struct problem_state state;
         double x[3];
-        place_in(errand->p, k, x);
+        position_of(errand->p, k, x);
         sample_user(errand->own, errand->p, x, errand->t, &state);
         for (int f = 0; f < FIELDS; f++) known[f] += isfinite(problem_field(&state, (enum field)f));
     }

@@ -55,8 +55,8 @@ static enum status unsorted(const struct own_table *table, const char *path, con
 
 /* Reads the positions of the rows: one increasing coordinate, or all pairs of two. order: index of
  * row i in the table. */
-static enum status read_places(struct own_table *table, const char *path, const struct csv *csv,
-                               const double *const at[2], size_t *order, struct error *error)
+static enum status read_positions(struct own_table *table, const char *path, const struct csv *csv,
+                                  const double *const at[2], size_t *order, struct error *error)
 {
     const size_t rows = csv->rows;
     const bool both = table->over == OVER_XY;
@@ -121,7 +121,7 @@ static enum status read_columns(struct own_table *table, const char *path, const
                          path);
     table->over = r >= 0 ? OVER_R : y >= 0 ? OVER_XY : OVER_X;
     const double *const at[2] = {csv->values[r >= 0 ? r : x], y >= 0 ? csv->values[y] : NULL};
-    if (read_places(table, path, csv, at, order, error)) return error->status;
+    if (read_positions(table, path, csv, at, order, error)) return error->status;
     for (int c = 0; c < COLUMNS; c++) {
         const int k = csv_column(csv, column_names[c]);
         if (k < 0 || (table->over == OVER_R ? c >= VX && c <= VZ : c >= VR)) continue;
@@ -352,8 +352,8 @@ static double width_of(const double *axis, size_t n, size_t i)
 }
 
 /* Position of a row; on the x axis for a table over r. */
-static void place_of(const struct own_table *table, const struct prepared *p, size_t i, size_t j,
-                     double at[3])
+static void row_position(const struct own_table *table, const struct prepared *p, size_t i,
+                         size_t j, double at[3])
 {
     for (int d = 0; d < 3; d++) at[d] = p->window.centre[d];
     at[0] = table->over == OVER_R ? p->window.centre[0] + table->axis[0][i] : table->axis[0][i];
@@ -387,7 +387,7 @@ static void miss_rows(const struct own_table *table, const struct own_table *hal
             struct problem_state whole, less;
             double at[3];
             if (i % 2 == 0 && j % 2 == 0) continue;
-            place_of(table, p, i, j, at);
+            row_position(table, p, i, j, at);
             if (!window_contains(&p->window, at)) continue;
             state_at(table, p, at, over, &whole);
             state_at(half, p, at, over, &less);
@@ -406,11 +406,11 @@ static void miss_particles(const struct own_table *table, const struct own_table
     for (size_t i = 0; i < s->n; i++) {
         struct problem_state whole, less;
         const double part = problem_window_part(p, s, i);
-        double place[3];
+        double position[3];
         if (!(part > 0)) continue;
-        problem_place(p, s, i, place);
-        own_table_sample(table, p, place, &whole);
-        own_table_sample(half, p, place, &less);
+        problem_position(p, s, i, position);
+        own_table_sample(table, p, position, &whole);
+        own_table_sample(half, p, position, &less);
         add_missed(missed, p, part, &whole, &less);
     }
 }

@@ -8,7 +8,7 @@
 #include "initial.h"
 #include "problem.h"
 
-static const char *const places[] = {"x", "y", "z"}, *const velocities[] = {"vx", "vy", "vz"};
+static const char *const positions[] = {"x", "y", "z"}, *const velocities[] = {"vx", "vy", "vz"};
 
 /* Finds a column by name; NULL in a file without rows. Fails if there is no such column. */
 static enum status find(const struct particle_file *file, const char *path, const char *name,
@@ -64,7 +64,7 @@ enum status particle_file_of(const char *path, struct particle_file *file, struc
                 : csv_column(&file->csv, "y") >= 0 || csv_column(&file->csv, "vy") >= 0 ? 2
                                                                                         : 1;
     for (int a = 0; a < file->dim; a++)
-        if (find(file, path, places[a], &file->x[a], error) ||
+        if (find(file, path, positions[a], &file->x[a], error) ||
             find(file, path, velocities[a], &file->v[a], error))
             return error->status;
     if (find(file, path, "m", &file->m, error) || find(file, path, "u", &file->u, error))
@@ -112,8 +112,8 @@ enum status particle_file_fill(const struct particle_file *file, const char *pat
             if (!(setup->x[a][i] >= setup->lo[a] && setup->x[a][i] <= setup->hi[a]))
                 return error_set(error, STATUS_BAD_INPUT,
                                  "%.200s:%zu: %s = %.9g: allowed: inside of the box, %.9g to %.9g",
-                                 path, file->csv.line[i], places[a], setup->x[a][i], setup->lo[a],
-                                 setup->hi[a]);
+                                 path, file->csv.line[i], positions[a], setup->x[a][i],
+                                 setup->lo[a], setup->hi[a]);
     }
     return STATUS_OK;
 }
@@ -121,8 +121,8 @@ enum status particle_file_fill(const struct particle_file *file, const char *pat
 /* ---- initial state of a run ---- */
 
 /* Particles must be inside the box, except along open directions. */
-static enum status check_places(const struct particle_file *file, const char *path,
-                                const struct prepared *p, struct error *error)
+static enum status check_positions(const struct particle_file *file, const char *path,
+                                   const struct prepared *p, struct error *error)
 {
     const int dim = p->domain.dim;
     if (file->dim != dim)
@@ -140,7 +140,7 @@ static enum status check_places(const struct particle_file *file, const char *pa
             if (p->boundary[d] != BOUNDARY_OPEN && !(file->x[d][i] >= lo && file->x[d][i] <= hi))
                 return error_set(error, STATUS_BAD_INPUT,
                                  "%.200s:%zu: %s = %.9g: allowed: inside of the box, %.9g to %.9g",
-                                 path, file->csv.line[i], places[d], file->x[d][i], lo, hi);
+                                 path, file->csv.line[i], positions[d], file->x[d][i], lo, hi);
     }
     for (size_t i = 0; file->rho && i < file->csv.rows; i++)
         if (!(file->rho[i] > 0))
@@ -171,7 +171,7 @@ enum status particle_file_start(const char *path, const struct prepared *p, stru
 {
     struct particle_file file;
     enum status status = particle_file_read(path, &file, error);
-    if (!status) status = check_places(&file, path, p, error);
+    if (!status) status = check_positions(&file, path, p, error);
     if (!status) status = initial_allocate(initial, file.dim, file.csv.rows, error);
     if (!status) {
         const size_t bytes = initial->n * sizeof(double);

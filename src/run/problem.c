@@ -18,23 +18,23 @@ enum status problem_check_state(const struct settings *settings, enum setting ke
 
 /* Position without the boost, in the box. */
 static void unboosted_position(const struct prepared *p, const double x[3], double t,
-                               double place[3])
+                               double position[3])
 {
     for (int d = 0; d < 3; d++) {
-        place[d] = x[d];
+        position[d] = x[d];
         if (p->boost[d] == 0) continue;
         const double lo = p->domain.lo[d], length = domain_length(&p->domain, d);
         const double from_lo = x[d] - p->boost[d] * t - lo;
-        place[d] = lo + (from_lo - length * floor(from_lo / length));
+        position[d] = lo + (from_lo - length * floor(from_lo / length));
     }
 }
 
 void problem_sample(const struct prepared *p, const double x[3], double t,
                     struct problem_state *state)
 {
-    double place[3];
-    unboosted_position(p, x, t, place);
-    p->problem->sample(p, place, t, state);
+    double position[3];
+    unboosted_position(p, x, t, position);
+    p->problem->sample(p, position, t, state);
     for (int d = 0; d < p->domain.dim; d++)
         if (p->boost[d] != 0) state->v[d] += p->boost[d];
 }
@@ -84,11 +84,11 @@ enum status problem_check_time(const struct prepared *p, double t, struct error 
     return problem->refuse(p, t, longest, error);
 }
 
-void problem_place(const struct prepared *p, const struct snapshot *s, size_t i, double x[3])
+void problem_position(const struct prepared *p, const struct snapshot *s, size_t i, double x[3])
 {
-    double place[3];
-    for (int d = 0; d < 3; d++) place[d] = d < p->domain.dim ? s->x[d][i] : 0;
-    unboosted_position(p, place, s->time, x);
+    double position[3];
+    for (int d = 0; d < 3; d++) position[d] = d < p->domain.dim ? s->x[d][i] : 0;
+    unboosted_position(p, position, s->time, x);
 }
 
 void problem_velocity(const struct prepared *p, const struct snapshot *s, size_t i, double v[3])
@@ -124,7 +124,7 @@ double problem_window_part(const struct prepared *p, const struct snapshot *s, s
 {
     const double side = pow(s->volume[i], 1. / p->domain.dim);
     double x[3], part = s->volume[i];
-    problem_place(p, s, i, x);
+    problem_position(p, s, i, x);
     for (int d = 0; d < p->domain.dim; d++) {
         if (!isfinite(x[d])) return (double)NAN; /* fmin and fmax ignore NaN */
         part *= part_along(p, d, x[d], side);

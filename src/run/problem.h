@@ -167,7 +167,7 @@ enum status problem_check_state(const struct settings *settings, enum setting ke
                                 struct error *error);
 
 /* Position and velocity of particle i without the boost. */
-void problem_place(const struct prepared *p, const struct snapshot *s, size_t i, double x[3]);
+void problem_position(const struct prepared *p, const struct snapshot *s, size_t i, double x[3]);
 void problem_velocity(const struct prepared *p, const struct snapshot *s, size_t i, double v[3]);
 
 /* The part of the volume of particle i that lies in the window; a continuous function of the
@@ -177,7 +177,7 @@ void problem_velocity(const struct prepared *p, const struct snapshot *s, size_t
  * position. */
 double problem_window_part(const struct prepared *p, const struct snapshot *s, size_t i);
 
-/* Distance of x, as given by problem_place, from the window's centre. */
+/* Distance of x, as given by problem_position, from the window's centre. */
 double problem_radius(const struct prepared *p, const double x[3]);
 
 /* For prepare of a problem: the key `direction` as a unit vector, and the length of a wave along it

@@ -62,7 +62,7 @@ json_t *profile_json(const struct run_result *result)
     json_t *particles = json_object();
     for (size_t i = 0; i < s->n; i++) {
         double x[3];
-        problem_place(&result->problem, s, i, x);
+        problem_position(&result->problem, s, i, x);
         if (!window_contains(&result->problem.window, x)) continue;
         const double value[PROFILE_FIELDS] = {s->rho[i], s->v[0][i], s->P[i]};
         double exact[FIELDS];

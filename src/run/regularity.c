@@ -19,7 +19,7 @@ struct sums {
 };
 
 /* One point and the sums over its neighbours so far. */
-struct place {
+struct point {
     size_t i;
     double nearest, sum, to[3];
 };
@@ -33,18 +33,18 @@ struct part {
     double delta[3][PART], volume[PART];
 };
 
-static struct place place_of(const struct regularity_cloud *cloud, size_t i, double widest)
+static struct point sums_of_point(const struct regularity_cloud *cloud, size_t i, double widest)
 {
     const double self = kernel_value(cloud->kernel, 0, cloud->h[i], cloud->box.dim);
-    return (struct place){.i = i, .nearest = widest, .sum = cloud->volume[i] * self};
+    return (struct point){.i = i, .nearest = widest, .sum = cloud->volume[i] * self};
 }
 
-static void see(const struct sums *sums, struct place *place, const struct part *part)
+static void add_pairs(const struct sums *sums, struct point *point, const struct part *part)
 {
     const struct regularity_cloud *cloud = sums->cloud;
     const struct kernel *kernel = cloud->kernel;
     const int dim = cloud->box.dim;
-    const double h = cloud->h[place->i], constant = kernel->constant[dim],
+    const double h = cloud->h[point->i], constant = kernel->constant[dim],
                  volume = dim == 1   ? h
                           : dim == 2 ? h * h
                                      : h * h * h;
@@ -54,7 +54,7 @@ static void see(const struct sums *sums, struct place *place, const struct part 
         for (int d = 0; d < dim; d++) square += part->delta[d][k] * part->delta[d][k];
         r[k] = sqrt(square);
         q[k] = r[k] / h;
-        if (r[k] < place->nearest) place->nearest = r[k];
+        if (r[k] < point->nearest) point->nearest = r[k];
     }
     sums->shapes.w(kernel, part->count, q, w);
     sums->shapes.dw(kernel, part->count, q, dw);
@@ -62,8 +62,8 @@ static void see(const struct sums *sums, struct place *place, const struct part 
         if (!(r[k] < h)) continue;
         const double V = part->volume[k] * (constant / volume),
                      slope = r[k] > 0 ? V * dw[k] / r[k] : 0;
-        place->sum += V * w[k];
-        for (int d = 0; d < dim; d++) place->to[d] += slope * part->delta[d][k];
+        point->sum += V * w[k];
+        for (int d = 0; d < dim; d++) point->to[d] += slope * part->delta[d][k];
     }
 }
 
@@ -76,25 +76,25 @@ static bool is_whole(const struct regularity_cloud *cloud, size_t i)
     return true;
 }
 
-static void add(struct sums *sums, const struct place *place)
+static void add_point(struct sums *sums, const struct point *point)
 {
     const struct regularity_cloud *cloud = sums->cloud;
     const int dim = cloud->box.dim;
-    const double distance = place->nearest / pow(cloud->volume[place->i], 1. / dim);
+    const double distance = point->nearest / pow(cloud->volume[point->i], 1. / dim);
     const double off = distance - sums->distance;
     sums->distance += off / (double)++sums->points;
     sums->squares += off * (distance - sums->distance);
     sums->paired += distance < 0.5;
-    if (!is_whole(cloud, place->i)) return;
+    if (!is_whole(cloud, point->i)) return;
     sums->whole++;
-    sums->density += (place->sum - 1) * (place->sum - 1);
-    for (int d = 0; d < dim; d++) sums->gradient += place->to[d] * place->to[d];
+    sums->density += (point->sum - 1) * (point->sum - 1);
+    for (int d = 0; d < dim; d++) sums->gradient += point->to[d] * point->to[d];
 }
 
 /* ---- neighbours in 2D and 3D ---- */
 
-static struct place see_slot(const struct sums *sums, const struct grid *grid,
-                             struct grid_reader *reader, size_t slot, double widest)
+static struct point sums_of_slot(const struct sums *sums, const struct grid *grid,
+                                 struct grid_reader *reader, size_t slot, double widest)
 {
     const struct regularity_cloud *cloud = sums->cloud;
     const struct grid_list *lists = grid_lists(grid);
@@ -104,7 +104,7 @@ static struct place see_slot(const struct sums *sums, const struct grid *grid,
     double side[3];
     for (int d = 0; d < cloud->box.dim; d++)
         side[d] = lists[slot].wrapped && grid_side(grid, d) > 0 ? grid_side(grid, d) : HUGE_VAL;
-    struct place place = place_of(cloud, order[slot], widest);
+    struct point point = sums_of_point(cloud, order[slot], widest);
     struct part part;
     for (int32_t from = 0; from < count; from += PART) {
         part.count = count - from < PART ? (size_t)(count - from) : PART;
@@ -114,9 +114,9 @@ static struct place see_slot(const struct sums *sums, const struct grid *grid,
                 part.delta[d][k] = grid_nearest(position[slot][d] - position[other][d], side[d]);
             part.volume[k] = cloud->volume[order[other]];
         }
-        see(sums, &place, &part);
+        add_pairs(sums, &point, &part);
     }
-    return place;
+    return point;
 }
 
 enum { BLOCK = 65536 };
@@ -124,7 +124,8 @@ enum { BLOCK = 65536 };
 /* Threads share the points of the block that begins at `first`. The results are added in the order
  * of the slots, so that they do not depend on the number of threads. */
 static bool walk_block(struct sums *sums, const struct grid *grid, size_t first,
-                       const unsigned char *asleep, double widest, int threads, struct place *seen)
+                       const unsigned char *asleep, double widest, int threads,
+                       struct point *points)
 {
     const size_t n = sums->cloud->n;
     const uint32_t *order = grid_order(grid);
@@ -136,25 +137,26 @@ static bool walk_block(struct sums *sums, const struct grid *grid, size_t first,
 #pragma omp for schedule(dynamic, 256)
         for (size_t slot = 0; slot < n; slot++)
             if (reads && !asleep[order[slot]])
-                seen[order[slot] - first] = see_slot(sums, grid, &reader, slot, widest);
+                points[order[slot] - first] = sums_of_slot(sums, grid, &reader, slot, widest);
         grid_reader_free(&reader);
     }
     for (size_t slot = 0; enough && slot < n; slot++)
-        if (!asleep[order[slot]]) add(sums, &seen[order[slot] - first]);
+        if (!asleep[order[slot]]) add_point(sums, &points[order[slot] - first]);
     return enough;
 }
 
 /* Searches neighbours for one block of points at a time, since the lists of all points would take
  * too much memory. */
 static enum status walk_blocks(struct sums *sums, struct grid *grid, unsigned char *asleep,
-                               double widest, int threads, struct place *seen, struct error *error)
+                               double widest, int threads, struct point *points,
+                               struct error *error)
 {
     const struct regularity_cloud *cloud = sums->cloud;
     enum status status = STATUS_OK;
     for (size_t first = 0; !status && first < cloud->n; first += BLOCK) {
         for (size_t i = 0; i < cloud->n; i++) asleep[i] = i < first || i - first >= BLOCK;
         status = grid_search(grid, cloud->n, cloud->n, cloud->x, cloud->h, asleep, error);
-        if (!status && !walk_block(sums, grid, first, asleep, widest, threads, seen))
+        if (!status && !walk_block(sums, grid, first, asleep, widest, threads, points))
             status = error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", cloud->n);
     }
     return status;
@@ -172,12 +174,12 @@ static enum status walk_grid(struct sums *sums, double widest, struct error *err
     }
     struct grid *grid = grid_create(&box, cloud->n, threads);
     unsigned char *asleep = malloc(cloud->n);
-    struct place *seen = malloc((cloud->n < BLOCK ? cloud->n : BLOCK) * sizeof *seen);
+    struct point *points = malloc((cloud->n < BLOCK ? cloud->n : BLOCK) * sizeof *points);
     const enum status status =
-        grid && asleep && seen
-            ? walk_blocks(sums, grid, asleep, widest, threads, seen, error)
+        grid && asleep && points
+            ? walk_blocks(sums, grid, asleep, widest, threads, points, error)
             : error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", cloud->n);
-    free(seen);
+    free(points);
     free(asleep);
     grid_destroy(grid);
     return status;
@@ -190,7 +192,7 @@ struct stand {
     size_t i;
 };
 
-static int by_place(const void *a, const void *b)
+static int by_position(const void *a, const void *b)
 {
     const double p = ((const struct stand *)a)->x, q = ((const struct stand *)b)->x;
     return (p > q) - (p < q);
@@ -198,7 +200,7 @@ static int by_place(const void *a, const void *b)
 
 /* Adds the neighbours on one side of point k in the sorted row within its h, and at least one. */
 static void walk_side(const struct sums *sums, const struct stand *row, size_t k, bool right,
-                      struct place *place)
+                      struct point *point)
 {
     const struct regularity_cloud *cloud = sums->cloud;
     const double side = domain_length(&cloud->box, 0);
@@ -211,8 +213,8 @@ static void walk_side(const struct sums *sums, const struct stand *row, size_t k
         const struct part part = {.count = 1,
                                   .delta[0][0] = row[k].x - row[other].x - image,
                                   .volume[0] = cloud->volume[row[other].i]};
-        see(sums, place, &part);
-        if (!(fabs(part.delta[0][0]) < cloud->h[place->i])) return;
+        add_pairs(sums, point, &part);
+        if (!(fabs(part.delta[0][0]) < cloud->h[point->i])) return;
     }
 }
 
@@ -226,12 +228,12 @@ static enum status walk_line(struct sums *sums, double widest, struct error *err
         const double x = cloud->x[0][i];
         row[i] = (struct stand){cloud->periodic[0] ? x - side * floor((x - lo) / side) : x, i};
     }
-    qsort(row, cloud->n, sizeof *row, by_place);
+    qsort(row, cloud->n, sizeof *row, by_position);
     for (size_t k = 0; k < cloud->n; k++) {
-        struct place place = place_of(cloud, row[k].i, widest);
-        walk_side(sums, row, k, true, &place);
-        walk_side(sums, row, k, false, &place);
-        add(sums, &place);
+        struct point point = sums_of_point(cloud, row[k].i, widest);
+        walk_side(sums, row, k, true, &point);
+        walk_side(sums, row, k, false, &point);
+        add_point(sums, &point);
     }
     free(row);
     return STATUS_OK;

@@ -37,11 +37,11 @@ bool relax_store_find(uint64_t content, int dim, size_t n, double *const x[3])
     if (!open_store(&cache, n)) return false;
     make_key(key, content, dim, n);
     json_t *document = cache_load(&cache, key, NULL);
-    const json_t *places = json_object_get(document, "x");
-    const bool found = json_array_size(places) == (size_t)dim * n;
+    const json_t *positions = json_object_get(document, "x");
+    const bool found = json_array_size(positions) == (size_t)dim * n;
     for (size_t i = 0; found && i < n; i++)
         for (size_t d = 0; d < (size_t)dim; d++)
-            x[d][i] = json_number_value(json_array_get(places, d * n + i));
+            x[d][i] = json_number_value(json_array_get(positions, d * n + i));
     json_decref(document);
     return found;
 }
@@ -54,10 +54,10 @@ void relax_store_keep(uint64_t content, int dim, size_t n, double *const x[3])
     struct cache_census census;
     if (!open_store(&cache, n)) return;
     make_key(key, content, dim, n);
-    json_t *places = json_array(), *document = json_object();
+    json_t *positions = json_array(), *document = json_object();
     for (int d = 0; d < dim; d++)
-        for (size_t i = 0; i < n; i++) json_array_append_new(places, json_real(x[d][i]));
-    if (!json_object_set_new(document, "x", places)) {
+        for (size_t i = 0; i < n; i++) json_array_append_new(positions, json_real(x[d][i]));
+    if (!json_object_set_new(document, "x", positions)) {
         cache_prune(cache.folder, CACHE_MONTH, &census, &ignored);
         cache_store(&cache, key, document, &ignored);
     }

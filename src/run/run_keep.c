@@ -48,10 +48,10 @@ enum status run_keep(struct run_result *result, const struct snapshot *snapshot,
         volume *= domain_length(domain, d);
     }
     const double *const scalars[] = {seen.m, seen.rho, seen.u, seen.P, seen.h, seen.volume};
-    const double **const places[] = {&kept->m, &kept->rho, &kept->u,
-                                     &kept->P, &kept->h,   &kept->volume};
+    const double **const targets[] = {&kept->m, &kept->rho, &kept->u,
+                                      &kept->P, &kept->h,   &kept->volume};
     for (size_t k = 0; k < sizeof scalars / sizeof *scalars; k++)
-        from[arrays] = scalars[k], to[arrays++] = places[k];
+        from[arrays] = scalars[k], to[arrays++] = targets[k];
     result->storage = malloc(arrays * seen.n * sizeof(double));
     if (!result->storage) return error_set(error, STATUS_ENVIRONMENT, "no memory for a snapshot");
     for (size_t i = 0; i < arrays; i++) {

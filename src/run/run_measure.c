@@ -11,7 +11,7 @@
 /* Measured and exact values for the errors, n numbers each. */
 struct comparison {
     double *exact[FIELDS]; /* of each field at the particles; velocity along x */
-    double *place;         /* 0: in the window, 2: outside, NaN: position is not finite */
+    double *where;         /* 0: in the window, 2: outside, NaN: position is not finite */
     double *none;          /* zeros */
     double *part;          /* volume in the window */
     double *jump;          /* |v - exact v| */
@@ -28,13 +28,13 @@ static double own_reach(int dim, double volume)
 
 /* If the volume of a particle contains a point where u is unbounded, replaces the exact u by the
  * mean over a ball of this volume. */
-static void bound_energy(const struct run_result *result, size_t i, const double place[3],
+static void bound_energy(const struct run_result *result, size_t i, const double position[3],
                          struct problem_state *state)
 {
     const struct prepared *p = &result->problem;
     if (!p->problem->mean_energy) return;
     const double reach = own_reach(p->domain.dim, result->snapshot.volume[i]);
-    if (problem_radius(p, place) < reach)
+    if (problem_radius(p, position) < reach)
         state->u = p->problem->mean_energy(p, reach, result->time);
 }
 
@@ -43,7 +43,7 @@ static bool compare(struct comparison *of, const struct run_result *result)
     const struct prepared *p = &result->problem;
     const struct snapshot *s = &result->snapshot;
     double *next = of->storage = calloc((FIELDS + 8) * s->n, sizeof *next);
-    double **const arrays[] = {&of->place,     &of->none,         &of->part,
+    double **const arrays[] = {&of->where,     &of->none,         &of->part,
                                &of->jump,      &of->azimuthal[0], &of->azimuthal[1],
                                &of->radial[0], &of->radial[1]};
     if (!next) return false;
@@ -52,24 +52,24 @@ static bool compare(struct comparison *of, const struct run_result *result)
     for (size_t i = 0; i < s->n; i++) {
         struct problem_state state;
         double x[3] = {0}, exact_v[3] = {0};
-        double place[3], v[3], squares = 0;
+        double position[3], v[3], squares = 0;
         for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i];
         problem_sample(p, x, result->time, &state);
-        problem_place(p, s, i, place);
-        bound_energy(result, i, place, &state);
+        problem_position(p, s, i, position);
+        bound_energy(result, i, position, &state);
         for (int f = 0; f < FIELDS; f++) of->exact[f][i] = problem_field(&state, (enum field)f);
         problem_velocity(p, s, i, v);
         for (int d = 0; d < p->domain.dim; d++) {
             exact_v[d] = state.v[d] - p->boost[d];
             squares += (v[d] - exact_v[d]) * (v[d] - exact_v[d]);
         }
-        of->place[i] = window_contains(&p->window, place) ? 0 : 2;
-        for (int d = 0; d < p->domain.dim; d++) of->place[i] += 0 * x[d]; /* NaN if x is */
+        of->where[i] = window_contains(&p->window, position) ? 0 : 2;
+        for (int d = 0; d < p->domain.dim; d++) of->where[i] += 0 * x[d]; /* NaN if x is */
         of->part[i] = problem_window_part(p, s, i);
         of->jump[i] = sqrt(squares);
         if (!problem_is_circular(p)) continue;
-        problem_circular(p, place, v, &of->azimuthal[0][i], &of->radial[0][i]);
-        problem_circular(p, place, exact_v, &of->azimuthal[1][i], &of->radial[1][i]);
+        problem_circular(p, position, v, &of->azimuthal[0][i], &of->radial[0][i]);
+        problem_circular(p, position, exact_v, &of->azimuthal[1][i], &of->radial[1][i]);
     }
     return true;
 }
@@ -93,7 +93,7 @@ static enum status suspect(struct run_result *result, const double *const *measu
     for (int field = 0; field < FIELDS; field++)
         all &= problem_knows(result->problem.problem, (enum field)field);
     for (size_t i = 0; i < s->n && all; i++) {
-        if (of->place[i] > 0) continue;
+        if (of->where[i] > 0) continue;
         for (size_t field = 0; field < FIELDS; field++) {
             inside[field * s->n + n] = measured[field][i];
             inside[(FIELDS + field) * s->n + n] = of->exact[field][i];
@@ -118,7 +118,7 @@ static struct norms norms_of(const struct snapshot *s, const struct comparison *
                              const double *value, const double *exact)
 {
     static const double window[2] = {-1, 1};
-    struct norms norms = norm_errors(s->n, of->place, window, s->volume, value, exact);
+    struct norms norms = norm_errors(s->n, of->where, window, s->volume, value, exact);
     if (norms.n) norms.l1 = norm_l1(s->n, of->part, value, exact);
     return norms;
 }
@@ -173,7 +173,7 @@ void run_measure_budget(const struct prepared *p, const struct snapshot *s,
     for (size_t i = 0; i < s->n; i++) {
         const double part = problem_window_part(p, s, i);
         if (part == 0) continue;
-        problem_place(p, s, i, x);
+        problem_position(p, s, i, x);
         const size_t region = regions->at(p, x, BUDGET_REACH * s->h[i], s->time);
         volume += part;
         for (int f = 0; f < FIELDS; f++)

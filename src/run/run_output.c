@@ -96,21 +96,21 @@ json_t *run_budget_json(const struct budget *budget)
     return object;
 }
 
-static json_t *place_json(int dim, const double x[3])
+static json_t *position_json(int dim, const double x[3])
 {
-    json_t *place = json_array();
-    for (int d = 0; d < dim; d++) json_array_append_new(place, json_real(x[d]));
-    return place;
+    json_t *array = json_array();
+    for (int d = 0; d < dim; d++) json_array_append_new(array, json_real(x[d]));
+    return array;
 }
 
 json_t *run_window_json(const struct window *window)
 {
     if (window->radius > 0)
-        return result_object("centre=%p radius=%g", (void *)place_json(window->dim, window->centre),
-                             window->radius);
+        return result_object("centre=%p radius=%g",
+                             (void *)position_json(window->dim, window->centre), window->radius);
     if (window->dim == 1) return json_pack("[f, f]", window->lo[0], window->hi[0]);
-    return result_object("lo=%p hi=%p", (void *)place_json(window->dim, window->lo),
-                         (void *)place_json(window->dim, window->hi));
+    return result_object("lo=%p hi=%p", (void *)position_json(window->dim, window->lo),
+                         (void *)position_json(window->dim, window->hi));
 }
 
 static json_t *conservation_json(const struct run_result *result)

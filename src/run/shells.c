@@ -6,7 +6,7 @@
 static double radius_of(const struct prepared *p, const struct snapshot *s, size_t i)
 {
     double x[3];
-    problem_place(p, s, i, x);
+    problem_position(p, s, i, x);
     return problem_radius(p, x);
 }
 
@@ -16,7 +16,7 @@ static double mean_spacing(const struct prepared *p, const struct snapshot *s)
     double volume = 0, count = 0;
     for (size_t i = 0; i < s->n; i++) {
         double x[3];
-        problem_place(p, s, i, x);
+        problem_position(p, s, i, x);
         if (!window_contains(&p->window, x)) continue;
         volume += s->volume[i];
         count++;
@@ -34,10 +34,10 @@ void shells_make(struct shells *shells, const struct prepared *p, const struct s
     shells->width = fmax(shells->width, reach / SHELLS_MAX);
     shells->n = (size_t)fmin(SHELLS_MAX, ceil(reach / shells->width));
     for (size_t i = 0; i < s->n; i++) {
-        const double place = floor(radius_of(p, s, i) / shells->width);
-        if (!(place < (double)shells->n)) continue;
-        mass[(size_t)place] += s->m[i];
-        volume[(size_t)place] += s->volume[i];
+        const double shell = floor(radius_of(p, s, i) / shells->width);
+        if (!(shell < (double)shells->n)) continue;
+        mass[(size_t)shell] += s->m[i];
+        volume[(size_t)shell] += s->volume[i];
     }
     for (size_t k = 0; k < shells->n; k++) shells->density[k] = mass[k] / volume[k];
 }

@@ -197,7 +197,7 @@ static void measure_parts(struct check_run *run, const void *subject)
 static double not_cut(const struct prepared *p, const struct snapshot *s, size_t i)
 {
     double x[3];
-    problem_place(p, s, i, x);
+    problem_position(p, s, i, x);
     return window_contains(&p->window, x) ? s->volume[i] : 0;
 }
 
@@ -237,7 +237,7 @@ static double sharp_ball(const struct prepared *p, const struct snapshot *s, siz
 {
     struct prepared other = *p;
     double x[3];
-    problem_place(p, s, i, x);
+    problem_position(p, s, i, x);
     other.window.radius = 0;
     return p->window.radius > 0 && problem_radius(p, x) > p->window.radius
                ? 0

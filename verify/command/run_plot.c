@@ -154,7 +154,7 @@ static void map_values(const struct run_result *result, int panel, enum field fi
         else
             values[i] = scalars[field][i] - problem_field(&state, field);
         double in_window[3];
-        problem_place(p, s, i, in_window);
+        problem_position(p, s, i, in_window);
         if (error && !window_contains(&p->window, in_window)) values[i] = (double)NAN;
     }
 }

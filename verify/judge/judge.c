@@ -251,7 +251,7 @@ static double measure_noise(const struct judged *judged)
     if (p->problem->circular) return judged->result.radial.l2;
     for (size_t i = 0; i < s->n; i++) {
         double x[3];
-        problem_place(p, s, i, x);
+        problem_position(p, s, i, x);
         if (!window_contains(&p->window, x)) continue;
         for (int d = 1; d < p->domain.dim; d++) sum += s->volume[i] * s->v[d][i] * s->v[d][i];
         volume += s->volume[i];
@@ -279,12 +279,12 @@ static bool counts(const struct judged *judged, size_t i, struct problem_state *
 {
     const struct prepared *p = &judged->run.problem;
     const struct snapshot *s = &judged->result.snapshot;
-    double x[3] = {0}, place[3];
-    problem_place(p, s, i, place);
+    double x[3] = {0}, position[3];
+    problem_position(p, s, i, position);
     for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i];
     problem_sample(p, x, judged->result.time, now);
     problem_sample(p, x, 0, before);
-    return window_contains(&p->window, place);
+    return window_contains(&p->window, position);
 }
 
 /* The region of the exact solution that a particle is in; "" where the problem has none. */
@@ -293,10 +293,10 @@ static const char *region_of(const struct judged *judged, size_t i)
     const struct prepared *p = &judged->run.problem;
     const struct snapshot *s = &judged->result.snapshot;
     const struct regions *regions = p->problem->regions;
-    double place[3];
+    double position[3];
     if (!regions) return "";
-    problem_place(p, s, i, place);
-    return regions->names[regions->at(p, place, BUDGET_REACH * s->h[i], judged->result.time)];
+    problem_position(p, s, i, position);
+    return regions->names[regions->at(p, position, BUDGET_REACH * s->h[i], judged->result.time)];
 }
 
 /* True if the particle is near a jump, where every scheme has large errors. */

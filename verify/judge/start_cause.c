@@ -382,11 +382,12 @@ static bool find_shift(const struct trial *trial, double by[3])
     double best[KEPT], at[KEPT][3] = {{0}};
     for (int k = 0; k < KEPT; k++) best[k] = INFINITY;
     for (int c = 1; c < cells; c++) {
-        const int place[3] = {c % side, c / side % side, c / side / side};
+        const int position[3] = {c % side, c / side % side, c / side / side};
         double to[3] = {0};
         size_t near;
         for (int d = 0; d < box->dim; d++)
-            to[d] = domain_length(box, d) * (place[d] - (place[d] > side / 2 ? side : 0)) / side;
+            to[d] =
+                domain_length(box, d) * (position[d] - (position[d] > side / 2 ? side : 0)) / side;
         const double now = miss(trial, to, 1, &near);
         int k = KEPT - 1;
         if (now >= best[k]) continue;

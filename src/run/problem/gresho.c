@@ -38,7 +38,7 @@ static double disc_measured(const struct prepared *p, const struct snapshot *s)
     double sum = 0, n = 0;
     for (size_t i = 0; i < s->n; i++) {
         double x[3], v[3], azimuthal, radial;
-        problem_place(p, s, i, x);
+        problem_position(p, s, i, x);
         problem_velocity(p, s, i, v);
         problem_circular(p, x, v, &azimuthal, &radial);
         const double R = hypot(x[0] - p->window.centre[0], x[1] - p->window.centre[1]);
@@ -61,7 +61,7 @@ static double peak_measured(const struct prepared *p, const struct snapshot *s)
     double peak = 0;
     for (size_t i = 0; i < s->n; i++) {
         double x[3], v[3], azimuthal, radial;
-        problem_place(p, s, i, x);
+        problem_position(p, s, i, x);
         problem_velocity(p, s, i, v);
         problem_circular(p, x, v, &azimuthal, &radial);
         peak = fmax(peak, azimuthal);

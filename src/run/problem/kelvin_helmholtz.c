@@ -44,10 +44,10 @@ static double amplitude_measured(const struct prepared *p, const struct snapshot
     if (!x) return NAN;
     double *y = x + s->n, *vy = y + s->n;
     for (size_t i = 0; i < s->n; i++) {
-        double place[3], unit[2], v[3];
-        problem_place(p, s, i, place);
+        double position[3], unit[2], v[3];
+        problem_position(p, s, i, position);
         problem_velocity(p, s, i, v);
-        to_unit(p, place, unit);
+        to_unit(p, position, unit);
         x[i] = unit[0];
         y[i] = unit[1];
         vy[i] = v[1];

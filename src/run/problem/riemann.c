@@ -373,15 +373,15 @@ static const struct functional transverse_noise = {"transverse_noise", has_width
 enum { UNDISTURBED, FAN, PLATEAU, CONTACT, SHOCK };
 
 /* A missing wave has a NaN position and is near nothing. */
-static bool near(double x, double place, double reach)
+static bool near(double x, double position, double reach)
 {
-    return fabs(x - place) <= reach;
+    return fabs(x - position) <= reach;
 }
 
-static size_t region_at(const struct prepared *p, const double place[3], double reach, double t)
+static size_t region_at(const struct prepared *p, const double position[3], double reach, double t)
 {
     const struct riemann_solution *tube = &tube_of(p)->main;
-    const double x = place[0] - tube_of(p)->x0;
+    const double x = position[0] - tube_of(p)->x0;
     const double speeds[2][2] = {{tube->left_head, tube->left_tail},
                                  {tube->right_tail, tube->right_head}};
     const enum riemann_wave waves[2] = {tube->left_wave, tube->right_wave};
@@ -415,17 +415,17 @@ static double end_edge(const struct prepared *p, double sign)
  * decreases tenfold per particle; a fraction of `way`, since the head of a fan is dispersed over
  * many h; and the reach of the widest particle, which may be a single one in light gas behind the
  * wave. */
-static bool far_ahead(double place, double way, double h, double widest)
+static bool far_ahead(double position, double way, double h, double widest)
 {
     const double still_widths = 12, still_way = 0.25, reaches = 2;
-    return place - way > fmax(fmax(still_widths * h, still_way * fabs(way)), reaches * widest);
+    return position - way > fmax(fmax(still_widths * h, still_way * fabs(way)), reaches * widest);
 }
 
 /* Distance to the nearer of the main tube's wave and the wave from the end of the box. */
-static double ahead(const struct prepared *p, const double place[3], double t)
+static double ahead(const struct prepared *p, const double position[3], double t)
 {
     const struct tube *tubes = tube_of(p);
-    const double x = place[0], sign = x > tubes->x0 ? 1 : -1;
+    const double x = position[0], sign = x > tubes->x0 ? 1 : -1;
     const double from_end = sign > 0 ? p->domain.hi[0] - x : x - p->domain.lo[0];
     return fmin(sign * (x - tubes->x0) - edge(&tubes->main, sign) * t,
                 from_end - end_edge(p, -sign) * t);

@@ -221,7 +221,7 @@ static double outward_measured(const struct prepared *p, const struct snapshot *
     double sum = 0;
     for (size_t i = 0; i < s->n; i++) {
         double x[3], v[3], along, outward;
-        problem_place(p, s, i, x);
+        problem_position(p, s, i, x);
         problem_velocity(p, s, i, v);
         problem_circular(p, x, v, &along, &outward);
         sum += s->m[i] * outward;
@@ -240,7 +240,7 @@ static double thermal_measured(const struct prepared *p, const struct snapshot *
     double sum = 0, energies = 0;
     for (size_t i = 0; i < s->n; i++) {
         double x[3];
-        problem_place(p, s, i, x);
+        problem_position(p, s, i, x);
         sum += s->m[i] * s->u[i] * problem_radius(p, x);
         energies += s->m[i] * s->u[i];
     }
@@ -261,7 +261,7 @@ static double asymmetry_measured(const struct prepared *p, const struct snapshot
     double moments[3][3] = {{0}}, first[3] = {0}, trace = 0, sizes = 0, worst = 0;
     for (size_t i = 0; i < s->n; i++) {
         double x[3], v[3], squares = 0;
-        problem_place(p, s, i, x);
+        problem_position(p, s, i, x);
         problem_velocity(p, s, i, v);
         for (int d = 0; d < dim; d++) {
             x[d] -= p->window.centre[d];

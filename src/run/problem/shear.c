@@ -74,7 +74,7 @@ static double amplitude_measured(const struct prepared *p, const struct snapshot
     double sum = 0, whole = 0;
     for (size_t i = 0; i < s->n; i++) {
         double x[3], v[3], along = 0;
-        problem_place(p, s, i, x);
+        problem_position(p, s, i, x);
         problem_velocity(p, s, i, v);
         for (int d = 0; d < p->domain.dim; d++) along += v[d] * layers_of(p)->flow[d];
         const double wave = wave_at(p, x);

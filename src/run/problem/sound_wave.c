@@ -169,7 +169,7 @@ static double mode_measured(const struct prepared *p, const struct snapshot *s)
     struct mode mode = {0};
     for (size_t i = 0; i < s->n; i++) {
         double x[3];
-        problem_place(p, s, i, x);
+        problem_position(p, s, i, x);
         mode_add(&mode, p, x, s->volume[i], s->rho[i]);
     }
     return mode_size(&mode, p);

@@ -17,7 +17,7 @@ static bool in_window(const struct prepared *p, const struct snapshot *s, size_t
 {
     double x[3] = {0}, square = 0;
     bool inside = true;
-    problem_place(p, s, i, x);
+    problem_position(p, s, i, x);
     for (int d = 0; d < p->domain.dim; d++) {
         inside = inside && x[d] >= p->window.lo[d] && x[d] <= p->window.hi[d];
         square += (x[d] - p->window.centre[d]) * (x[d] - p->window.centre[d]);
