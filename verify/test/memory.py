@@ -6,10 +6,9 @@ import json
 import os
 import resource
 import subprocess
-import sys
-import tempfile
 
-PROGRAM = os.path.abspath(sys.argv[1])
+from script import call, expect, play, program
+
 WITHIN = 0.2
 TINY = ["gresho", "n=12^2", "t_end=0.0005"]
 RUNS = [["gresho", "n=120^2", "t_end=0.0005"],
@@ -27,11 +26,7 @@ def sphproof(*words, limit=None, status=0):
     def confine():
         if limit:
             resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
-    done = subprocess.run([PROGRAM, *words, "--threads", "1"], capture_output=True, text=True, timeout=100,
-                          env=PLAIN, preexec_fn=confine)
-    if done.returncode != status:
-        sys.exit("%s: exit status %d, not %d: %s" % (" ".join(words), done.returncode, status, done.stderr))
-    return done
+    return call(*words, "--threads", "1", status=status, env=PLAIN, preexec_fn=confine)
 
 
 def said_and_taken(words):
@@ -41,28 +36,24 @@ def said_and_taken(words):
     # the addresses of memory differ from run to run, and so does the number of pages touched: the least of three
     costs = [json.loads(sphproof("run", *words, "--json", "-").stdout)["cost"] for _ in range(3)]
     cost = min(costs, key=lambda one: one["peak_rss_bytes"])
-    if not 0.3 * cost["steps"] - 1 <= estimate["steps"] <= 3 * cost["steps"] + 1:
-        sys.exit("%s: %r steps are said, %d made" % (" ".join(words), estimate["steps"], cost["steps"]))
+    expect("steps of %s" % words, 0.3 * cost["steps"] - 1 <= estimate["steps"] <= 3 * cost["steps"] + 1, (estimate, cost))
     return estimate["memory_bytes"], cost["peak_rss_bytes"]
 
 
 def main():
     bytes_of = [json.loads(sphproof("run", *RUNS[0], "--explain", "--json", "-", *more).stdout)["estimate"]["memory_bytes"]
                 for more in ([], AWAY)]
-    if bytes_of[1] - bytes_of[0] < 300 * 120**2 or os.path.exists("end_0000.csv"):
-        sys.exit("snapshots on the way: %r" % bytes_of)
+    expect("snapshots on the way", bytes_of[1] - bytes_of[0] >= 300 * 120**2 and not os.path.exists("end_0000.csv"), bytes_of)
     least = said_and_taken(TINY)
     for words in [*RUNS, RUNS[0] + AWAY]:
         said, taken = (more - tiny for more, tiny in zip(said_and_taken(words), least))
-        if not abs(said / taken - 1) <= (CLOSELY if words == RUNS[2] else WITHIN):
-            sys.exit("%s: %.3g bytes are said, %.3g taken" % (" ".join(words), said, taken))
+        expect("memory of %s" % words, abs(said / taken - 1) <= (CLOSELY if words == RUNS[2] else WITHIN), (said, taken))
         print("%s: %.1f MB said, %.1f taken" % (words[0], 1e-6 * said, 1e-6 * taken))
     assert "MB of memory" in sphproof("run", *RUNS[0], "--explain").stdout
     for more in ([], ["--explain"], ["--json", "-"], AWAY):
         done = sphproof("run", "sound_wave_3d", "n=10000000", *more, limit=3 << 30, status=4)
-        if done.stdout or "n=10000000" not in done.stderr or "GB of memory" not in done.stderr or "3.22 GB" not in done.stderr:
-            sys.exit("what does not fit: %r %r" % (done.stdout, done.stderr))
-    try_group()
+        expect("what does not fit", not done.stdout and all(
+            word in done.stderr for word in ("n=10000000", "GB of memory", "3.22 GB")), done)
 
 
 def try_group():
@@ -77,19 +68,14 @@ def try_group():
     try:
         with open(os.path.join(group, file), "w", encoding="ascii") as limit:
             limit.write("1000001536")
-        done = subprocess.run(["sh", "-c", 'echo $$ >%s/cgroup.procs; exec "$@"' % group, "sh", PROGRAM, "run", "sound_wave_3d",
+        done = subprocess.run(["sh", "-c", 'echo $$ >%s/cgroup.procs; exec "$@"' % group, "sh", program, "run", "sound_wave_3d",
                                "n=10000000"], capture_output=True, text=True, timeout=100)
-        if done.returncode != 4 or "n=10000000" not in done.stderr or "more than the 1 GB" not in done.stderr:
-            sys.exit("more than a control group has: %r" % done)
+        expect("more than a control group has", done.returncode == 4 and "n=10000000" in done.stderr and
+               "more than the 1 GB" in done.stderr, done)
     except OSError as reason:
         print("no control group can be tried: %s" % reason)
     finally:
         os.rmdir(group)
 
 
-with tempfile.TemporaryDirectory() as folder:
-    os.chdir(folder)
-    try:
-        main()
-    finally:
-        os.chdir("/")
+play(main, try_group)
