@@ -14,8 +14,6 @@ static const double compared_bound = 3;
 static const double conserved_bound = 1e-12;
 /* A bound above this fraction of the exact value would pass a wrong solution. */
 static const double coarse_part = 0.25;
-/* An order with a wider interval cannot tell convergence from divergence. */
-static const double open_width = 1;
 
 double gates_raise(const struct case_file *file, const struct case_gate *gate, size_t n)
 {
@@ -55,8 +53,8 @@ enum finding_status gates_weigh(const struct case_file *file, const struct order
                  gate->bound / fabs(exact));
         return FINDING_SMOKE;
     }
-    const double allowed = ordered ? gate->high - asked : open_width;
-    if (!fit || !(ordered || asked > 0) || fit->high - fit->low <= allowed) return FINDING_PASS;
+    const double allowed = gate->high - asked;
+    if (!fit || !ordered || fit->high - fit->low <= allowed) return FINDING_PASS;
     snprintf(why, GATE_WHY, "the order is known to +-%.2g only, the gate is +-%.2g wide",
              (fit->high - fit->low) / 2, allowed / 2);
     return FINDING_UNDETERMINED;

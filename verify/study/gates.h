@@ -10,8 +10,9 @@
 
 /* For a gate that passes: PASS, SMOKE or UNDETERMINED. A bound is too coarse (SMOKE) if it was
  * raised for a run no finer than the coarsest level of the case's own ladder, or if it exceeds a
- * quarter of the exact value. n: particles; gate: from gates_at; exact: the exact value, NaN for a
- * field; fit: NULL for a single run. why: GATE_WHY bytes, "" for PASS. */
+ * quarter of the exact value. An order is UNDETERMINED if its interval is wider than its gate; a
+ * bound alone asks for no order. n: particles; gate: from gates_at; exact: the exact value, NaN for
+ * a field; fit: NULL for a single run. why: GATE_WHY bytes, "" for PASS. */
 enum { GATE_WHY = ORDER_GATE_TEXT };
 enum finding_status gates_weigh(const struct case_file *file, const struct order_gate *gate,
                                 size_t n, double exact, const struct order_fit *fit, char *why);

@@ -293,7 +293,8 @@ TEST(no_floor)
 
 /* A passed gate is reported as a pass only if the run is fine enough and the order is known well
  * enough: not at the coarsest level of the case's ladder with a raised bound, nor with a bound
- * above a quarter of the exact value, nor with an interval of the order wider than its gate. */
+ * above a quarter of the exact value, nor with an interval of the order wider than its gate. A
+ * bound alone asks for no order. */
 TEST(what_passes_is_weighed)
 {
     const double open = (double)INFINITY, none = (double)NAN;
@@ -311,8 +312,9 @@ TEST(what_passes_is_weighed)
         {-0.1, 0.1, 1, none, 0.11, 101, FINDING_UNDETERMINED},
         {0.9, 1.1, 1, none, none, 101, FINDING_UNDETERMINED},
         {1, open, 1, none, 0.49, 101, FINDING_PASS},
-        {1, open, 1, none, 0.51, 101, FINDING_UNDETERMINED},
-        {1, open, 1, none, none, 101, FINDING_UNDETERMINED},
+        /* a bound alone, however badly the order is known */
+        {1, open, 1, none, 3, 101, FINDING_PASS},
+        {1, open, 1, none, none, 101, FINDING_PASS},
         {1, open, 1, none, 0.49, 100, FINDING_SMOKE},
         {1, open, 1, none, -1, 101, FINDING_PASS},
         {1, open, 1, none, -1, 100, FINDING_SMOKE},
