@@ -33,7 +33,7 @@ static double square_of_limit(const struct cells_fields *fields, const struct ce
 
 /* Largest part of a disturbance that passes through a neighbour within one step, through its
  * density and then its force. */
-static const double carried = 1e-5;
+static const double carried = 1e-4;
 /* Upper bound of the disturbance that arrives from a neighbour, in units of the pressure term. */
 static const double terms = 4;
 

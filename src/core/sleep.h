@@ -27,8 +27,8 @@
  * amplifies these changes as well: sleep acts like a change of the start by the tolerance.
  *
  * The mass, momentum and energy that sleeping particles lack are distributed among the awake ones
- * (sleep_balance), so that sums are conserved to round-off, but no more than the tolerance of each
- * sleeping particle: a force that is not antisymmetric still shows in the sums.
+ * (sleep_balance), so that sums are conserved to round-off, but no more than a hundred tolerances
+ * of each sleeping particle: a force that is not antisymmetric still shows in the sums.
  *
  * For awake particles, vanishing terms of pairs are skipped as well (plan.quiet):
  * - in 2D and 3D viscosity, if the velocities of all neighbours agree within a hundredth of tol c

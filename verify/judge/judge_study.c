@@ -122,13 +122,14 @@ json_t *judge_conservation(const struct judged *judged, size_t n, struct trace *
         main = &judged[pair[1]];
         from = judged[pair[0]].path, to = main->path;
         take_trace(judged, n, pair, trace);
-    } else if (main->start.mass > 0) {
+        drift = trace_worst(trace);
+    } else if (main->start.mass > 0) { /* also for a snapshot of t = 0, of which a trace has one */
         trace_add(trace, 0, &main->start);
         trace_add(trace, main->result.time, &main->sums);
+        drift = trace_drift(&main->start, &main->sums, &main->sums);
     } else {
         return json_null();
     }
-    drift = trace_worst(trace);
     const struct trace_motion motion = trace_motion(trace);
     json_t *conservation =
         json_pack("{s:o, s:o, s:o, s:o, s:[s, s]}", "mass", result_number(drift.mass), "momentum",
