@@ -108,7 +108,7 @@ TEST(test_samples_are_taken_in_turn)
     near_absolute(subjects[1].time.spread, 0, 1e-12);
 }
 
-TEST(test_breakdown_leaves_the_others)
+TEST(test_breakdown_of_one_subject)
 {
     struct error error = {0};
     struct fake sound = {.once = 0.02}, unsound = {.once = 0.02, .breaks_at = 4},
@@ -134,7 +134,7 @@ TEST(test_breakdown_leaves_the_others)
 
 /* --- Pareto front and paths along it ---------------------------------------------------------- */
 
-TEST(test_front)
+TEST(test_pareto_front)
 {
     static const double cost[] = {1, 2, 3, 4, 2, 1, 5, (double)NAN, 0.5, 4};
     static const double error[] = {8, 4, 5, 2, 4, 9, 2, 0.1, (double)INFINITY, 1.5};
@@ -202,7 +202,7 @@ static void compare_limit(const struct kernel *kernel, const struct operator_for
     near_below(wrong / scale, 1e-10);
 }
 
-TEST(test_limit_does_the_same_arithmetic)
+TEST(test_limit_has_the_operators_gradient)
 {
     for (size_t k = 0; k < kernel_family.n; k++) {
         struct kernel kernel;
@@ -215,7 +215,7 @@ TEST(test_limit_does_the_same_arithmetic)
 }
 
 /* Neighbours by definition agree with the search's, and there are neighbours and others. */
-TEST(test_limit_of_the_search)
+TEST(test_neighbours_of_the_search)
 {
     enum { PLACES = 192 };
     float x[3][PLACES];
@@ -241,7 +241,7 @@ TEST(test_limit_of_the_search)
 
 /* However often the loops are repeated, their numbers stay ordinary: none overflows, and none
  * decays to zero, where arithmetic would be cheap. */
-TEST(test_loops_stand_still)
+TEST(test_repeated_loops_stay_finite)
 {
     static char *const keys[][2] = {{"kernel=quadratic_spline", "gradient=standard"},
                                     {"kernel=quintic_spline", "gradient=ia"}};
@@ -326,7 +326,7 @@ static void compare_plain(const char *name, int n, char *const *more)
     free(settings);
 }
 
-TEST(test_plain_is_the_solver)
+TEST(test_plain_agrees_with_the_solver)
 {
     compare_plain("sod", 2, (char *[]){"n=126", "t_end=0.15"});
     compare_plain("sod_standard", 3, (char *[]){"n=100", "eta=2", "cfl=0.15"});
@@ -376,7 +376,7 @@ TEST(test_difference_of_states)
     assert_true(isinf(bench_skips_difference(&nothing, &nothing, 2)));
 }
 
-TEST(test_promises_are_kept_or_seen_broken)
+TEST(test_skips_keep_their_promises)
 {
     static struct run_settings settings;
     struct bench_skips skips;
@@ -406,7 +406,7 @@ TEST(test_promises_are_kept_or_seen_broken)
 
 /* A run without viscosity and one with viscosity of strength 0 have the same bits and time
  * steps. */
-TEST(test_no_viscosity)
+TEST(test_no_viscosity_equals_strength_0)
 {
     static struct run_settings settings;
     struct bench_skips skips;
@@ -432,7 +432,7 @@ TEST(test_no_viscosity)
 
 /* Local time steps beside global ones: errors are of quantities with an exact value, and sums are
  * conserved. */
-TEST(test_steps)
+TEST(test_local_time_steps)
 {
     static const struct {
         const char *name, *measured;
@@ -474,7 +474,7 @@ TEST(test_positions_along_every_axis_count)
     near_relative(bench_skips_difference(&a, &b, 1), 1e-6 / 0.9, 1e-6);
 }
 
-TEST(test_promises_in_2d)
+TEST(test_skips_keep_their_promises_in_2d)
 {
     static struct run_settings settings;
     struct bench_skips skips;
@@ -499,7 +499,7 @@ TEST(test_promises_in_2d)
 /* --- sums in 2D and 3D ------------------------------------------------------------------------ */
 
 /* Pairs are counted over all pairs; each pass does what its name says and no more. */
-TEST(test_cells)
+TEST(test_pairs_of_each_pass)
 {
     struct run_settings asked;
     static struct run run;
@@ -535,7 +535,7 @@ TEST(test_cells)
 }
 
 /* Schemes that compute more per particle have the arrays for it: forces are balanced. */
-TEST(test_cells_of_schemes)
+TEST(test_forces_of_schemes_balance)
 {
     static const char *const schemes[] = {"shifting=fluxes", "shifting=closed", "gradient=blended",
                                           "viscosity=cullen_dehnen", "formulation=lagrangian"};
@@ -634,7 +634,7 @@ TEST(test_study)
 }
 
 /* Shares compute each n separately; on two processors each processor has its own front. */
-TEST(test_processors)
+TEST(test_front_of_each_processor)
 {
     static struct run_settings settings;
     static const size_t ladder[] = {40, 60};
@@ -672,7 +672,7 @@ TEST(test_processors)
 }
 
 /* A sound wave: errors are relative to the wave, not to the gas that carries it; second order. */
-TEST(test_signal)
+TEST(test_errors_relative_to_the_wave)
 {
     static struct run_settings settings;
     static const size_t ladder[] = {32, 64};
@@ -700,7 +700,7 @@ TEST(test_signal)
 }
 
 /* A scheme that the case's gravity excludes is reported, and the others are measured. */
-TEST(test_what_gravity_excludes)
+TEST(test_schemes_excluded_by_gravity)
 {
     static struct run_settings settings;
     static const size_t ladder[] = {288};
@@ -722,7 +722,7 @@ TEST(test_what_gravity_excludes)
 
 /* A vortex in 2D: errors are of the velocity along its circles, relative to its distance from a
  * uniform one; work grows as n^(3/2), and the merit at order 2 is error^(3/2) x CPU. */
-TEST(test_plane)
+TEST(test_vortex_in_2d)
 {
     static struct run_settings settings;
     static const size_t ladder[] = {144, 256};

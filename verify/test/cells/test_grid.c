@@ -141,7 +141,7 @@ TEST(lists_hold_every_pair)
 
 /* Points so close together, or so much closer than others, that cells are 10 to 1e9 times as large
  * as their radii: in single precision positions are no more precise than that. */
-TEST(clumps_hold_every_pair)
+TEST(lists_of_clumps_hold_every_pair)
 {
     struct points *p = calloc(1, sizeof *p);
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
@@ -192,7 +192,7 @@ TEST(clumps_hold_every_pair)
 }
 
 /* A point that cannot be searched is refused with its number. */
-TEST(refuses)
+TEST(unsearchable_points_are_refused)
 {
     const struct grid_box box = {2, {0, 0}, {1, 1}, {true, true}};
     double x[] = {0.1, 0.2, 0.3}, y[] = {0.1, 0.5, 0.9}, radius[] = {0.1, 0.1, 0.1};
@@ -217,7 +217,7 @@ TEST(refuses)
 }
 
 /* Records of every size that has a specialised loop, and of one that has none. */
-TEST(gathers)
+TEST(records_are_gathered)
 {
     enum { RECORDS = 37, LARGEST = 56, COUNT = 24, STRIDE = 40 };
     static _Alignas(64) double records[RECORDS * LARGEST], out[LARGEST * STRIDE];
@@ -247,7 +247,7 @@ TEST(cube_roots)
 }
 
 /* The estimate of bytes per point and list agrees with the memory allocated. */
-TEST(bytes_a_point)
+TEST(bytes_per_point)
 {
     const double point = 4 + 4 + 24 + 4 + 12 + 16;
     near_relative(grid_bytes(2, 1000, 50), 1000 * (point + 4 * (50 + 4.)), 1e-15);

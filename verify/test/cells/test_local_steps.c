@@ -147,7 +147,7 @@ static bool keep_the_fifth(void *context, double time, uint64_t steps)
     return true;
 }
 
-TEST(goes_on_to_the_last_bit)
+TEST(restored_run_continues_to_the_last_bit)
 {
     const struct scheme scheme = scheme_with(2, "steps=local alpha_u=0.5");
     seed = 11;
@@ -237,7 +237,7 @@ static enum status look_at_levels(struct simulation *simulation, double *rate, s
 }
 
 /* Cold gas beside blasts 10^4 times as hot becomes active before the blast arrives. */
-TEST(neighbours_are_no_further_apart)
+TEST(levels_of_neighbours_differ_by_at_most_2)
 {
     uint64_t woken = 0;
     for (int k = 0; k < 4; k++) {
@@ -262,7 +262,7 @@ TEST(neighbours_are_no_further_apart)
 }
 
 /* What pairs that change levels have received, against the evaluations of all levels in turn. */
-TEST(pairs_are_given_what_is_missing)
+TEST(pairs_that_change_levels_lose_nothing)
 {
     enum { FINEST = 6 };
     struct simulation simulation = {.steps.clock = {.finest = FINEST, .end = 2 << FINEST}};
@@ -291,7 +291,7 @@ TEST(pairs_are_given_what_is_missing)
     assert_true(unlike > 10);
 }
 
-TEST(says_what_excludes_it)
+TEST(message_names_what_excludes_local_steps)
 {
     static const char *const pairs[][2] = {
         {"integrator=leapfrog", "integrator=leapfrog"},

@@ -168,7 +168,7 @@ TEST(test_condition)
 
 /* A NaN or infinity in any element, an overflow, or a singular matrix: no inverse and no condition
  * number; the caller's array is not written. */
-TEST(test_none)
+TEST(test_no_inverse)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (int k = 0; k < dim * dim; k++)
@@ -251,7 +251,7 @@ static double norm_of(int n, const double *a)
 
 /* A matrix is singular from a scaled condition number of 1/(16 epsilon) in Frobenius' norm on; that
  * of (1 1; 1 1 + e) is a little less than 4/e. */
-TEST(test_singular_from)
+TEST(test_limit_of_singular)
 {
     for (int e = 60; e < 69; e++) {
         double inverse[4];
@@ -276,7 +276,7 @@ TEST(test_singular_from)
 
 /* The last bits show which method is used: in 1D elimination gives 1/a, correctly rounded, and
  * cofactors give 1/(a/|a| |a|); for diag(1, d) elimination gives 1 and 1/d, cofactors d (1/d). */
-TEST(test_way)
+TEST(test_choice_of_method)
 {
     int plain[2] = {0};
     for (int trial = 0; trial < 4000; trial++) {
@@ -316,7 +316,7 @@ TEST(test_way)
 
 /* Nothing behind the last element of the matrix is read, and nothing behind the inverse is
  * written. */
-TEST(test_room)
+TEST(test_no_access_beyond_the_arrays)
 {
     const size_t page = (size_t)sysconf(_SC_PAGESIZE);
     char *pages = mmap(NULL, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

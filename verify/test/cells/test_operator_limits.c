@@ -150,7 +150,7 @@ TEST(test_units)
 }
 
 /* The smallest normal number counts as normal. */
-TEST(test_least_normal)
+TEST(test_smallest_normal_number)
 {
     size_t found = 0;
     for (int trial = 0; trial < 40; trial++) {

@@ -224,7 +224,7 @@ static double of_constant(int dim, const char *kind)
     return sqrt(sum / (double)setup.n);
 }
 
-TEST(closed_gradients_make_little_of_a_constant)
+TEST(closed_gradient_of_a_constant_is_small)
 {
     for (int dim = 2; dim <= 3; dim++) {
         const double ratio = of_constant(dim, "closed") / of_constant(dim, "fluxes");
@@ -243,7 +243,7 @@ static bool keep_the_third(void *context, double time, uint64_t steps)
     return true;
 }
 
-TEST(goes_on_to_the_last_bit)
+TEST(restored_run_continues_to_the_last_bit)
 {
     draw_state = 17;
     member = "closed";
@@ -259,7 +259,7 @@ TEST(goes_on_to_the_last_bit)
     simulation_destroy(restored);
 }
 
-TEST(is_refused_with)
+TEST(schemes_that_exclude_shifting)
 {
     static const char *const keys[] = {"integrator=rk2",        "steps=local",
                                        "energy=internal",       "formulation=lagrangian",

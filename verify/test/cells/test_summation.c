@@ -120,7 +120,7 @@ static int check(const struct summation *sum)
 
 static const double tolerances[] = {1e-12, 0.03, 0.4};
 
-TEST(test_anywhere)
+TEST(test_random_clouds)
 {
     int grown = 0;
     for (int dim = 1; dim <= 3; dim++)
@@ -134,7 +134,7 @@ TEST(test_anywhere)
 }
 
 /* A cloud stretched along each axis in turn, so that this axis alone sets the distances. */
-TEST(test_stretched)
+TEST(test_stretched_clouds)
 {
     for (int dim = 2; dim <= 3; dim++)
         for (int along = 0; along < dim; along++)
@@ -148,7 +148,7 @@ TEST(test_stretched)
 
 /* Eight or more points at one position or close together, and the others far away; all at one
  * position of a periodic box. */
-TEST(test_together)
+TEST(test_coincident_points)
 {
     int most = 0;
     for (int dim = 1; dim <= 3; dim++)
@@ -239,7 +239,7 @@ TEST(test_refused)
 }
 
 /* Masses near the smallest normal number are summed like others. */
-TEST(test_light)
+TEST(test_tiny_masses)
 {
     for (int dim = 1; dim <= 3; dim++) {
         struct summation sum = cloud_of(dim, 40, false, 1.8, 1e-12);
@@ -258,7 +258,7 @@ TEST(test_light)
 }
 
 /* A cloud without points is solved. */
-TEST(test_empty)
+TEST(test_cloud_without_points)
 {
     for (int periodic = 0; periodic < 2; periodic++) {
         const struct summation sum = cloud_of(2, 0, periodic, 2, 1e-10);

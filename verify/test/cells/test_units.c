@@ -6,7 +6,7 @@
 #include "shapes.h"
 #include "cells/units.h"
 
-TEST(test_ordinary)
+TEST(test_ordinary_numbers_are_not_scaled)
 {
     static const struct {
         double value;
@@ -73,7 +73,7 @@ TEST(test_copies)
 }
 
 /* A plug-in with a kernel's function or derivative alone has no specialised loops. */
-TEST(test_loops)
+TEST(test_loops_of_plugins)
 {
     for (size_t k = 0; k < kernel_family.n; k++)
         for (int dim = 1; dim <= 3; dim++) {

@@ -13,7 +13,7 @@
 static const struct table_style none = {"", "", "", "", ""};
 
 /* At most six columns of times: five as far apart as possible, and the last. */
-TEST(looks)
+TEST(times_that_are_shown)
 {
     static const struct {
         size_t looks;
@@ -55,7 +55,7 @@ TEST(looks)
 }
 
 /* A part owns those letters of the bar of which it covers more than the first half. */
-TEST(bars)
+TEST(bars_of_parts)
 {
     static const struct {
         double first, last; /* letters of the parts 0 and 2 */
@@ -78,7 +78,7 @@ TEST(bars)
     }
 }
 
-TEST(powers)
+TEST(powers_of_terms)
 {
     static struct autopsy_level level;
     char text[2048], line[256];
@@ -95,7 +95,7 @@ TEST(powers)
     }
 }
 
-TEST(ladders)
+TEST(printed_ladders)
 {
     static const char *values[4];
     static const struct options options = {.command = &command_autopsy, .values = values};

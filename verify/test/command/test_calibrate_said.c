@@ -12,7 +12,7 @@
 static const char *values[8];
 static struct options options = {.command = &command_calibrate, .values = values};
 
-TEST(tables)
+TEST(printed_tables)
 {
     static const char markup[] =
         "[*sod]: Sod, 3 runs, at n = 70\n"
@@ -100,7 +100,7 @@ static const char **value_called(const char *name)
     return NULL;
 }
 
-TEST(runs)
+TEST(accepted_numbers_of_runs)
 {
     static const struct {
         const char *text;
@@ -118,7 +118,7 @@ TEST(runs)
 }
 
 /* The calibrated file is written beside the code file, under its name without the ending. */
-TEST(files)
+TEST(name_of_the_calibrated_file)
 {
     static const struct {
         const char *code, *said, *out; /* NULL: refused */

@@ -335,7 +335,7 @@ static void is_run(const struct comparison *c, int s, size_t r, double seed)
 
 /* The numbers of particles of the draws that are kept; each error is that of a run with this
  * number. */
-TEST(draws)
+TEST(numbers_of_particles_of_draws)
 {
 #define SHORT  " t_end=0.01"
 #define COARSE " eta=1.5 kernel=cubic_spline t_end=0.001"
@@ -417,7 +417,7 @@ TEST(draws)
 }
 
 /* Draws 1 to 4 of a and b in turn. */
-TEST(seen_before)
+TEST(draws_that_repeat_others)
 {
     static const size_t n[2][5] = {{4, 9, 4, 4, 9}, {1, 2, 2, 1, 2}};
     static struct comparison c;
@@ -462,7 +462,7 @@ TEST(snapshots)
     remove(path);
 }
 
-TEST(files)
+TEST(sides_that_are_files)
 {
     static const struct {
         const char *name;
@@ -504,7 +504,7 @@ TEST(refused_draws)
 
 /* The test sets whether a is a snapshot: a snapshot has its case's settings, but for gamma and
  * time. */
-TEST(problems)
+TEST(sides_of_different_problems)
 {
     static const struct {
         const char *a, *b;
@@ -562,7 +562,7 @@ TEST(dimensions)
 }
 
 /* Valid and invalid words of a side. */
-TEST(words)
+TEST(words_of_a_side)
 {
     static const struct {
         const char *text, *words; /* joined by |; NULL: refused */
@@ -592,7 +592,7 @@ TEST(words)
     }
 }
 
-TEST(room)
+TEST(longest_words)
 {
     char text[12] = "12|45|78|01";
     strcpy(text, "12");

@@ -37,7 +37,7 @@ static const struct {
 enum { ROWS = sizeof rows / sizeof *rows };
 
 /* A share that ends badly once is submitted again, and no other share is. */
-TEST(once)
+TEST(share_that_fails_once)
 {
     for (int i = 0; i < SHARES * ROWS; i++) {
         const int r = i % ROWS, share = 1 + i / ROWS;
@@ -70,7 +70,7 @@ TEST(once)
 
 /* A share that ends badly three times is given up, and the others continue. The message names what
  * is missing, and where its logs are. */
-TEST(thrice)
+TEST(share_that_fails_three_times)
 {
     for (int r = 0; r < ROWS; r++) {
         if (!rows[r].state) continue;
@@ -113,7 +113,7 @@ TEST(thrice)
 }
 
 /* Messages about a share describe its last task. */
-TEST(one_after_the_other)
+TEST(messages_describe_the_last_task)
 {
     again();
     made.fates[2][0] = ENDS_BADLY, made.fates[2][1] = NEVER_SEEN, made.fates[2][2] = TIMES_OUT;
@@ -149,7 +149,7 @@ TEST(two_tasks_of_a_share)
 
 /* The engine waits 30 s for the results of a task that ended well, because files from other
  * machines may become visible later. */
-TEST(what_ended_well_may_be_late)
+TEST(late_results_are_waited_for)
 {
     again();
     made.fates[2][0] = USELESS;
@@ -183,7 +183,7 @@ TEST(only_what_is_missing)
 }
 
 /* Each task has ten minutes of work, and there are no more tasks than computations. */
-TEST(how_many_shares)
+TEST(number_of_shares)
 {
     static const struct {
         double weight; /* of each of the 8 computations */
@@ -208,7 +208,7 @@ TEST(how_many_shares)
 
 /* A share has this command line: without the options that only the caller needs, and quoted so that
  * a shell reads the same words. */
-TEST(the_line_of_a_share)
+TEST(command_line_of_a_share)
 {
     char program[1000], text[3000];
     again();
@@ -257,7 +257,7 @@ TEST(a_command_without_jobs)
     assert_non_null(strstr(made.wrap, text));
 }
 
-TEST(too_many_words)
+TEST(command_line_too_long)
 {
     char words[400] = "";
     again();
@@ -273,7 +273,7 @@ TEST(too_many_words)
 }
 
 /* The same study in the same folder has the same name; another study or folder has another name. */
-TEST(its_name)
+TEST(name_of_a_study)
 {
     char name[64];
     again();

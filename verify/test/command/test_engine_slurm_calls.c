@@ -8,7 +8,7 @@
 
 /* ---- commands that do not answer ---- */
 
-TEST(what_sbatch_says)
+TEST(answers_of_sbatch)
 {
     again();
     made.answers = ";elsewhere"; /* as on several clusters */
@@ -29,7 +29,7 @@ TEST(what_sbatch_says)
     assert_string_equal(made.arrays, "1-3 2 2 ");
 }
 
-TEST(a_controller_that_is_away)
+TEST(controller_that_does_not_answer)
 {
     static const struct {
         double from, to;
@@ -69,7 +69,7 @@ static void go_away_again(void)
     if (made.now > 300 && made.now < 310) made.away_from = 320, made.away_to = 430;
 }
 
-TEST(away_twice)
+TEST(controller_absent_twice)
 {
     again();
     made.fates[2][0] = STAYS;
@@ -93,7 +93,7 @@ static void results_appear(void)
 
 /* If the results of a running task are there already, the task is cancelled, if Slurm permits
  * that. */
-TEST(nothing_is_left_to_do)
+TEST(superfluous_tasks_are_cancelled)
 {
     for (int refused = 0; refused < 2; refused++) {
         char text[100];
@@ -109,7 +109,7 @@ TEST(nothing_is_left_to_do)
 }
 
 /* A task that Slurm holds, and that may not be cancelled, is waited for. */
-TEST(held_for_ever)
+TEST(held_tasks_are_waited_for)
 {
     again();
     made.fates[2][0] = HELD;
@@ -173,7 +173,7 @@ TEST(interrupted)
 }
 
 /* The signal's former handler is installed again afterwards. */
-TEST(the_signal_is_given_back)
+TEST(signal_handler_is_restored)
 {
     struct sigaction before, now; /* a background job of a shell ignores the signal */
     again();
@@ -184,7 +184,7 @@ TEST(the_signal_is_given_back)
 }
 
 /* The caller that submitted these tasks has died since; their tries count. */
-TEST(attached)
+TEST(submitted_tasks_are_found_again)
 {
     for (int i = 0; i < 2 * SHARES; i++) {
         const int share = 1 + i / 2, fate = i % 2;
@@ -218,7 +218,7 @@ static void write_state(void)
 }
 
 /* The state kept between calls, as another program may have left it. */
-TEST(the_state)
+TEST(state_file)
 {
     static const struct {
         const char *text;
@@ -277,7 +277,7 @@ TEST(the_state)
 }
 
 /* The number of shares is kept, whatever the next call asks for. */
-TEST(shares_stay)
+TEST(number_of_shares_is_kept)
 {
     again();
     made.fates[2][0] = STAYS;
@@ -293,7 +293,7 @@ TEST(shares_stay)
 
 /* If a share is given up, the message has the last nonempty line of its log, and the log is
  * kept. */
-TEST(the_last_line)
+TEST(last_line_of_the_log)
 {
     static const struct {
         const char *text, *line;
@@ -324,7 +324,7 @@ TEST(the_last_line)
 }
 
 /* Logs of completed shares are removed. */
-TEST(logs_go)
+TEST(logs_of_completed_shares_are_removed)
 {
     again();
     made.fates[2][0] = STAYS;
@@ -343,7 +343,7 @@ TEST(logs_go)
 }
 
 /* The engine polls ever less often, from every half second to every quarter of a minute. */
-TEST(how_often_it_looks)
+TEST(polling_intervals)
 {
     again();
     made.fates[2][0] = STAYS;

@@ -139,7 +139,7 @@ static const struct {
 enum { OUTCOMES = sizeof outcomes / sizeof *outcomes };
 
 /* One share has one computation of each outcome. The other shares are not affected. */
-TEST(a_share_ends_as_its_computations)
+TEST(exit_status_of_a_share)
 {
     for (int k = 0; k < OUTCOMES; k++)
         for (int i = k % 2; i < N; i += 3) {
@@ -176,7 +176,7 @@ TEST(a_share_ends_as_its_computations)
 }
 
 /* The plain call that follows shows every outcome as if one machine had computed everything. */
-TEST(joined_in_every_order)
+TEST(shares_in_every_order)
 {
     static const int orders[][SHARES] = {{1, 2, 3}, {1, 3, 2}, {2, 1, 3}, {2, 3, 1}, {3, 1, 2},
                                          {3, 2, 1}, {2, 2, 1}, {1, 0, 0}, {0, 0, 3}, {0, 0, 0}};
@@ -214,7 +214,7 @@ TEST(joined_in_every_order)
 }
 
 /* Damaged entries and a cache that cannot be written are reported; for a share they are errors. */
-TEST(what_is_remarkable)
+TEST(damaged_and_unwritable_caches)
 {
     char path[CACHE_PATH_MAX];
     end(NULL), begin(NULL);
@@ -253,7 +253,7 @@ TEST(what_is_remarkable)
 }
 
 /* Nothing is printed where speak is off. */
-TEST(a_share_may_be_silent)
+TEST(silent_share)
 {
     end(NULL), begin(NULL);
     call.options.speak = 0;
@@ -263,7 +263,7 @@ TEST(a_share_may_be_silent)
 }
 
 /* --list prints each computation, the share that it belongs to, and whether it is kept. */
-TEST(listing)
+TEST(list_of_computations)
 {
     static const char *const shards[] = {NULL, "1/3", "2/3", "3/3"};
     int shares[N], said[2], usual[2];
@@ -300,7 +300,7 @@ TEST(listing)
 
 /* ---- options ---- */
 
-TEST(wrong_options)
+TEST(invalid_options)
 {
     static const struct {
         const char *names[3], *values[3];
@@ -392,7 +392,7 @@ TEST(wrong_options)
 }
 
 /* The values that valid options give. */
-TEST(right_options)
+TEST(valid_options)
 {
     struct sharing sharing;
     end(NULL), begin(NULL);

@@ -74,7 +74,7 @@ static void queue_is(const char *output, const struct expected *tasks, size_t n)
 }
 
 /* Lines of squeue about a task, one for each state. */
-TEST(recorded_answers)
+TEST(recorded_output_of_squeue)
 {
     static const struct {
         const char *line;

@@ -117,7 +117,7 @@ TEST(test_no_calls)
 }
 
 /* Widths of half the box, whose neighbours are images of images: memory is extended rarely. */
-TEST(test_room_is_made_rarely)
+TEST(test_memory_is_extended_rarely)
 {
     const int found = calls_in("two_rarefactions", "n=100 kernel=cubic_spline eta=40", 1, NULL);
     assert_in_range(found, 0, 8);
@@ -125,7 +125,7 @@ TEST(test_room_is_made_rarely)
 
 /* In 2D and 3D lists of neighbours may grow by half of their first length without a call for
  * memory. */
-TEST(test_clouds)
+TEST(test_no_calls_in_2d_and_3d)
 {
     static const char *const flows[][2] = {
         {"gresho", "n=16^2 t_end=0.1"},

@@ -46,7 +46,7 @@ static uint64_t neighbours(int dim)
 
 /* Each pair is counted once per evaluation, whatever the number of threads; if all particles are
  * inactive, only the pairs of the start are counted. */
-TEST(pairs_and_updates)
+TEST(counts_of_pairs_and_updates)
 {
     for (int dim = 2; dim <= 3; dim++)
         for (int threads = 1; threads <= 2; threads++)

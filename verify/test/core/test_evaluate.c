@@ -78,7 +78,7 @@ static void begin(struct simulation *s, int dim, bool total)
 }
 
 /* Force m g, and its work where the total energy is integrated. */
-TEST(gas_falls)
+TEST(gravity_adds_force_and_work)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (int total = 0; total < 2; total++)
@@ -104,7 +104,7 @@ TEST(gas_falls)
 }
 
 /* The limit is cfl over the largest signal speed / h; inactive particles count. */
-TEST(time_is_limited)
+TEST(time_step_is_limited_by_signals)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (int asleep = 0; asleep < 2; asleep++) {

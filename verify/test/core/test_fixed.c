@@ -70,7 +70,7 @@ TEST(nothing_where_no_end_is_fixed)
 }
 
 /* For every dimension, element and energy, with fixed ends along one direction. */
-TEST(layers_are_kept)
+TEST(layers_keep_their_state)
 {
     int outermost = 0, inner = 0, moving = 0;
     for (int dim = 1; dim <= 3; dim++)

@@ -96,7 +96,7 @@ static size_t list(const struct particles *a, unsigned uses, double *arrays[ARRA
 }
 
 /* A particle that loses all internal energy in a step is named with its remaining energy. */
-TEST(test_without_energy)
+TEST(test_particle_that_loses_its_energy)
 {
     static const char *const energies[] = {
         "integrator=predicted_midpoint viscosity=none energy=internal",
@@ -123,7 +123,7 @@ TEST(test_without_energy)
 
 /* The estimate counts the arrays that are written, those of the snapshot and three more; no
  * others. */
-TEST(test_arrays_that_are_counted)
+TEST(test_estimate_counts_arrays)
 {
     static const char *const schemes[] = {
         "viscosity=constant gradient=standard formulation=vanilla_ice",

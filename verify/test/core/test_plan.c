@@ -164,7 +164,7 @@ static void every_choice(const char *name, int dim, const char *size)
     }
 }
 
-TEST(plans)
+TEST(plan_of_every_choice)
 {
     every_choice("sod", 1, "n=40");
     every_choice("gresho", 2, "n=10^2");
@@ -231,7 +231,7 @@ static size_t explained(const struct setup *setup, char *warnings, size_t size)
 }
 
 /* A text that is too long is cut at its capacity; the number of lines is that of the whole text. */
-TEST(room)
+TEST(long_texts_are_cut)
 {
     const struct setup setup = setup_of(5, GRADIENT_IA);
     struct plan_line all[PASSES], some[PASSES];
@@ -267,7 +267,7 @@ TEST(room)
 }
 
 /* 3 %, exactly the limit, less than the least width, and half way between two exact widths. */
-TEST(limits)
+TEST(limits_of_warnings)
 {
     static const struct {
         double eta;
@@ -303,7 +303,7 @@ TEST(limits)
 
 /* The passes that each choice needs; loops are specialised unless unspecialised ones are
  * requested. */
-TEST(needs)
+TEST(passes_that_choices_need)
 {
     for (int choice = 0; choice < GRADIENTS * FORMULATIONS * PAIR_WIDTHS; choice++)
         for (int generic = 0; generic < 2; generic++) {
@@ -325,7 +325,7 @@ TEST(needs)
 }
 
 /* Gravity along any axis counts, and no particle may then be inactive. */
-TEST(gravity)
+TEST(gravity_excludes_sleep)
 {
     for (int axis = 0; axis < 4; axis++)
         for (int dim = 2; dim <= 3; dim++)

@@ -243,7 +243,7 @@ TEST(walls_are_mirrors)
 }
 
 /* Gas in an open box moves as in the middle of a periodic box that is much too wide. */
-TEST(nothing_beyond_open_ends)
+TEST(open_box_is_surrounded_by_vacuum)
 {
     draw_state = 4;
     for (int k = 0; k < 32; k++) {
@@ -264,7 +264,7 @@ TEST(nothing_beyond_open_ends)
 
 /* In a periodic box all gas falls alike: it differs from the run without gravity by g t^2/2 and g
  * t. */
-TEST(gravity_is_a_fall)
+TEST(gravity_in_a_periodic_box_is_free_fall)
 {
     draw_state = 5;
     for (int k = 0; k < 6; k++) {

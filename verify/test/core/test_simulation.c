@@ -118,7 +118,7 @@ TEST(setups_that_are_refused)
 }
 
 /* The ends of a box belong to it; two particles are enough. */
-TEST(setups_that_are_taken)
+TEST(setups_that_are_accepted)
 {
     for (int dim = 1; dim <= 2; dim++) {
         struct setup setup = plain(dim, few_neighbours);
@@ -402,7 +402,7 @@ TEST(the_first_step)
     }
 }
 
-TEST(places_are_named)
+TEST(positions_are_named_in_messages)
 {
     static const char *const said[] = {
         "broke down at t = 0.375: heat of particle 35 at x = 0.5 is -3.25",

@@ -69,7 +69,7 @@ static void draw_sums(struct density_sums *sums, const struct gas *gas, const st
     sums->Z[k] = draw(0.5, 2) * s, sums->Z_dh[k] = draw(-1, 1);
 }
 
-TEST(closed)
+TEST(state_follows_from_widths)
 {
     static const struct {
         ptrdiff_t first;
@@ -140,7 +140,7 @@ TEST(closed)
 }
 
 /* The largest value is found at any index. */
-TEST(largest_rates)
+TEST(largest_rates_at_any_index)
 {
     struct particles a = gas(1);
     for (int len = 1; len <= 64; len++)

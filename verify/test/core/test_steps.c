@@ -223,7 +223,7 @@ TEST(steps_that_collapse)
 }
 
 /* The particle that limits a step has the smallest h/signal. */
-TEST(who_limits)
+TEST(particle_that_limits_the_step)
 {
     for (int last = 0; last < 40; last++) {
         struct simulation *s = standing();
@@ -344,7 +344,7 @@ TEST(clocks_go_on)
 }
 
 /* Saved state of the integrator, the sums and inactive particles. */
-TEST(all_is_carried)
+TEST(all_state_is_restored)
 {
     static struct made_bytes bag;
     bag.used = bag.read = 0;

@@ -62,7 +62,7 @@ static void filled(const struct particles *a, ptrdiff_t ghosts)
         }
 }
 
-TEST(every_array_has_its_room)
+TEST(arrays_do_not_overlap)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (ptrdiff_t n = 2; n < 40; n += 1 + n / 12)
@@ -88,7 +88,7 @@ TEST(every_array_has_its_room)
             }
 }
 
-TEST(room_for_more_ghosts)
+TEST(capacity_for_more_ghosts)
 {
     for (ptrdiff_t ghosts = 8; ghosts < 60; ghosts += 9) {
         struct particles a = made(1, 21, 8);
@@ -104,7 +104,7 @@ TEST(room_for_more_ghosts)
 /* --- serialised ------------------------------------------------------------------------------- */
 
 /* Only the arrays in use are serialised; the others stay as they are. */
-TEST(carried_with_ghosts)
+TEST(serialised_arrays)
 {
     static struct made_bytes bag;
     for (int dim = 1; dim <= 3; dim++)
@@ -148,7 +148,7 @@ static bool nothing(void *context, void *bytes, size_t n)
 }
 
 /* If reading a saved state fails, the particles stay as they are. */
-TEST(failed_to_carry)
+TEST(failed_restore_changes_nothing)
 {
     struct particles a = made(1, 9, 8);
     fill(&a, 8);
@@ -164,7 +164,7 @@ TEST(failed_to_carry)
 
 /* --- order ------------------------------------------------------------------------------------ */
 
-TEST(a_new_order)
+TEST(permutation_of_particles)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (ptrdiff_t n = 2; n < 200; n += 1 + n / 2) {

@@ -23,7 +23,7 @@ static double loss(struct team *team, double *now, double pace, double ratio)
 static const double paces[] = {2e-6, 1e-4, 3e-3, 0.05, 1.5};
 enum { PACES = sizeof paces / sizeof *paces };
 
-TEST(stay_near_the_better_choice)
+TEST(number_of_threads_is_near_the_best)
 {
     for (int k = 0; k < PACES; k++)
         for (int t = 2; t <= 16; t *= 2) {
@@ -45,7 +45,7 @@ TEST(stay_near_the_better_choice)
         }
 }
 
-TEST(alone_there_is_no_choice)
+TEST(one_thread_has_no_trials)
 {
     struct team team;
     double now = 7;
@@ -54,7 +54,7 @@ TEST(alone_there_is_no_choice)
     assert_int_equal(team.size, 1);
 }
 
-TEST(pauses_count_for_nobody)
+TEST(pauses_do_not_count)
 {
     struct team team;
     double now = 7;
@@ -88,7 +88,7 @@ static int stretch(struct team *team, double *now, double step)
 
 /* Trials last 4 ms; between them there are stretches of 16 to 256 times that, in time and in steps,
  * twice as long each time that nothing has changed; the choice changes only if that saves 5 %. */
-TEST(stretches_are_as_long_as_said)
+TEST(lengths_of_stretches_between_trials)
 {
     static const double exact[] = {0x1p-20, 0x1p-14, 0x1p-10, 0x1p-8, 0x1p-7, 0.25};
     for (size_t k = 0; k < sizeof exact / sizeof *exact; k++) {
@@ -147,7 +147,7 @@ TEST(stretches_are_as_long_as_said)
 }
 
 /* A trial that lasts exactly as long as it should is over. */
-TEST(four_milliseconds)
+TEST(length_of_a_trial)
 {
     struct team team;
     team_begin(&team, 2);
@@ -159,7 +159,7 @@ TEST(four_milliseconds)
 }
 
 /* Every piece of work is done once, also if there are more threads than ranges. */
-TEST(every_part_is_taken_once)
+TEST(every_piece_is_done_once)
 {
     static const int teams[] = {1, 2, 3, 5, TEAM_SHARES, TEAM_SHARES + 6};
     for (size_t k = 0; k < sizeof teams / sizeof *teams; k++)
@@ -177,7 +177,7 @@ TEST(every_part_is_taken_once)
 
 /* Each thread begins with its own range, the same one every time; then it takes pieces that other
  * threads have not begun. */
-TEST(own_parts_first)
+TEST(threads_begin_with_their_ranges)
 {
     enum { TEAM = 3, PARTS = 11 };
     for (int again = 0; again < 20; again++) {

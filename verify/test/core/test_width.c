@@ -34,7 +34,7 @@ TEST(widths_of_even_gas)
 }
 
 /* The tolerance is the scheme's, and at most 1e-10 at the start. */
-TEST(rules_of_simulations)
+TEST(tolerance_of_widths)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (int later = 0; later < 2; later++)
@@ -75,7 +75,7 @@ static struct batch drawn_batch(const struct width_rule *rule, double high)
 }
 
 /* A step is Newton's; the side of the bracket where the old width lies becomes the old width. */
-TEST(steps_are_newtons)
+TEST(newton_steps)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (int setup = 0; setup < 50; setup++) {
@@ -100,7 +100,7 @@ TEST(steps_are_newtons)
 }
 
 /* A width within the tolerance stays as it is, and so does its bracket. */
-TEST(converged_ones_stay)
+TEST(converged_widths_stay)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (int k = 0; k < 4; k++) {
@@ -124,7 +124,7 @@ TEST(converged_ones_stay)
 
 /* Where Newton's step leaves the bracket or has the wrong direction: bisection, or twice the width
  * while the bracket has no upper end; a bracket of two neighbouring numbers closes. */
-TEST(brackets_hold)
+TEST(steps_stay_within_brackets)
 {
     const struct width_rule rule = rule_of(1, 1e-12);
     const double even = rule.eta / rule.constant;  /* for m = 1, the sum whose root is h itself */
@@ -160,7 +160,7 @@ TEST(brackets_hold)
 }
 
 /* The first particle that is off by more than a millionth. */
-TEST(who_has_no_root)
+TEST(first_particle_without_a_root)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (int first = 0; first <= LEN; first++)

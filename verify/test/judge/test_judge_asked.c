@@ -28,7 +28,7 @@ static bool is_noted(const struct judged *judged, const char *what)
 
 /* ---- case and keys ---- */
 
-TEST(said)
+TEST(case_and_keys_of_the_file)
 {
     static const struct {
         const char *head, *name;
@@ -87,7 +87,7 @@ TEST(boundaries)
     }
 }
 
-TEST(refused)
+TEST(refused_requests)
 {
     static const struct {
         int dim;
@@ -213,7 +213,7 @@ TEST(radius_of_a_line)
 }
 
 /* The window of a disc or a ball; the size of the box is noted if it is not the case's. */
-TEST(sizes)
+TEST(windows_of_discs_and_balls)
 {
     for (int k = 0; k < 4; k++) {
         const double length = k < 2 ? 1 : k == 2 ? 1 + 1e-4 : 2;
@@ -238,7 +238,7 @@ TEST(sizes)
 }
 
 /* A flow along x in more dimensions than its case has; also particles on one line. */
-TEST(dimensions)
+TEST(dimensions_of_flows_along_x)
 {
     for (int dim = 1; dim <= 3; dim++) {
         const struct judge_request request = uniform_gas();
@@ -259,7 +259,7 @@ TEST(dimensions)
 }
 
 /* Particles that are wrapped back into the box are sorted along the line. */
-TEST(wraps)
+TEST(wrapped_particles_are_sorted)
 {
     struct judge_request request = uniform_gas();
     struct judged judged;
@@ -299,7 +299,7 @@ static void put_tube(const struct riemann_state sides[2], double x0)
     }
 
 /* Open ends or walls are recognised if the gas beside both ends has its initial state. */
-TEST(found_ends)
+TEST(open_ends_are_recognised)
 {
     static const struct {
         struct riemann_state sides[2];
@@ -391,7 +391,7 @@ static double fastest(const struct riemann_state sides[2], bool mirrored)
 }
 
 /* The window leaves out what waves from the ends may have reached; all particles are in the box. */
-TEST(drawn_tubes)
+TEST(windows_of_random_tubes)
 {
     int clean = 0, cut = 0, spoilt = 0;
     for (int k = 0; k < 60; k++) {

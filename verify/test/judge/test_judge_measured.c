@@ -180,7 +180,7 @@ static void verdict_is(const struct judged *judged, const char *kernel)
         fail_msg("%s: not: %s", judged->verdict, says);
 }
 
-TEST(drawn)
+TEST(random_snapshots)
 {
     int far = 0, draws = 0;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)

@@ -208,7 +208,7 @@ TEST(documents)
 }
 
 /* In 1D there is neither noise nor angular momentum. */
-TEST(on_a_line)
+TEST(documents_in_1d)
 {
     const struct judge_request request = uniform_gas();
     struct judged judged[2];

@@ -8,7 +8,7 @@
 
 /* ---- gamma, time ---- */
 
-TEST(gammas)
+TEST(sources_of_gamma)
 {
     static const struct {
         double said, in_file, planted, scatter, want; /* 0: missing */
@@ -52,7 +52,7 @@ TEST(gammas)
     }
 }
 
-TEST(times)
+TEST(sources_of_time)
 {
     struct judge_request request = uniform_gas();
     struct judged judged;
@@ -81,7 +81,7 @@ TEST(times)
 
 /* ---- position ---- */
 
-TEST(places)
+TEST(positions_of_tubes)
 {
     static const struct {
         double lo, hi; /* of the particles */
@@ -220,7 +220,7 @@ TEST(completed)
     }
 }
 
-TEST(in_vain)
+TEST(options_without_effect)
 {
     struct judge_request request = uniform_gas();
     plant(2, 0, "# box = 2 1\n");

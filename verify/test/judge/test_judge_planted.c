@@ -9,7 +9,7 @@
 /* ---- noise ---- */
 
 /* The rms over the window, by volume, of the velocity components across the flow. */
-TEST(noise)
+TEST(transverse_noise)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (int only = 0; only <= dim; only++) { /* the component that is not 0; dim: all */
@@ -200,7 +200,7 @@ TEST(sums_of_a_liquid)
 /* ---- starts ---- */
 
 /* A tenth of the particles may be wrong without an explanation. */
-TEST(few_that_are_damaged)
+TEST(a_tenth_may_be_wrong)
 {
     for (int wrong = N / 10 - 1; wrong <= N / 10 + 1; wrong++) {
         struct judge_request request = uniform_gas();
@@ -219,7 +219,7 @@ TEST(few_that_are_damaged)
 }
 
 /* A mass that more than half of the particles have counts as right. */
-TEST(mass_of_most)
+TEST(most_frequent_mass_is_right)
 {
     for (int alike = N / 2 - 1; alike <= N / 2 + 1; alike++) {
         struct judge_request request = uniform_gas();
@@ -259,7 +259,7 @@ TEST(mass_of_the_box)
 /* For uniform gas the limit is 0.2 of half the mean value, and for velocities of the sound speed.
  * (A limit of 0.2 of the median called our own gas at rest far, with 2 % of noise in its
  * pressure.) */
-TEST(uniform_is_far)
+TEST(limits_for_uniform_gas)
 {
     static const struct {
         double rho, v, u;
@@ -294,7 +294,7 @@ TEST(uniform_is_far)
 }
 
 /* Sod's tube, exact except for the same error everywhere: the median is that error. */
-TEST(tube_is_far)
+TEST(limits_for_a_tube)
 {
     for (int field = 0; field < FIELDS; field++)
         for (int far = 0; far < 2; far++) {

@@ -65,7 +65,7 @@ static const struct {
     {5, {{50, 0.1}, {50, 0.2}, {50, 0.3}, {50, 0.4}, {50, 0.5}}, 4, 0, 4, {4, -1}},
 };
 
-TEST(every_order)
+TEST(snapshots_in_every_order)
 {
     problem = (struct problem){0};
     for (size_t g = 0; g < sizeof groups / sizeof *groups; g++)
@@ -115,7 +115,7 @@ TEST(every_order)
 }
 
 /* Snapshots of the same time: the one given first counts. */
-TEST(ties)
+TEST(snapshots_of_one_time)
 {
     struct judged judged[4] = {made(50, 0.1, 2), made(50, 0.2, 2), made(50, 0.2, 2),
                                made(50, 0.1, 2)};
@@ -346,7 +346,7 @@ TEST(gates)
 }
 
 /* Gates on other figures: values, parts of an error, noise, conserved quantities. */
-TEST(other_gates)
+TEST(gates_on_other_figures)
 {
     static const struct regions regions = {.names = {"fan", "shock"}};
     struct judged judged = made(50, 0.2, 2);

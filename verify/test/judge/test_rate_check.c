@@ -96,7 +96,7 @@ static struct rate_table table_of(const struct setup *setup)
 /* ---- the table of rates ---- */
 
 /* Rates are in the order of the setup, whatever the order of positions. */
-TEST(in_the_setups_order)
+TEST(rates_are_in_the_setups_order)
 {
     static struct gas gas, turned;
     for (int dim = 1; dim <= 3; dim++) {
@@ -146,7 +146,7 @@ TEST(in_the_setups_order)
 
 /* dU/dt does not depend on which energy is integrated; with an external force sums do not
  * vanish. */
-TEST(whichever_energy)
+TEST(rates_do_not_depend_on_the_energy_integrated)
 {
     static struct gas gas;
     make(&gas, 2, 6, USUAL " energy=internal");
@@ -224,7 +224,7 @@ static struct rate_check checked(const struct file *file, const struct gas *gas,
     return check;
 }
 
-TEST(equal_columns)
+TEST(equal_tables_are_good)
 {
     static struct gas gas;
     static struct file file;
@@ -275,7 +275,7 @@ static double scale_of(const struct gas *gas, const struct rate_table *t, int co
 }
 
 /* Rows in another order, or of other particles, are refused if positions show it. */
-TEST(whose_rows)
+TEST(rows_of_other_particles)
 {
     static const struct {
         double shift; /* of all rows along the last axis, in boxes */
@@ -316,7 +316,7 @@ TEST(whose_rows)
 
 /* Two particles are off, the second by more: the check reports the error, the particle and whether
  * it is good; also if all rates are tiny, and if the first particle has by far the largest. */
-TEST(how_far_off)
+TEST(reported_errors)
 {
     static struct gas gas;
     static struct file file;
@@ -450,7 +450,7 @@ TEST(each_choice_is_named)
 
 /* A change of scheme is a cause if it makes the error a thousand times smaller, or as small as the
  * tolerance. */
-TEST(better_by_a_thousand)
+TEST(when_a_change_is_a_cause)
 {
     static struct gas gas;
     static struct file file;
@@ -494,7 +494,7 @@ TEST(better_by_a_thousand)
 
 /* Smoothing lengths of other codes scatter a little: the nearest kernel is named, with the common
  * eta, unless they scatter by more than two parts in a thousand. */
-TEST(open_widths)
+TEST(scattered_widths)
 {
     static struct gas gas;
     static struct file file;
@@ -525,7 +525,7 @@ TEST(open_widths)
 }
 
 /* Differences that no choice of a scheme makes. */
-TEST(plain_differences)
+TEST(differences_that_no_scheme_makes)
 {
     static struct gas gas;
     static struct file file;
@@ -572,7 +572,7 @@ TEST(plain_differences)
 }
 
 /* A cause leaves an error a thousand times smaller. */
-TEST(plainly_enough)
+TEST(when_a_difference_is_a_cause)
 {
     static struct gas gas;
     static struct file file;
@@ -644,7 +644,7 @@ TEST(factor_of_an_acceleration)
 }
 
 /* If all rates are 0, every difference is infinitely large: nothing explains it. */
-TEST(beside_nothing)
+TEST(rates_that_are_all_0)
 {
     static struct gas gas;
     static struct file file;
@@ -662,7 +662,7 @@ TEST(beside_nothing)
 }
 
 /* Quantities after the first wrong one follow from it; those before it do not. */
-TEST(what_follows)
+TEST(order_of_causes)
 {
     static struct gas gas;
     static struct file file;

@@ -61,7 +61,7 @@ TEST(shares)
 }
 
 /* Where particles along x are wrong, a character each; y and the radius are in no row's words. */
-TEST(places)
+TEST(regions_along_x)
 {
     static const struct {
         const char *map, *words;
@@ -96,7 +96,7 @@ TEST(places)
 }
 
 /* Positions along y, z and the radius, and by row number alone. */
-TEST(ways)
+TEST(regions_along_other_directions)
 {
     static const struct {
         int dim;
@@ -242,7 +242,7 @@ TEST(scalars)
 
 /* One of 20 wrong particles may be an exception, and not two; a sum is not proposed for a single
  * particle. */
-TEST(most_of_them)
+TEST(exceptions_from_a_cause)
 {
     for (int otherwise = 0; otherwise <= 2; otherwise++) {
         for (int field = START_VELOCITY; field <= START_ENERGY; field++)

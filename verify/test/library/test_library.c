@@ -53,7 +53,7 @@ static void see(void *context, const struct sphproof_figure *figure)
         snprintf(seen->first, sizeof seen->first, "%s", figure->property);
 }
 
-TEST(a_kernel_of_ones_own_is_certified)
+TEST(user_kernel_is_certified)
 {
     struct sphproof_kernel *kernel;
     struct sphproof_error error;

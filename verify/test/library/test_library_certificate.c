@@ -73,7 +73,7 @@ static bool holds(const struct figure *figure, bool single)
     return !(figure->value > bound) && !(figure->floor > bound);
 }
 
-TEST(every_planted_figure)
+TEST(verdicts_on_planted_figures)
 {
     struct sphproof_kernel *kernel;
     assert_int_equal(sphproof_kernels_find("cubic_spline", &kernel, NULL), SPHPROOF_OK);

@@ -50,7 +50,7 @@ static void unmade(struct simulation *simulation)
 
 /* --- order ------------------------------------------------------------------------------------ */
 
-TEST(no_order_of_what_is_no_position)
+TEST(nan_positions_are_not_sorted)
 {
     static const double bad[] = {NAN, INFINITY, -INFINITY};
     for (int k = 0; k < 3; k++)
@@ -77,7 +77,7 @@ TEST(no_order_of_what_is_no_position)
 /* If the kernel's self-contribution exceeds what `count` coincident particles allow, their guessed
  * widths are those of particles a thousandth of a spacing apart, or evenly spread over half of the
  * distance to the nearer neighbour. */
-TEST(coincident_ones_are_moved_apart)
+TEST(widths_of_coincident_particles)
 {
     enum { MEMBERS = 12 };
     const struct kernel *kernel =
@@ -133,7 +133,7 @@ TEST(coincident_ones_are_moved_apart)
 
 /* While some particles are inactive, the order of those at rest is not checked, and that of moving
  * ones is; if the order has changed all become active. */
-TEST(sleepers_in_order)
+TEST(order_of_inactive_particles)
 {
     struct error error;
     for (int at_rest = 0; at_rest < 2; at_rest++)
@@ -165,7 +165,7 @@ TEST(sleepers_in_order)
 /* --- images and reach ------------------------------------------------------------------------- */
 
 /* Particles are divided into ranges that are full except for the last one. */
-TEST(a_room_is_divided)
+TEST(particles_are_divided_into_ranges)
 {
     for (size_t n = 20; n<330; n += n % 64> 61 || n % 64 < 3 ? 1 : 7) {
         struct simulation *s = made_simulation(n);
@@ -206,7 +206,7 @@ static int farthest(const struct particles *a, const struct range *range)
     return most;
 }
 
-TEST(reach_is_what_widths_ask_for)
+TEST(reach_covers_the_widths)
 {
     for (int setup = 0; setup < SETUPS; setup++) {
         struct simulation s;
@@ -306,7 +306,7 @@ static void see_all(void *context, size_t i, const struct description *of)
 }
 
 /* The search ends with the last image and does not count particles at a distance of exactly h. */
-TEST(neighbours_end_somewhere)
+TEST(search_ends_at_the_last_image)
 {
     struct simulation s;
     made(&s, 70);
@@ -325,7 +325,7 @@ TEST(neighbours_end_somewhere)
 
 /* Each limit exactly, and the next number beyond it, in d dimensions; the setup's mean sound speed
  * and pressure count if they are larger than the particle's own. */
-TEST(disturbed_beyond_a_limit)
+TEST(limits_of_disturbances)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (int n = 10; n < 9000; n += 1700)
@@ -474,7 +474,7 @@ static void sleep_once_calm(struct simulation *s, ptrdiff_t reach, bool sheared)
 
 /* Groups that are inactive at the start, and groups that become active when a signal comes near the
  * end of a span. */
-TEST(groups_sleep_and_wake)
+TEST(groups_become_inactive_and_active)
 {
     enum { MOST = 100 };
     for (int setup = 0; setup < 10 * SETUPS; setup++) {

@@ -37,7 +37,7 @@ static void visit(struct simulation *simulation, struct range *range, struct tal
 
 /* With fewer than 32 ranges, or with one thread, one thread computes all ranges. The result is the
  * same. */
-TEST(every_range_once)
+TEST(every_range_is_computed_once)
 {
     for (int size = 1; size <= 3; size++)
         for (ptrdiff_t count = 1; count <= RANGES_MOST;
@@ -89,7 +89,7 @@ static void coincide(struct simulation *s, ptrdiff_t i)
 }
 
 /* The first particle without a root is named, whichever thread finds it. */
-TEST(the_first_without_a_root)
+TEST(first_particle_without_a_root_is_named)
 {
     static const ptrdiff_t places[][2] = {{0, 0},   {62, 62},   {64, 64},   {2559, 2559},
                                           {70, 68}, {2200, 67}, {67, 2200}, {1300, 1200}};
@@ -114,7 +114,7 @@ TEST(the_first_without_a_root)
 
 /* A reach that is too large is lowered every eighth step, with Newton's method and with predicted
  * widths; one that is too small is raised at once. */
-TEST(reaches_are_lowered_now_and_then)
+TEST(reaches_are_lowered_every_eighth_step)
 {
     for (int newton = 0; newton < 2; newton++)
         for (uint64_t step = 0; step < 18; step++) {
@@ -138,7 +138,7 @@ TEST(reaches_are_lowered_now_and_then)
 
 /* Newton's method sets 1/h together with h; a sum at a predicted width is taken there, and the
  * pressure is corrected along the adiabat for the prediction's error. */
-TEST(what_sums_leave)
+TEST(state_after_sums)
 {
     struct simulation *s = made_simulation(200);
     const struct particles *a = &s->particles;
@@ -175,7 +175,7 @@ TEST(what_sums_leave)
 
 /* In a box whose widths reach over many images there are enough ghosts, and ranges that are done
  * are not passed again; a predicted width without bound is named. */
-TEST(ghosts_as_many_as_it_takes)
+TEST(ghosts_suffice_for_wide_kernels)
 {
     struct simulation *s = made_simulation(20);
     struct error error;
@@ -241,7 +241,7 @@ TEST(ghosts_are_kept_filled)
 
 /* There is capacity for eight times the reach plus 8 ghosts; ghosts are filled again when their
  * arrays move. */
-TEST(room_for_eight_times_the_reach)
+TEST(capacity_for_eight_times_the_reach)
 {
     for (ptrdiff_t reach = 5; reach < 12; reach++) {
         struct simulation *s = made_simulation(100);

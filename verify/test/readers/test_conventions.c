@@ -132,7 +132,7 @@ TEST(every_kernel)
 
 /* Densities near ends that are not periodic are not compared: there may be walls, layers or a
  * vacuum. */
-TEST(ends)
+TEST(particles_near_ends_are_not_compared)
 {
     const struct kernel kernel = kernel_called("cubic_spline");
     for (int dim = 1; dim <= 3; dim++)
@@ -171,7 +171,7 @@ TEST(ends)
 
 /* On a lattice any kernel fits; densities that are no sum fit none; a kernel that nearly fits is
  * not known, and the message says how nearly it fits. */
-TEST(no_proof)
+TEST(unknown_kernels)
 {
     const struct kernel kernel = kernel_called("wendland_c4");
     struct snapshot_file file = scatter(1, 100, 0.02, 0);
@@ -228,7 +228,7 @@ TEST(either_sum)
 }
 
 /* What the user states is used, and the message says how well it fits. */
-TEST(said)
+TEST(stated_conventions_are_used)
 {
     const struct kernel cubic = kernel_called("cubic_spline"),
                         quintic = kernel_called("quintic_spline");
@@ -268,7 +268,7 @@ TEST(said)
 }
 
 /* A sum over more than 4096 neighbours ends the search: smaller ratios are still found. */
-TEST(crowds)
+TEST(too_many_neighbours_end_the_search)
 {
     const struct kernel cubic = kernel_called("cubic_spline");
     struct snapshot_file file = scatter(1, MOST, 0.1, 0);
@@ -378,7 +378,7 @@ static double flat(const struct kernel *kernel, double q, int dim)
 }
 
 /* A ball of constant density; if all particles are near the ends, they are compared. */
-TEST(corners)
+TEST(particles_near_the_ends_only)
 {
     const struct kernel ball = {.w = flat};
     for (int dim = 1; dim <= 3; dim++)

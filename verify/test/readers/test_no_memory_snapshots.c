@@ -23,7 +23,7 @@ static enum status read_file(struct error *error)
     return status;
 }
 
-TEST(formats)
+TEST(formats_without_memory)
 {
     static const char *const names[] = {
         "csv/table.csv",       "splash/splash.ascii",
@@ -61,7 +61,7 @@ static enum status judged(struct error *error)
     return status;
 }
 
-TEST(judging)
+TEST(judge_without_memory)
 {
     for (int k = 0; k < 3; k++) { /* without u, without P, with both */
         plant(1, 0, "");          /* without a box the case's own initial state is not computed */
@@ -157,7 +157,7 @@ static enum status gradients(struct error *error)
                   &theirs, error);
 }
 
-TEST(library)
+TEST(library_without_memory)
 {
     without_memory(gradients, 20, false);
     without_memory(kernels, 2, true);

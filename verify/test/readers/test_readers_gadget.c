@@ -29,7 +29,7 @@ TEST(every_form)
     is_read(&b, "without widths");
 }
 
-TEST(left_out)
+TEST(missing_blocks)
 {
     static const char *const says[BLOCKS] = {
         "positions of",    "velocities of",   NULL, "no block 'MASS'",
@@ -70,7 +70,7 @@ TEST(left_out)
 }
 
 /* Files that miss any byte, and counts that are wrong. */
-TEST(cut_off)
+TEST(truncated_files)
 {
     for (int form = 0; form < 4; form++) {
         struct binary b = made(1);
@@ -152,7 +152,7 @@ TEST(headers)
 }
 
 /* Format 1 has no names: exactly one assignment of the blocks must be plausible. */
-TEST(inferred)
+TEST(inferred_blocks)
 {
     static const struct {
         int block;

@@ -12,7 +12,7 @@
 
 #include "made_layouts.h"
 
-TEST(left_out)
+TEST(missing_items)
 {
     for (int a = 0; a < LAYOUTS; a++) {
         const struct layout *l = &layouts[a];
@@ -59,7 +59,7 @@ TEST(left_out)
 }
 
 /* The file may begin after a user block of 512 bytes or a power of 2 times that. */
-TEST(behind_a_block)
+TEST(file_after_a_user_block)
 {
     static char bytes[1 << 16];
     struct item items[ITEMS_MAX];
@@ -81,7 +81,7 @@ TEST(behind_a_block)
     }
 }
 
-TEST(apart)
+TEST(reading_in_a_process)
 {
     struct rlimit usual, none;
     struct snapshot_file file;
@@ -89,7 +89,7 @@ TEST(apart)
     struct item items[ITEMS_MAX];
     char folder[] = "TMPDIR=no_such_folder";
     here.here = false;
-    left_out(state);
+    missing_items(state);
     write_items(path_of("a.hdf5"), items, items_of(&layouts[0], items));
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &usual), 0);
     none = usual, none.rlim_cur = 1000;
@@ -185,7 +185,7 @@ static void allows(const struct item *items, size_t n)
 
 /* Columns of another shape, columns of words, a group in place of a column, and impossible
  * values. */
-TEST(spoilt_columns)
+TEST(damaged_columns)
 {
     for (int a = 0; a < LAYOUTS; a++) {
         const struct layout *l = &layouts[a];
@@ -254,7 +254,7 @@ TEST(spoilt_columns)
 }
 
 /* In the header: text, an empty list, a value that is not a number. */
-TEST(spoilt_numbers)
+TEST(damaged_numbers)
 {
     for (int a = 0; a < LAYOUTS; a++) {
         const struct layout *l = &layouts[a];

@@ -64,7 +64,7 @@ TEST(other_names)
 }
 
 /* Runs in an expanding universe are refused, by their flag or else by redshift and time. */
-TEST(comoving)
+TEST(comoving_runs_are_refused)
 {
     static const struct {
         const char *path;
@@ -222,7 +222,7 @@ TEST(phantom)
 }
 
 /* Our own snapshots have the box's corner, from which positions count, and the name of the case. */
-TEST(placed)
+TEST(corner_of_the_box)
 {
     for (int numbers = 0; numbers <= 4; numbers++) /* numbers in the corner; 4: without a box */
         for (int columns = 1; columns <= 3; columns += 2) {
@@ -318,7 +318,7 @@ TEST(dimensions)
 }
 
 /* The header states more dimensions than positions have columns. */
-TEST(said_dimensions)
+TEST(stated_dimensions)
 {
     for (int said = 2; said <= 3; said++) {
         struct item items[ITEMS_MAX];
@@ -334,7 +334,7 @@ TEST(said_dimensions)
 
 /* ---- unknown files ---- */
 
-TEST(unknown)
+TEST(unknown_files)
 {
     static const struct {
         const char *paths[3], *says;

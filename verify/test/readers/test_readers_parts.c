@@ -40,7 +40,7 @@ static enum status read_parts(const char *name, struct snapshot_file *file, stru
 }
 
 /* Particles are in the order of the file numbers, whatever the order of files in the folder. */
-TEST(every_order)
+TEST(parts_in_every_order)
 {
     int order[PARTS_MOST] = {0, 1, 2, 3};
     for (int parts = 1; parts <= PARTS_MOST; parts++)
@@ -107,7 +107,7 @@ TEST(totals)
 }
 
 /* Parts of which one has a different item are not joined. */
-TEST(other_headers)
+TEST(parts_with_different_items)
 {
     static const struct {
         const char *item, *says;
@@ -160,7 +160,7 @@ TEST(other_headers)
 }
 
 /* Different boxes along each direction, and of the last part alone. */
-TEST(other_boxes)
+TEST(parts_with_different_boxes)
 {
     for (int d = 0; d < 3; d++)
         for (int which = 0; which < 3; which++) {

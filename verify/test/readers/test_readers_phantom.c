@@ -265,7 +265,7 @@ TEST(every_form)
     }
 }
 
-TEST(left_out)
+TEST(missing_items)
 {
     static const char *const says[ARRAYS] = {
         "need real arrays x, y, z and h; they have: itype y z h vx vy vz u pressure",

@@ -91,7 +91,7 @@ TEST(units)
     "0000000000000000000000000000000000000000000" /* so many that with four letters more they are  \
                                                      47 */
 
-TEST(remarks)
+TEST(values_in_comments)
 {
     static const struct {
         const char *head;
@@ -290,7 +290,7 @@ TEST(remarks)
 
 /* ---- SPLASH ---- */
 
-TEST(splash)
+TEST(files_of_splash)
 {
     static const struct {
         const char *head;
@@ -342,7 +342,7 @@ TEST(splash)
 
 /* ---- compressed ---- */
 
-TEST(compressed)
+TEST(compressed_files)
 {
 #ifdef HAVE_ZLIB
     static char text[TEXT_MAX], bytes[TEXT_MAX];

@@ -12,7 +12,7 @@
 
 /* ---- columns that the user maps ---- */
 
-TEST(maps)
+TEST(user_defined_names)
 {
     struct table t = table_of(1, true);
     struct snapshot_file file;
@@ -89,7 +89,7 @@ TEST(maps)
 
 /* ---- one wrong value ---- */
 
-TEST(spoilt)
+TEST(wrong_numbers)
 {
     static const char *const words[] = {
         "hot",  "nan",  "inf", "-",     "1e400",
@@ -178,7 +178,7 @@ TEST(no_files)
     }
 }
 
-TEST(heads)
+TEST(wrong_headers)
 {
     static const struct {
         const char *text, *says;

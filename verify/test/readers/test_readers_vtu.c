@@ -267,7 +267,7 @@ TEST(one_fault)
 }
 
 /* A document may end anywhere. */
-TEST(cut_off)
+TEST(truncated_documents)
 {
     for (int draw = 0; draw < 100; draw++) {
         struct document d = made();

@@ -102,7 +102,7 @@ TEST(units_do_not_matter)
 
 /* With weak gravity gas is nearly incompressible: the growth rate is proportional to the root of
  * gravity. A growth time of 1e8 sound times is below round-off. */
-TEST(slow_growth_is_known_as_far_as_it_can_be)
+TEST(precision_of_slow_growth)
 {
     struct layer layer = layers[4];
     struct layer_mode mode;

@@ -220,7 +220,7 @@ TEST(test_sedov_inside)
 
 /* The search ends at every position of every blast, and finds no gas denser than that behind the
  * shock. */
-TEST(test_sedov_anywhere)
+TEST(test_sedov_of_any_blast)
 {
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     for (int i = 0; i < 3000; i++) {

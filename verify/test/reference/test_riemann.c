@@ -34,7 +34,7 @@ static bool in_order(double a, double b, double c)
 }
 
 /* Any input is refused or has a solution with valid values, whose samples are valid. */
-TEST(test_anything)
+TEST(test_any_input)
 {
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     /* Where long double is no wider than double (on some machines, and under valgrind), 600 decades
@@ -156,7 +156,7 @@ TEST(test_cold_gas)
 
 /* Hot gas, at rest or moving, beside cold gas: the rarefaction and the strong shock have one
  * pressure and one velocity, found by bisection. */
-TEST(test_hot_beside_cold)
+TEST(test_hot_gas_beside_cold_gas)
 {
     for (int k = 0; k < 8; k++) {
         const double gamma = 1.2 + 0.2 * k, rho = k % 2 ? 0.3 : 5, v = 0.5 * (k % 3) - 0.5;
@@ -183,7 +183,7 @@ TEST(test_hot_beside_cold)
 /* Hot gas that almost separates from very heavy cold gas at rest: both move with v = sqrt(2
  * p/((gamma + 1) rho)), the speed of the heavy gas; along the fan of the light gas it is less
  * precise. */
-TEST(test_heavy_beside_light)
+TEST(test_heavy_gas_beside_light_gas)
 {
     const double gamma = 1.4, c = sqrt(1.4), apart = 2 * c / (gamma - 1);
     for (int k = 0; k <= 18; k++)
@@ -328,7 +328,7 @@ TEST(test_bad_input)
 /* Two gases that collide gently: a shock of strength d = p* - P on both sides, by Hugoniot a root
  * of d^2 - (gamma + 1)/2 rho w^2 d - gamma P rho w^2. Then gases at the speed at which vacuum
  * forms. */
-TEST(test_gentle_and_parting)
+TEST(test_weak_shocks_and_onset_of_vacuum)
 {
     for (int k = -14; k <= 0; k++)
         for (int digit = 1; digit < 10; digit += 2) {

@@ -45,7 +45,7 @@ static void add_figure(json_t *document, const struct kind *kind, const char *te
 }
 
 /* Each kind alone, for each pair of: missing, null, good, bad. */
-TEST(each_kind)
+TEST(verdict_on_each_kind)
 {
     for (size_t f = 0; f < KINDS; f++) {
         const char *const texts[] = {NULL, "null", kinds[f].good, kinds[f].bad};
@@ -200,7 +200,7 @@ TEST(names)
 
 /* A total that fails because its part fails is not a regression of its own, be it the first figure
  * or the last; one that fails alone is. */
-TEST(whole_and_part)
+TEST(totals_and_parts)
 {
     static const char *const wholes[] = {"outcome", "status"}, *const parts[] = {"studies", "runs"};
     for (int w = 0; w < 2; w++)
@@ -275,7 +275,7 @@ static void drawn(json_t *document)
 
 /* A figure that vanishes in one direction is new in the other one; the same figure stays the
  * same. */
-TEST(both_ways_round)
+TEST(diffs_in_both_directions)
 {
     static const enum metric_verdict back[] = {
         [VERDICT_SAME] = VERDICT_SAME,    [VERDICT_BETTER] = VERDICT_WORSE,

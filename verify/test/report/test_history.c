@@ -145,7 +145,7 @@ TEST(the_newest_are_kept)
 }
 
 /* A history that cannot be opened: its path goes through a file. */
-TEST(no_place)
+TEST(history_that_cannot_be_opened)
 {
     const struct night night = usual_night(1);
     json_t *results = results_of(&night), *history;
@@ -260,7 +260,7 @@ static void in_order_of_since(const json_t *figures)
 }
 
 /* Since last night: the verdict of each figure, faults first, and the number of each verdict. */
-TEST(since_says_which_way)
+TEST(verdicts_since_last_night)
 {
     static const struct {
         double error, order; /* last night's; tonight's are 1e-3 and 0.95 */

@@ -6,7 +6,7 @@
 /* the source itself, because its static functions are tested */
 #include "movie.c"
 
-TEST(curves)
+TEST(ranges_of_curves)
 {
     static const double x[3] = {1, 2, 3};
     static const struct {
@@ -32,7 +32,7 @@ TEST(curves)
     }
 }
 
-TEST(maps)
+TEST(ranges_of_maps)
 {
     static const struct {
         double z[4];

@@ -97,7 +97,7 @@ TEST(inline_svg)
 }
 
 /* Values that are equal, or differ by round-off, are a straight line in a plot, on either axis. */
-TEST(one_value)
+TEST(constant_values)
 {
     if (!have_gnuplot()) skip();
     const double nights[] = {1, 2, 3}, equal[] = {8.761e-4, 8.761e-4, 8.761e-4},
@@ -252,7 +252,7 @@ TEST(processes)
 
 /* A persistent program answers each question; after a failure neither its output nor its end is
  * taken for the next answer. */
-TEST(questions)
+TEST(persistent_program)
 {
     char sh[] = "sh", c[] = "-c", message[512];
     char loop[] = "while read -r a; do case $a in die) exit 3;; stop) echo bye; exit;; esac; "
@@ -300,7 +300,7 @@ TEST(questions)
 
 /* One gnuplot for many plots draws the same as one for each plot; a plot that fails does not affect
  * the others. */
-TEST(pen)
+TEST(one_gnuplot_for_many_plots)
 {
     if (!have_gnuplot()) skip();
     static const struct plot_mark nowhere = {.at = (double)NAN};
@@ -380,7 +380,7 @@ TEST(markup)
 }
 
 /* The line ends before a missing value, and begins again after it. */
-TEST(gap)
+TEST(missing_values)
 {
     static const double at[] = {1, 2, 3, 4, 5}, gapped[] = {1, 2, NAN, 4, 5};
     const struct plot_series line = {.kind = PLOT_LINES, .n = 5, .x = at, .y = gapped};

@@ -7,7 +7,7 @@
 
 /* Results that suffice for a verdict: one figure that passed, one order, one run; faults alone do
  * not. */
-TEST(alone)
+TEST(least_results_for_a_verdict)
 {
     static const struct {
         const char *text, *status, *headline;
@@ -64,7 +64,7 @@ TEST(alone)
 }
 
 /* A long subject is cut at the end of a word, and the comma after it is removed. */
-TEST(cut)
+TEST(long_subjects_are_cut)
 {
     static const struct {
         const char *subject, *told;

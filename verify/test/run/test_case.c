@@ -15,7 +15,7 @@ static enum status parse(struct case_file *file, const char *text, struct error 
     return case_parse(file, "some/folder/tube.v2.ini", text, strlen(text), error);
 }
 
-TEST(everything)
+TEST(every_line_of_a_case)
 {
     struct case_file file;
     struct error error;
@@ -198,7 +198,7 @@ TEST(compared)
 }
 
 /* A separate bound for runs finer than the case's ladder. */
-TEST(finer)
+TEST(bounds_beyond_the_ladder)
 {
     struct case_file file;
     struct error error;

@@ -97,7 +97,7 @@ TEST(descriptors)
     unlink(path_of("tube.ini"));
 }
 
-TEST(no_case_files)
+TEST(files_that_are_not_cases)
 {
     refused(path_of("none.ini"), "No such file or directory");
     refused(folder, "Is a directory");

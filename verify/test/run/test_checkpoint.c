@@ -37,7 +37,7 @@ static int end(void **state)
 }
 
 /* A checkpoint is due this many seconds after it was last written, or after the first call. */
-TEST(when)
+TEST(times_of_checkpoints)
 {
     struct checkpoint checkpoint = {.every = 1000};
     const double before = clock_wall();
@@ -80,7 +80,7 @@ static enum status loaded(struct checkpoint *checkpoint, struct simulation *simu
     return status;
 }
 
-TEST(goes_on)
+TEST(restored_run_continues)
 {
     struct simulation *self = made_simulation(40), *other = made_simulation(40);
     struct checkpoint checkpoint = usual();
@@ -206,7 +206,7 @@ TEST(forged)
 }
 
 /* A file longer than one read; a fault in any part is detected. */
-TEST(large_ones)
+TEST(large_checkpoints)
 {
     static char bytes[1 << 23];
     struct simulation *self = made_simulation(8000);
@@ -231,7 +231,7 @@ TEST(large_ones)
 }
 
 /* If a state is of another build or run, the message says what differs. */
-TEST(others)
+TEST(checkpoints_of_other_runs)
 {
     static const struct {
         const char *run, *why;
@@ -298,7 +298,7 @@ TEST(long_runs)
 
 /* While nothing can be written, the trouble is reported; a file that cannot be opened is
  * refused. */
-TEST(no_room)
+TEST(checkpoints_that_cannot_be_written)
 {
     struct simulation *self = made_simulation(40);
     struct checkpoint checkpoint = usual();

@@ -249,7 +249,7 @@ TEST(particles_and_the_curve)
 }
 
 /* Of many particles about 600 are kept, drawn by Knuth's generator instead of every k-th one. */
-TEST(some_of_many)
+TEST(particles_that_are_kept)
 {
     uint64_t drawn = 1;
     size_t shown = 0, nearest = 0;
@@ -278,7 +278,7 @@ static bool has_a_curve(void)
 
 /* One particle of an otherwise uniform gas differs in one quantity, by a little less or more than
  * 1e-9, absolute and relative. */
-TEST(what_is_no_function_of_the_coordinate)
+TEST(flows_without_a_curve)
 {
     for (int k = 0; k < 8; k++) {
         const int q = k % 4;

@@ -146,17 +146,17 @@ static void every_scheme(const char *name, int dim)
     assert_true(2 * allowed > all);
 }
 
-TEST(in_a_line)
+TEST(defaults_in_1d)
 {
     every_scheme("sod", 1);
 }
 
-TEST(in_a_plane)
+TEST(defaults_in_2d)
 {
     every_scheme("rest_2d", 2);
 }
 
-TEST(nothing_but_these)
+TEST(tables_name_every_member)
 {
     assert_int_equal(kernels.n, kernel_family.n);
     assert_int_equal(integrators.n, integrator_family.n);
@@ -211,7 +211,7 @@ TEST(nothing_chosen)
 }
 
 /* shifting=auto: closed for these problems, unless a key excludes it. */
-TEST(what_shifts)
+TEST(default_of_shifting)
 {
     enum { KEYS = 2 };
     static const struct {
@@ -261,7 +261,7 @@ TEST(what_shifts)
 }
 
 /* shock_conductivity=auto: in gas that viscosity heats. */
-TEST(what_conducts)
+TEST(default_of_shock_conductivity)
 {
     static const struct {
         const char *name, *keys[2];
@@ -291,7 +291,7 @@ TEST(what_conducts)
 }
 
 /* sinc: half of its exponent. */
-TEST(sinc)
+TEST(default_of_sinc)
 {
     const struct run_settings sod = keyed_case("sod", ""), rest = keyed_case("rest_2d", "");
     for (int n = 3; n <= 12; n++) {

@@ -41,7 +41,7 @@ static struct setup plain_setup(int dim)
     return setup;
 }
 
-TEST(of_particles)
+TEST(estimate_of_memory_and_steps)
 {
     static const double ball[] = {0, 2, M_PI, 4 * M_PI / 3};
     for (int dim = 1; dim <= 3; dim++) {
@@ -104,7 +104,7 @@ TEST(of_particles)
 }
 
 /* A million particles with the best scheme in 3D fit into a GiB. */
-TEST(of_a_million)
+TEST(memory_of_a_million_particles)
 {
     struct setup setup = plain_setup(3);
     setup.n = 1000000;
@@ -121,7 +121,7 @@ TEST(of_a_million)
 }
 
 /* Gas as cold as possible makes few steps; each step has at least one evaluation. */
-TEST(of_few_steps)
+TEST(estimate_of_few_steps)
 {
     static const double cold[N] = {1e-30, 1e-30, 1e-30}, still[N] = {0};
     struct setup setup = plain_setup(1);
@@ -140,7 +140,7 @@ TEST(of_few_steps)
 
 /* Runs in 2D or 3D refuse kernels too wide for the box; in 1D and in open boxes a particle may
  * reach further. */
-TEST(of_reach)
+TEST(kernels_too_wide_for_the_box)
 {
     for (int dim = 1; dim <= 3; dim++) {
         struct setup setup = plain_setup(dim);

@@ -289,7 +289,7 @@ TEST(layers_slide_past_each_other)
 
 /* ---- gas at rest, and particles of a file ---- */
 
-TEST(gas_rests)
+TEST(gas_at_rest)
 {
     struct settings s;
     const struct prepared p = prepared_of(&s, 3, "kind=rest|background=1.3 0 0.7|gamma=1.6");

@@ -9,7 +9,7 @@
 #include "initial.h"
 #include "lattice.h"
 
-TEST(arrays_lie_apart)
+TEST(arrays_do_not_overlap)
 {
     for (int dim = 1; dim <= 3; dim++) {
         enum { N = 5 };
@@ -57,7 +57,7 @@ static bool left_of(const void *context, const double x[3])
 }
 
 /* A lattice is added after the particles already there, and some of it is removed again. */
-TEST(lays_and_keeps)
+TEST(lattices_are_added_and_cut)
 {
     for (int dim = 2; dim <= 3; dim++) {
         const struct prepared p = {.problem = &gas_problem, .domain = {dim, {-1, 0, 2}, {1, 3, 4}}};
@@ -303,7 +303,7 @@ TEST(jitter_moves_all)
 }
 
 /* The lower end belongs to the box, the upper one is the lower one of the next box. */
-TEST(ends_of_the_box)
+TEST(ends_belong_to_one_box)
 {
     const struct problem problem = {.sample = gas_sample, .fill = fill_cloud};
     const struct prepared p = {.problem = &problem,

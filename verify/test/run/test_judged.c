@@ -60,7 +60,7 @@ static void names_are(const struct case_file *file, size_t count, const char *co
 
 /* Parts of a circular flow, fields with a gate, fields without one; functionals with an exact value
  * if no field is known. */
-TEST(names)
+TEST(names_of_judged_figures)
 {
     static const char *const functionals[] = {"growth_rate", "mode_noise", "mode_error"};
     static const double exact[] = {1.7, (double)NAN, 0};
@@ -122,7 +122,7 @@ static void judged_is(const struct run_settings *settings, const struct run_resu
     near_relative(judged.signal, signal, 1e-14);
 }
 
-TEST(fields)
+TEST(errors_and_signals_of_fields)
 {
     struct run_settings settings;
     struct run_result result;
@@ -181,7 +181,7 @@ TEST(faint_signals)
     faint = 0;
 }
 
-TEST(functionals)
+TEST(errors_and_signals_of_functionals)
 {
     struct run_settings settings;
     struct run_result result;

@@ -25,7 +25,7 @@ static bool in_window(const struct prepared *p, const struct snapshot *s, size_t
     return inside && (!(p->window.radius > 0) || sqrt(square) <= p->window.radius);
 }
 
-TEST(means)
+TEST(budget_means)
 {
     static const struct {
         const char *name, *keys;
@@ -96,7 +96,7 @@ TEST(mirrored_budgets)
 /* A particle at the centre of a blast is compared with the mean of the exact gas over a ball of its
  * volume, because u is infinite at the centre; others are compared with the gas at their
  * positions. */
-TEST(centres)
+TEST(particles_at_the_centre_of_a_blast)
 {
     static const struct {
         const char *name, *keys;

@@ -80,7 +80,7 @@ TEST(slice_of_a_box)
 }
 
 /* Empty cells have the mean of the nearest ring with particles, up to MAP_REACH. */
-TEST(rings)
+TEST(empty_cells_take_the_nearest_ring)
 {
     enum { SIDE_X = 14, SIDE_Y = 11, CELLS = SIDE_X * SIDE_Y };
     const struct domain domain = {2, {0, 0}, {SIDE_X, SIDE_Y}};
@@ -124,7 +124,7 @@ TEST(rings)
 }
 
 /* Empty cells beyond every h are void; distances are those of cell centres, in the plane. */
-TEST(voids)
+TEST(cells_beyond_every_h)
 {
     enum { SIDE = 12, N = SIDE * SIDE };
     const struct domain domain = {2, {0, 0}, {SIDE, SIDE}};

@@ -113,7 +113,7 @@ TEST(smooth_fields_to_their_order)
     assert_true(miss[1] < miss[0] / 50 && miss[0] > 0.003 && miss[1] > 1e-6);
 }
 
-TEST(the_gap_of_a_periodic_box)
+TEST(interpolation_across_periodic_ends)
 {
     static const double c[3] = {0, 0, 1};
     struct own_table *table = make(LINE, 100, 1, c);
@@ -133,7 +133,7 @@ TEST(the_gap_of_a_periodic_box)
     own_table_free(table);
 }
 
-TEST(radii)
+TEST(tables_over_radius)
 {
     FILE *file = fopen(path_of("t"), "w");
     struct error error = {0};

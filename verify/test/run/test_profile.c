@@ -47,7 +47,7 @@ static double at(const json_t *object, const char *name, size_t i)
     return value_real(json_array_get(json_object_get(object, name), i));
 }
 
-TEST(bends)
+TEST(points_at_bends)
 {
     static const double want[] = {0, 0.25, 0.375, 0.5, 0.625, 1};
     struct problem problem;
@@ -80,7 +80,7 @@ TEST(bends)
 }
 
 /* A curve that bends by 1e-9 of its values from point to point counts as straight. */
-TEST(nearly_straight)
+TEST(nearly_straight_curves)
 {
     struct problem problem;
     for (int side = -1; side <= 1; side += 2) {

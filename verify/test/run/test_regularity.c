@@ -65,7 +65,7 @@ static struct regularity directly(const struct regularity_cloud *cloud)
                                sqrt(gradient / whole)};
 }
 
-TEST(as_defined)
+TEST(agrees_with_its_definition)
 {
     enum { N = 90 };
     const struct kernel kernel = kernel_named("wendland_c4");
@@ -114,7 +114,7 @@ TEST(as_defined)
 /* A row in an open box: points whose support ends exactly at an end are complete; a neighbour half
  * a spacing away is not a pair; a neighbour further away than every h counts as if it were at that
  * distance. */
-TEST(what_lies_on_a_limit)
+TEST(points_exactly_at_limits)
 {
     const struct kernel kernel = kernel_named("cubic_spline");
     static const double x[] = {0.5, 1, 1.75, 3.5}, volume[] = {1, 1, 1, 1},
@@ -198,7 +198,7 @@ TEST(blocks_of_points)
 }
 
 /* States of runs use their widths and volumes; an empty state has no regularity. */
-TEST(of_a_run)
+TEST(regularity_of_a_run)
 {
     const struct kernel kernel = kernel_named("cubic_spline");
     static const double x[] = {0.25, 0.75, 1.75}, volume[] = {0.5, 0.5, 1}, h[] = {0.8, 0.8, 0.5};

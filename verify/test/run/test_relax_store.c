@@ -31,7 +31,7 @@ static void set(const char *name, const char *value)
 
 static double *const all[] = {points[0], points[1], points[2]};
 
-TEST(they_come_back)
+TEST(stored_points_are_found)
 {
     double kept[3][N + 1];
     set("XDG_CACHE_HOME", whole_path_of("xdg"));
@@ -61,7 +61,7 @@ TEST(they_come_back)
 }
 
 /* The folder for caches, if its path is absolute, else that in the user's home, else none. */
-TEST(folders)
+TEST(folder_of_the_store)
 {
     char home[4500];
     snprintf(home, sizeof home, "%s", whole_path_of("own"));
@@ -85,7 +85,7 @@ TEST(folders)
 
 /* Glasses of few points are not kept because they are cheap, and those of too many because they are
  * large. */
-TEST(numbers)
+TEST(number_of_points_that_is_kept)
 {
     static const struct {
         size_t n;
@@ -102,7 +102,7 @@ TEST(numbers)
 }
 
 /* Keeping a glass removes those that were not used for a month. */
-TEST(old_ones_go)
+TEST(old_entries_are_removed)
 {
     static const char old[] = "old/sphproof/glass/00/1.entry";
     const time_t now = time(NULL);

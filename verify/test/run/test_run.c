@@ -12,7 +12,7 @@
 
 /* ---- before the run ---- */
 
-TEST(setups)
+TEST(setups_of_runs)
 {
     static const char *const cases[] = {"sod", "rayleigh_taylor_mode", "rest_3d"};
     static const char *const keys[] = {"n=40 t_end=0.01 skip=none", "n=16^2 t_end=0.01 skip=auto",
@@ -102,7 +102,7 @@ TEST(explanations)
 }
 
 /* The exact solution must hold until the end, unless the user allows any window. */
-TEST(any_window)
+TEST(windows_beyond_the_exact_solution)
 {
     struct run run = keyed_run("sod", "n=40 t_end=5");
     struct run_result result;
@@ -114,7 +114,7 @@ TEST(any_window)
 }
 
 /* A run larger than the available memory is refused before any array of its size is allocated. */
-TEST(too_large)
+TEST(runs_larger_than_memory)
 {
     struct run_result result;
     struct error error = {0};
@@ -174,7 +174,7 @@ enum { N = 8 };
 
 /* In 1D particles are sorted by position, also those carried across the end; the number of
  * neighbours that are no longer adjacent is reported. */
-TEST(a_line_rises)
+TEST(particles_in_1d_are_sorted)
 {
     /* two coincident particles; the first ones in the order have crossed the end */
     static const double rising[N] = {-0.9, -0.7, -0.5, -0.2, 0, 0.3, 0.3, 0.9};
@@ -226,7 +226,7 @@ TEST(a_line_rises)
 
 /* In 2D and 3D they are sorted by number; errors are those of the particles in the window, by
  * volume. */
-TEST(clouds_by_number)
+TEST(particles_in_2d_and_3d_are_sorted_by_number)
 {
     static const size_t id[N] = {3, 0, 7, 1, 2, 6, 5, 4};
     static double x[3][N], v[3][N], rest[6][N];
@@ -298,7 +298,7 @@ TEST(clouds_by_number)
 }
 
 /* A state at a time when the exact solution no longer holds cannot be judged. */
-TEST(too_late)
+TEST(states_after_the_exact_solution)
 {
     const struct run run = keyed_run("sod", "t_end=0.1");
     const double x[2] = {-0.5, 0.5}, one[2] = {1, 1};
@@ -335,7 +335,7 @@ static bool tell(void *context, double time, uint64_t steps)
     return steps < told->stop;
 }
 
-TEST(who_is_told)
+TEST(progress_callbacks)
 {
     static struct told told;
     struct run run = keyed_run("sod", "n=400 t_end=0.2");
@@ -362,7 +362,7 @@ TEST(who_is_told)
 
 /* Every step reports sums and progress, also when a snapshot is due; there is a snapshot at each
  * time before the end. A snapshot that cannot be written is reported, and the run is the same. */
-TEST(what_is_left_on_the_way)
+TEST(sums_and_snapshots_during_a_run)
 {
     static struct trace trace;
     static struct told told = {.stop = 1000};
@@ -404,7 +404,7 @@ TEST(what_is_left_on_the_way)
 }
 
 /* The peak memory of the process; on Linux it includes the process that started it. */
-TEST(peaks)
+TEST(peak_memory)
 {
     struct rusage after;
     const struct run run = keyed_run("sod", "n=40 t_end=0.01");
@@ -424,7 +424,7 @@ TEST(peaks)
 }
 
 /* Momentum is not conserved along directions where walls push, and is along others. */
-TEST(walls_push)
+TEST(momentum_along_walls)
 {
     static const struct {
         const char *boundary;

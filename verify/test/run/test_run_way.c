@@ -96,7 +96,7 @@ static size_t text_of(const char *path, char *text, size_t most)
 }
 
 /* Blocks of local steps do not step over the time of a snapshot. */
-TEST(snapshots_are_in_time)
+TEST(snapshots_within_blocks_of_steps)
 {
     static char text[1024];
     char path[64];
@@ -122,7 +122,7 @@ TEST(snapshots_are_in_time)
 }
 
 /* The amplitude is sampled 17 times while it grows, within the time of the run. */
-TEST(growth)
+TEST(samples_of_a_growing_amplitude)
 {
     struct run run = keyed_run("kelvin_helmholtz_mode", "n=12^2 t_end=1.84");
     double times[2];

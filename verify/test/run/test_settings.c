@@ -57,7 +57,7 @@ static enum status set(enum setting key, double value, int count, struct setting
 
 /* A key accepts both ends of its allowed range, unless the range says "above", and nothing
  * beyond. */
-TEST(keys_take_their_ends)
+TEST(ends_of_allowed_ranges)
 {
     for (int i = 0; i < SETTINGS; i++) {
         const struct setting_key *key = &setting_keys[i];
@@ -91,7 +91,7 @@ TEST(keys_take_their_ends)
 }
 
 /* The allowed values of a key in words; a list that does not fit ends in dots. */
-TEST(keys_say_what_they_allow)
+TEST(texts_of_allowed_values)
 {
     static const struct {
         enum setting key;
@@ -298,7 +298,7 @@ TEST(schemes)
 }
 
 /* As typed, and as in a document. */
-TEST(written)
+TEST(keys_as_text_and_json)
 {
     static const struct {
         const char *argument, *text, *json;

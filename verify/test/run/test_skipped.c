@@ -18,7 +18,7 @@ static struct bench_shares shares_of(const char *name, const char *words)
 }
 
 /* At least four fifths of the particles that may be inactive are, and no others. */
-TEST(test_shares)
+TEST(test_shares_of_inactive_particles)
 {
     static const struct {
         const char *name, *keys;
@@ -42,7 +42,7 @@ TEST(test_shares)
 
 /* The bound itself: half of the possible share is too little, unless layers of few particles
  * explain it; a hundredth of all updates does not count. */
-TEST(test_enough)
+TEST(test_bound_of_skipped_updates)
 {
     static const struct {
         double skipped, allowed, layers, spacing;
@@ -89,7 +89,7 @@ TEST(test_columns)
 
 /* Without an exact front, gas that hardly changes could be inactive: in a box at rest all of it, in
  * a converging flow none. The map then shows every particle inactive, or none. */
-TEST(test_coarse)
+TEST(test_gas_without_a_front)
 {
     static const struct {
         const char *name, *keys;

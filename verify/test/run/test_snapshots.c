@@ -31,7 +31,7 @@ TEST(intervals)
 
 /* There is one at the start and at each multiple before the end, no nearer to it than 1e-9 of the
  * run; the end has its own. */
-TEST(how_many)
+TEST(number_of_snapshots)
 {
     const struct snapshots quarter = {.every = 0.25}, third = {.every = 0.3};
     const double more = 1 + 1e-9;
@@ -74,7 +74,7 @@ TEST(memory)
 }
 
 /* Snapshots up to the present time are over, and so are those made before the process began. */
-TEST(begins)
+TEST(first_snapshot_of_a_resumed_run)
 {
     static const struct {
         double time, last;
@@ -109,7 +109,7 @@ static double step_of(const struct simulation *simulation)
 
 /* The state is kept if a snapshot is due within four steps and before the next stop, and can be
  * restored to the last bit any number of times. */
-TEST(aside_and_back)
+TEST(state_is_set_aside_and_restored)
 {
     struct simulation *self = made_simulation(40), *other = made_simulation(40);
     struct snapshots snapshots = {.path = "a.csv", .every = 1};
@@ -144,7 +144,7 @@ TEST(aside_and_back)
     simulation_destroy(other);
 }
 
-TEST(first_trouble)
+TEST(first_error_is_reported)
 {
     struct snapshots snapshots = {0};
     const struct error errors[] = {{.status = STATUS_ENVIRONMENT, .message = "no space"},

@@ -45,7 +45,7 @@ TEST(ends_with_the_run)
     run_free(&result);
 }
 
-TEST(on_a_line)
+TEST(drift_in_1d)
 {
     struct trace trace = {0};
     struct run_result result = traced(&trace, "sod", "n=40 t_end=0.02");
@@ -103,7 +103,7 @@ TEST(thins_evenly)
 }
 
 /* The end replaces an entry of the same time, and no other one. */
-TEST(ends_once)
+TEST(end_replaces_an_entry)
 {
     static struct trace trace;
     const struct regularity a = {.nearest = 1}, b = {.nearest = 2};
@@ -176,7 +176,7 @@ static void is(const json_t *lists, const char *name, size_t k, double value)
 }
 
 /* Kinetic energies and momenta at uneven times, and the figures computed from them by hand. */
-TEST(motion_is_told)
+TEST(figures_of_motion)
 {
     static const struct {
         double kinetic[5], momentum[5], rebound, asymmetry, centre;
@@ -217,7 +217,7 @@ TEST(motion_is_told)
 
 /* A run of a steady vortex reports how its motion decays. A boost does not count as motion, and a
  * tube has no such figures. */
-TEST(a_run_tells_its_motion)
+TEST(motion_of_a_vortex)
 {
     struct run_result result = traced(NULL, "gresho", "n=12^2 t_end=0.5"),
                       moving = traced(NULL, "gresho", "n=12^2 t_end=0.5 boost=1,0.5"),
@@ -232,7 +232,7 @@ TEST(a_run_tells_its_motion)
     run_free(&tube);
 }
 
-TEST(says_it_all)
+TEST(document_of_a_trace)
 {
     static struct trace trace;
     trace = (struct trace){0};

@@ -5,7 +5,7 @@
 #include "paired.h"
 
 /* By hand: ratios 0.8, 0.9, 1.0 with t(0.975, 2) = 4.302653; five with t(0.975, 4) = 2.776445. */
-TEST(by_hand)
+TEST(intervals_by_hand)
 {
     static const struct {
         size_t n;
@@ -71,7 +71,7 @@ static double normal(void)
 
 /* For equal sides a share `level` of the verdicts is a difference, also if one side is a single
  * draw; exchanging the sides inverts every verdict. */
-TEST(by_chance)
+TEST(rate_of_false_differences)
 {
     enum { TIMES = 4000, DRAWS = 5 };
     for (int single = 0; single < 2; single++) {

@@ -144,7 +144,7 @@ TEST(absence_is_known)
 
 /* An error that is not a number fails. Figures without an exact value are not gates. Above the
  * ladder the case's bound applies. */
-TEST(odd)
+TEST(errors_that_are_not_numbers)
 {
     const struct case_file file = file_of(false);
     json_t *run = run_of(1, 0.1, 1), *list = json_array();
@@ -163,7 +163,7 @@ TEST(odd)
 
 /* Momentum is not gated where walls push or gravity acts, and energy is not if only heat is
  * integrated. */
-TEST(conserved)
+TEST(gates_on_conservation)
 {
     static const struct {
         const char *boundary, *energy;

@@ -190,7 +190,7 @@ TEST(many_jobs)
 /* ---- how they are run ---- */
 
 /* Heavy jobs run first, and equal ones in their order, with no more at once than requested. */
-TEST(order_and_number)
+TEST(order_of_jobs)
 {
     enum { N = 9 };
     static const double weights[N] = {2, 5, 1, 5, 3, 2, 8, 3, 1};
@@ -211,7 +211,7 @@ TEST(order_and_number)
 }
 
 /* A result is kept whatever its status; bad input and environment errors are not results. */
-TEST(what_is_kept)
+TEST(results_that_are_kept)
 {
     static const enum status statuses[] = {STATUS_OK, STATUS_CHECK_FAILED, STATUS_BAD_INPUT,
                                            STATUS_BROKE_DOWN, STATUS_ENVIRONMENT};
@@ -250,7 +250,7 @@ TEST(what_is_kept)
 
 /* A job without a key is never kept; a valid entry that is not a reply is computed again, and so is
  * a damaged one, which is counted. */
-TEST(what_is_not_there)
+TEST(entries_that_are_missing_or_damaged)
 {
     struct place place;
     struct pool pool;
@@ -282,7 +282,7 @@ TEST(what_is_not_there)
 }
 
 /* A crash or a failure affects one job only and is not kept. */
-TEST(no_result)
+TEST(jobs_that_crash_or_fail)
 {
     struct pool pool;
     struct told told[3] = {{.kind = LEAVES}, {.kind = LEAVES_BADLY}, {.kind = WITH_DOCUMENT}};
@@ -314,7 +314,7 @@ TEST(no_result)
 }
 
 /* Output still in this process's buffer before the run is written once. */
-TEST(nothing_twice)
+TEST(buffered_output_is_written_once)
 {
     struct pool pool;
     struct told told[2] = {{.kind = FLUSHES}, {.kind = FLUSHES}};
@@ -336,7 +336,7 @@ TEST(nothing_twice)
 }
 
 /* If no more processes can be started, running jobs are waited for, and no pipe stays open. */
-TEST(no_pipe)
+TEST(too_few_file_descriptors)
 {
     struct pool pool;
     struct told told[4] = {{0}};
@@ -439,7 +439,7 @@ TEST(progress)
 }
 
 /* A long job reports a few times a second. */
-TEST(several_times_a_second)
+TEST(progress_during_a_long_job)
 {
     static struct seen seen;
     struct pool pool;
@@ -489,7 +489,7 @@ TEST(shares_by_hand)
 }
 
 /* Each share computes its own jobs and leaves the others as they were. */
-TEST(a_share_is_its_own)
+TEST(share_computes_its_own_jobs)
 {
     enum { N = 6 };
     struct pool pool;

@@ -279,7 +279,7 @@ TEST(floors_explain_up_to_a_point)
 }
 
 /* A floor of 0 explains nothing, however small the error. */
-TEST(no_floor)
+TEST(floor_of_0_explains_nothing)
 {
     for (size_t l = 0; l < LEVELS; l++) exact_errors[l] = 1e-8 * pow(2, 0.5 * (double)(3 - l));
     begin("sod", "kernel=quadratic_spline,eta=1.5,gradient=ia", 1, set_errors);
@@ -295,7 +295,7 @@ TEST(no_floor)
  * enough: not at the coarsest level of the case's ladder with a raised bound, nor with a bound
  * above a quarter of the exact value, nor with an interval of the order wider than its gate. A
  * bound alone asks for no order. */
-TEST(what_passes_is_weighed)
+TEST(passes_that_say_little)
 {
     const double open = (double)INFINITY, none = (double)NAN;
     const struct {

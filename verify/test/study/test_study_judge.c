@@ -427,7 +427,7 @@ static void same_spacing(json_t *run, size_t c, size_t l, size_t r)
 }
 
 /* Two levels with the same spacing have no order. */
-TEST(levels_that_are_one)
+TEST(levels_of_equal_spacing)
 {
     struct study study;
     struct pool pool;
@@ -451,7 +451,7 @@ static void same_bins(json_t *run, size_t c, size_t l, size_t r)
 }
 
 /* A run's own suspicion comes first; means over bins are not suspected. */
-TEST(what_is_suspected)
+TEST(suspicions)
 {
     fault_kind = fault_field = 0;
     struct study study = made("sod", NULL, 1, suspected_already);

@@ -196,7 +196,7 @@ TEST(weights)
 }
 
 /* A run whose profile is in the cache is not added; nor is a second one with the same key. */
-TEST(once)
+TEST(kept_runs_are_not_repeated)
 {
     struct error error;
     struct pool pool = {0};
@@ -215,7 +215,7 @@ TEST(once)
 }
 
 /* The process of a run returns its document, or the reason for its failure. */
-TEST(run_elsewhere)
+TEST(run_in_a_process)
 {
     struct error error;
     struct pool pool = {0};
@@ -236,7 +236,7 @@ TEST(run_elsewhere)
 }
 
 /* A value that a key no longer allows. */
-TEST(changed_values)
+TEST(values_no_longer_allowed)
 {
     struct study study;
     struct pool pool;

@@ -137,7 +137,7 @@ TEST(what_is_refused)
 }
 
 /* If the settings refuse a combination, the message names the value. */
-TEST(applied)
+TEST(refused_combinations_name_the_value)
 {
     struct run_settings settings = keyed_case("sod", "");
     struct sweep sweep;

@@ -19,7 +19,7 @@ static void clear(struct check_run *run)
     free(run->series);
 }
 
-TEST(figures)
+TEST(figures_of_a_check)
 {
     struct check_run run = {.check = &check, .began = clock_wall() - 1000};
     check_measure(&run, 1, 1, 1, "of %d", 3); /* value, bound and floor are equal */
@@ -51,7 +51,7 @@ TEST(figures)
 }
 
 /* A mutant that has failed once is decided; the correct subject never is. */
-TEST(decided)
+TEST(mutants_that_are_decided)
 {
     for (int mutant = 0; mutant < 2; mutant++) {
         struct check_run run = {.check = &check, .mutant = mutant};

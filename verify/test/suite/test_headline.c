@@ -88,7 +88,7 @@ TEST(the_worst_figure)
 }
 
 /* The most elementary check comes first, then the figure farthest off, then the first in order. */
-TEST(the_order)
+TEST(order_of_headlines)
 {
     json_t *list = told(6, (const struct row[]){{&two, "early", 4, 2},
                                                 {&one, "near", 3, 2},
@@ -138,7 +138,7 @@ TEST(missed_mutants)
 
 /* The exact printed text: with and without colour; with and without figures; with the number of
  * further checks. */
-TEST(what_is_printed)
+TEST(printed_headlines)
 {
     static struct check others[9] = {{0}};
     static char names[9][8];

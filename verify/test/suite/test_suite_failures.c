@@ -52,7 +52,7 @@ static void numbers_are(const char *expected)
 
 /* The first check has no curves; of the second one's nine eight are drawn. Values are clipped to
  * 1e-6 and 1e12. */
-TEST(drawings)
+TEST(plots_of_failures)
 {
     enum { CURVES = 9 };
     struct figure figures[] = {

@@ -23,7 +23,7 @@ static void same(double bytes, double expected)
     near_relative(bytes, expected, 1e-15);
 }
 
-TEST(groups_are_nested)
+TEST(nested_control_groups)
 {
     const double all = allowance_memory("nowhere");
     assert_true(all > 1e8);
@@ -41,7 +41,7 @@ TEST(groups_are_nested)
     same(allowance_memory(place), 2e7);
 }
 
-TEST(first_version)
+TEST(control_groups_version_1)
 {
     const double all = allowance_memory("nowhere");
     put("proc/self", "cgroup", "9:name=systemd:/\n4:memory:/jobs/8\n3:cpuset:/jobs/7\n");

@@ -10,7 +10,7 @@
 #include "made_jobs.h"
 
 /* Old entries are removed on request, and not when another process opens the folder. */
-TEST(pruned)
+TEST(old_entries_are_pruned)
 {
     struct place place;
     struct cache_census census;
@@ -101,7 +101,7 @@ TEST(damaged_entries)
 }
 
 /* If the process is killed during its third job, the first two entries are complete. */
-TEST(killed)
+TEST(killed_process_leaves_whole_entries)
 {
     struct place place;
     struct pool pool;
@@ -135,7 +135,7 @@ TEST(killed)
 }
 
 /* Two processes with the same jobs and cache: both get all results, and the entries are valid. */
-TEST(two_at_once)
+TEST(two_processes_share_a_cache)
 {
     struct place place;
     struct pool pool, alone;

@@ -33,7 +33,7 @@ static struct cache opened(bool force)
 }
 
 /* The build is a hash of the program's bytes and of the mathematical functions it uses. */
-TEST(builds)
+TEST(identity_of_a_build)
 {
     uint64_t hash = CACHE_HASH;
     char text[] = VERSION_FLAGS VERSION_GIT, build[CACHE_BUILD_MAX], said[CACHE_BUILD_MAX];
@@ -243,7 +243,7 @@ static bool is_there(const char *name)
     return access(path, F_OK) == 0;
 }
 
-TEST(what_is_old_goes)
+TEST(pruning_by_age)
 {
     struct cache_census census;
     struct error error;

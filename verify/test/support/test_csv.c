@@ -125,7 +125,7 @@ TEST(every_style)
     }
 }
 
-TEST(spoilt)
+TEST(wrong_fields)
 {
     static const char *const words[] = {"hot",  "nan", "inf", "-",     "1e400", "1..2",
                                         "0x10", "1e",  "1;2", "1d5e3", "d"};
@@ -173,7 +173,7 @@ TEST(spoilt)
     }
 }
 
-TEST(faults)
+TEST(faults_of_whole_files)
 {
     static const struct {
         const char *text, *says;

@@ -7,7 +7,7 @@
 
 #include "finding.h"
 
-TEST(words)
+TEST(words_of_statuses)
 {
     static const char *const words[] = {"none",  "pass",         "fail", "known",
                                         "smoke", "undetermined", "skip"};
