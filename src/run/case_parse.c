@@ -8,7 +8,7 @@
 
 #include "ini_text.h"
 #include "list.h"
-#include "own_reference.h"
+#include "user_solution.h"
 #include "problem.h"
 #include "problem_list.h"
 #include "problem_prepare.h"
@@ -95,9 +95,9 @@ static void set_reference(struct parser *parser, const char *value)
 {
     char where[256];
     struct error reason;
-    if (own_is_meant(value)) {
+    if (user_solution_is_named(value)) {
         snprintf(parser->reference, sizeof parser->reference, "%s", "");
-        if (own_load(value, parser->at.path, &parser->file->settings.reference, &reason))
+        if (user_solution_load(value, parser->at.path, &parser->file->settings.reference, &reason))
             ini_text_fail(&parser->at, reason.message, "");
         return;
     }

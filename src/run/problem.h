@@ -90,9 +90,9 @@ struct problem_ends {
  * domain, or moving towards it or away from it. */
 enum circular { CIRCULAR_NOT, CIRCULAR_ROUND, CIRCULAR_RADIAL };
 
-/* Exact solutions of users (own_reference.h). A table is valid at one time only, a function at any
+/* Exact solutions of users (user_solution.h). A table is valid at one time only, a function at any
  * time, including the start. */
-enum own_kind { OWN_NOT, OWN_TABLE, OWN_FUNCTION };
+enum user_kind { USER_NOT, USER_TABLE, USER_FUNCTION };
 
 struct problem {
     struct member member;  /* the key `kind` selects it by name */
@@ -102,7 +102,7 @@ struct problem {
     enum circular circular;
     bool fieldless;           /* for t > 0 only functionals are known; there are no field errors */
     bool unknown[FIELDS];     /* fields without exact values; their samples are NaN */
-    enum own_kind own;        /* who provides the sample */
+    enum user_kind user;      /* who provides the sample */
     bool liquid;              /* weakly compressible: only for snapshots and runs of other codes */
     bool filed;               /* the particles always come from a file */
     bool heavy;               /* has a solution with gravity; no other problem allows gravity */

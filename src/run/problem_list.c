@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "own_reference.h"
+#include "user_solution.h"
 
 #define PROBLEM(name) extern const struct problem problem_##name;
 #include "problems.def"
@@ -22,7 +22,7 @@ const struct problem *problem_of(const struct settings *settings)
 {
     const struct problem *problem =
         (const struct problem *)members[settings_choice(settings, SETTING_kind)];
-    return settings->reference > 0 ? own_problem(settings->reference, problem) : problem;
+    return settings->reference > 0 ? user_solution_problem(settings->reference, problem) : problem;
 }
 
 static bool calls_its_own(const struct problem *problem, enum setting key)

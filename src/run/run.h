@@ -115,11 +115,11 @@ struct run_result {
                                        error in 2D and 3D is |v - exact| */
     struct norms azimuthal, radial; /* velocity errors of a circular flow */
     double binned_density_l1;       /* 1D only */
-    double interpolation[FIELDS];   /* error of a user's table (own_miss); NaN: no table */
-    struct regularity regularity;   /* of the final state, with the scheme's kernel */
-    struct estimate estimate;       /* made before the run */
-    struct relax_quality start;     /* of a glass; NaN: the start is not a glass */
-    size_t crossed;       /* 1D: pairs of initial neighbours that are no longer adjacent */
+    double interpolation[FIELDS]; /* error of a user's table (user_solution_error); NaN: no table */
+    struct regularity regularity; /* of the final state, with the scheme's kernel */
+    struct estimate estimate;     /* made before the run */
+    struct relax_quality start;   /* of a glass; NaN: the start is not a glass */
+    size_t crossed;               /* 1D: pairs of initial neighbours that are no longer adjacent */
     double spacing, h;    /* (box/n)^(1/d); volume-weighted mean smoothing length in the window */
     struct budget budget; /* L1 by regions of the problem */
     /* conservation errors, relative and >= 0: see trace_drift; momentum only along directions

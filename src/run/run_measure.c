@@ -6,7 +6,7 @@
 
 #include "functional.h"
 #include "growth.h"
-#include "own_reference.h"
+#include "user_solution.h"
 
 /* Measured and exact values for the errors, n numbers each. */
 struct comparison {
@@ -191,7 +191,7 @@ enum status run_measure_errors(struct run_result *result, struct error *error)
     struct comparison of;
     run_measure_nothing(result);
     if (result->problem.problem->fieldless) return STATUS_OK;
-    own_miss(&result->problem, s, result->interpolation);
+    user_solution_error(&result->problem, s, result->interpolation);
     if (!compare(&of, result))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
     (result->problem.domain.dim == 1 ? measure_line : measure_cloud)(result, measured, &of);

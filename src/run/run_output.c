@@ -68,7 +68,7 @@ json_t *run_errors_json(const struct run_result *result)
                         result->problem.domain.dim == 1 && problem_knows(problem, FIELD_DENSITY)
                             ? result_number(result->binned_density_l1)
                             : json_null());
-    if (problem->own == OWN_TABLE) add_interpolation(errors, result->interpolation);
+    if (problem->user == USER_TABLE) add_interpolation(errors, result->interpolation);
     return errors;
 }
 

@@ -59,7 +59,7 @@ struct settings {
     int dim; /* of the case; 0: not yet known */
     struct setting_value value[SETTINGS];
     char file[SETTING_TEXT_MAX]; /* value of the SETTING_PATH; "": none */
-    int reference;               /* number of a user's solution (own_reference.h); 0: none */
+    int reference;               /* number of a user's solution (user_solution.h); 0: none */
 };
 
 enum lattice {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run_output.h"
 
-#include "own_reference.h"
+#include "user_solution.h"
 #include "problem_list.h"
 #include "result.h"
 
@@ -48,6 +48,7 @@ json_t *settings_json(const struct settings *settings)
         }
         json_object_set_new(object, key->name, item);
     }
-    if (settings->reference > 0) result_add(object, "reference=%s", own_name(settings->reference));
+    if (settings->reference > 0)
+        result_add(object, "reference=%s", user_solution_name(settings->reference));
     return object;
 }

@@ -10,7 +10,7 @@
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
-    if (settings->file[0] || p->problem->own == OWN_FUNCTION) return STATUS_OK;
+    if (settings->file[0] || p->problem->user == USER_FUNCTION) return STATUS_OK;
     return error_set(error, STATUS_BAD_INPUT,
                      "an initial state of kind particles needs a file of them, file = "
                      "PARTICLES.csv in [initial], or a shared object that knows the state at t = "
@@ -30,7 +30,7 @@ static void sample(const struct prepared *p, const double x[3], double t,
 static enum status fill(const struct prepared *p, const struct settings *settings,
                         struct initial *initial, struct error *error)
 {
-    if (p->problem->own == OWN_FUNCTION) return initial_fill(p, settings, initial, error);
+    if (p->problem->user == USER_FUNCTION) return initial_fill(p, settings, initial, error);
     return error_set(error, STATUS_BAD_INPUT, "%s: no particles but those of a file",
                      p->problem->member.name);
 }

@@ -225,7 +225,7 @@ static void is_document(const struct comparison *c, bool pictures)
     json_decref(document);
 }
 
-TEST(what_is_said)
+TEST(printed_verdicts)
 {
     static const char *const names[] = {"density", "velocity"};
     static const char frame[] =

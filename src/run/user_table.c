@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "own_table.h"
+#include "user_table.h"
 
 #include <gsl/gsl_interp.h>
 #include <math.h>
@@ -15,7 +15,7 @@ static const char *const column_names[COLUMNS] = {"rho", "vx", "vy", "vz", "P", 
 
 enum over { OVER_X, OVER_XY, OVER_R };
 
-struct own_table {
+struct user_table {
     enum over over;
     double time;
     size_t n[2];                /* rows along x or r; rows along y, or 1 */
@@ -39,7 +39,7 @@ static double read_time(const char *path)
     return time;
 }
 
-static enum status unsorted(const struct own_table *table, const char *path, const struct csv *csv,
+static enum status unsorted(const struct user_table *table, const char *path, const struct csv *csv,
                             const double *const at[2], size_t row, struct error *error)
 {
     const char *name = table->over == OVER_R ? "r" : "x";
@@ -55,7 +55,7 @@ static enum status unsorted(const struct own_table *table, const char *path, con
 
 /* Reads the positions of the rows: one increasing coordinate, or all pairs of two. order: index of
  * row i in the table. */
-static enum status read_positions(struct own_table *table, const char *path, const struct csv *csv,
+static enum status read_positions(struct user_table *table, const char *path, const struct csv *csv,
                                   const double *const at[2], size_t *order, struct error *error)
 {
     const size_t rows = csv->rows;
@@ -88,7 +88,7 @@ static enum status read_positions(struct own_table *table, const char *path, con
 }
 
 /* Makes the interpolating curves; false: no memory. */
-static bool make_curves(struct own_table *table)
+static bool make_curves(struct user_table *table)
 {
     const size_t n = table->n[0];
     for (int c = 0; c < COLUMNS; c++) {
@@ -100,7 +100,7 @@ static bool make_curves(struct own_table *table)
     return true;
 }
 
-void own_table_free(struct own_table *table)
+void user_table_free(struct user_table *table)
 {
     for (int c = 0; table && c < COLUMNS; c++) {
         free(table->value[c]);
@@ -110,7 +110,7 @@ void own_table_free(struct own_table *table)
     free(table);
 }
 
-static enum status read_columns(struct own_table *table, const char *path, const struct csv *csv,
+static enum status read_columns(struct user_table *table, const char *path, const struct csv *csv,
                                 size_t *order, struct error *error)
 {
     const int x = csv_column(csv, "x"), y = csv_column(csv, "y"), r = csv_column(csv, "r");
@@ -144,10 +144,10 @@ static enum status read_columns(struct own_table *table, const char *path, const
                               : error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
 }
 
-struct own_table *own_table_read(const char *path, struct error *error)
+struct user_table *user_table_read(const char *path, struct error *error)
 {
     struct csv csv = {0};
-    struct own_table *table = calloc(1, sizeof *table);
+    struct user_table *table = calloc(1, sizeof *table);
     enum status status = table ? csv_read(path, &csv, error)
                                : error_set(error, STATUS_ENVIRONMENT, "no memory for a table");
     size_t *order = status ? NULL : malloc((csv.rows + 1) * sizeof *order);
@@ -161,18 +161,18 @@ struct own_table *own_table_read(const char *path, struct error *error)
     free(order);
     csv_free(&csv);
     if (!status) return table;
-    own_table_free(table);
+    user_table_free(table);
     return NULL;
 }
 
-double own_table_time(const struct own_table *table)
+double user_table_time(const struct user_table *table)
 {
     return table->time;
 }
 
 /* ---- values ---- */
 
-bool own_table_knows(const struct own_table *table, enum field field)
+bool user_table_knows(const struct user_table *table, enum field field)
 {
     double *const *value = table->value;
     switch (field) {
@@ -214,7 +214,8 @@ struct spot {
     bool inside, across; /* between the last row and the first */
 };
 
-static struct spot spot_at(const struct own_table *table, const double x[2], const double period[2])
+static struct spot spot_at(const struct user_table *table, const double x[2],
+                           const double period[2])
 {
     struct spot spot = {.inside = true};
     for (int a = 0; a < 2; a++) {
@@ -227,7 +228,7 @@ static struct spot spot_at(const struct own_table *table, const double x[2], con
     return spot;
 }
 
-static double value_at(const struct own_table *table, enum column c, const struct spot *spot)
+static double value_at(const struct user_table *table, enum column c, const struct spot *spot)
 {
     const double *value = table->value[c], *axis = table->axis[0];
     const size_t ny = table->n[1], *row = spot->row, *next = spot->next;
@@ -253,7 +254,7 @@ static void turn(const struct prepared *p, const double x[3], double vr, double 
 }
 
 /* State at the table's coordinates x, which belong to the position `at`. */
-static void state_at(const struct own_table *table, const struct prepared *p, const double at[3],
+static void state_at(const struct user_table *table, const struct prepared *p, const double at[3],
                      const double x[2], struct problem_state *state)
 {
     double period[2] = {0}, value[COLUMNS];
@@ -265,9 +266,9 @@ static void state_at(const struct own_table *table, const struct prepared *p, co
         value[c] = spot.inside ? value_at(table, (enum column)c, &spot) : nan;
     *state = (struct problem_state){value[RHO], {0}, value[P_], value[U]};
     for (int d = 0; d < p->domain.dim; d++)
-        state->v[d] = !own_table_knows(table, FIELD_VELOCITY) ? nan
-                      : table->value[VX + d]                  ? value[VX + d]
-                                                              : 0;
+        state->v[d] = !user_table_knows(table, FIELD_VELOCITY) ? nan
+                      : table->value[VX + d]                   ? value[VX + d]
+                                                               : 0;
     if (table->value[VR] || table->value[VPHI])
         turn(p, at, table->value[VR] ? value[VR] : 0, table->value[VPHI] ? value[VPHI] : 0,
              state->v);
@@ -275,8 +276,8 @@ static void state_at(const struct own_table *table, const struct prepared *p, co
     if (!table->value[U]) state->u = state->P / ((p->gamma - 1) * state->rho);
 }
 
-void own_table_sample(const struct own_table *table, const struct prepared *p, const double x[3],
-                      struct problem_state *state)
+void user_table_sample(const struct user_table *table, const struct prepared *p, const double x[3],
+                       struct problem_state *state)
 {
     const double over[2] = {table->over == OVER_R ? problem_radius(p, x) : x[0], x[1]};
     state_at(table, p, x, over, state);
@@ -284,8 +285,8 @@ void own_table_sample(const struct own_table *table, const struct prepared *p, c
 
 /* ---- coverage and interpolation error ---- */
 
-enum status own_table_check(const struct own_table *table, const struct prepared *p,
-                            struct error *error)
+enum status user_table_check(const struct user_table *table, const struct prepared *p,
+                             struct error *error)
 {
     static const char *const coordinates[] = {"x", "x and y", "r"};
     const int dim = p->domain.dim;
@@ -320,9 +321,9 @@ enum status own_table_check(const struct own_table *table, const struct prepared
 }
 
 /* A table of every second row along each axis; NULL: too few rows, or no memory. */
-static struct own_table *thin(const struct own_table *table)
+static struct user_table *thin(const struct user_table *table)
 {
-    struct own_table *half = calloc(1, sizeof *half);
+    struct user_table *half = calloc(1, sizeof *half);
     bool good = half && table->n[0] >= 4 && (table->n[1] == 1 || table->n[1] >= 4);
     if (!half) return NULL;
     half->over = table->over;
@@ -341,7 +342,7 @@ static struct own_table *thin(const struct own_table *table)
                 half->value[c][i * half->n[1] + j] = table->value[c][2 * i * table->n[1] + 2 * j];
     }
     if (good && make_curves(half)) return half;
-    own_table_free(half);
+    user_table_free(half);
     return NULL;
 }
 
@@ -352,7 +353,7 @@ static double width_of(const double *axis, size_t n, size_t i)
 }
 
 /* Position of a row; on the x axis for a table over r. */
-static void row_position(const struct own_table *table, const struct prepared *p, size_t i,
+static void row_position(const struct user_table *table, const struct prepared *p, size_t i,
                          size_t j, double at[3])
 {
     for (int d = 0; d < 3; d++) at[d] = p->window.centre[d];
@@ -378,7 +379,7 @@ static void add_missed(struct missed *missed, const struct prepared *p, double w
     missed->weight += weight;
 }
 
-static void miss_rows(const struct own_table *table, const struct own_table *half,
+static void miss_rows(const struct user_table *table, const struct user_table *half,
                       const struct prepared *p, struct missed *missed)
 {
     for (size_t i = 0; i < table->n[0]; i++)
@@ -399,7 +400,7 @@ static void miss_rows(const struct own_table *table, const struct own_table *hal
         }
 }
 
-static void miss_particles(const struct own_table *table, const struct own_table *half,
+static void miss_particles(const struct user_table *table, const struct user_table *half,
                            const struct prepared *p, const struct snapshot *s,
                            struct missed *missed)
 {
@@ -409,22 +410,22 @@ static void miss_particles(const struct own_table *table, const struct own_table
         double position[3];
         if (!(part > 0)) continue;
         problem_position(p, s, i, position);
-        own_table_sample(table, p, position, &whole);
-        own_table_sample(half, p, position, &less);
+        user_table_sample(table, p, position, &whole);
+        user_table_sample(half, p, position, &less);
         add_missed(missed, p, part, &whole, &less);
     }
 }
 
-void own_table_miss(const struct own_table *table, const struct prepared *p,
-                    const struct snapshot *s, double miss[FIELDS])
+void user_table_error(const struct user_table *table, const struct prepared *p,
+                      const struct snapshot *s, double miss[FIELDS])
 {
-    struct own_table *half = thin(table);
+    struct user_table *half = thin(table);
     struct missed rows = {.weight = 0}, particles = {.weight = 0};
     if (half) miss_rows(table, half, p, &rows);
     if (half) miss_particles(table, half, p, s, &particles);
     for (int f = 0; f < FIELDS; f++)
-        miss[f] = rows.weight > 0 && own_table_knows(table, (enum field)f)
+        miss[f] = rows.weight > 0 && user_table_knows(table, (enum field)f)
                       ? fmax(rows.sum[f] / rows.weight, particles.sum[f] / particles.weight)
                       : (double)NAN;
-    own_table_free(half);
+    user_table_free(half);
 }

@@ -5,7 +5,7 @@
 
 #include "draw.h"
 #include "made_place.h"
-#include "own_table.h"
+#include "user_table.h"
 
 /* rho = 1 + a x + b y + c sin(2 pi x), P = 2 rho, v = (rho, -rho). */
 static double field(double x, double y, const double c[3])
@@ -23,7 +23,7 @@ static void places(size_t n, double *x)
     for (size_t i = 0; i < n; i++) x[i] = (x[i] - 0.5) / sum;
 }
 
-static struct own_table *make(enum shape shape, size_t nx, size_t ny, const double c[3])
+static struct user_table *make(enum shape shape, size_t nx, size_t ny, const double c[3])
 {
     double x[400], y[400];
     struct error error = {0};
@@ -44,7 +44,7 @@ static struct own_table *make(enum shape shape, size_t nx, size_t ny, const doub
         fprintf(file, "7,%.17g,%.17g,%.17g,%.17g\n", rho, 2 * rho, -rho, rho);
     }
     assert_int_equal(fclose(file), 0);
-    struct own_table *table = own_table_read(path_of("t"), &error);
+    struct user_table *table = user_table_read(path_of("t"), &error);
     if (!table) fail_msg("%s", error.message);
     return table;
 }
@@ -66,21 +66,21 @@ TEST(linear_fields_are_exact)
         const enum shape shape = (enum shape)draw_count(LINE, GRID_Y_FAST);
         const double c[3] = {draw(-1, 1), shape == LINE ? 0 : draw(-1, 1), 0};
         const size_t nx = (size_t)draw_count(2, 40), ny = (size_t)draw_count(2, 40);
-        struct own_table *table = make(shape, nx, ny, c);
+        struct user_table *table = make(shape, nx, ny, c);
         const struct prepared p = box(2, BOUNDARY_OPEN);
-        assert_true(own_table_time(table) == 0.25);
+        assert_true(user_table_time(table) == 0.25);
         for (int k = 0; k < 50; k++) {
             const double x[3] = {draw(0.51, 0.6), draw(0.51, 0.6)};
             const double rho = field(x[0], x[1], c);
             struct problem_state s;
-            own_table_sample(table, &p, x, &s);
+            user_table_sample(table, &p, x, &s);
             near_below(fabs(s.rho - (rho)), 1e-14);
             near_below(fabs(s.P - (2 * rho)), 1e-13);
             near_below(fabs(s.u - (2 / 0.5)), 1e-13);
             near_below(fabs(s.v[0] - (rho)), 1e-14);
             near_below(fabs(s.v[1] - (-rho)), 1e-14);
         }
-        own_table_free(table);
+        user_table_free(table);
     }
 }
 
@@ -88,19 +88,19 @@ TEST(linear_fields_are_exact)
 static double worst(size_t n, enum boundary boundary, double *miss)
 {
     static const double c[3] = {0, 0, 1};
-    struct own_table *table = make(LINE, n, 1, c);
+    struct user_table *table = make(LINE, n, 1, c);
     const struct prepared p = box(1, boundary);
     const struct snapshot none = {.n = 0};
     struct problem_state s;
     double largest = 0, misses[FIELDS];
     for (int k = 0; k < 2000; k++) {
         const double x[3] = {draw(0, 1)};
-        own_table_sample(table, &p, x, &s);
+        user_table_sample(table, &p, x, &s);
         largest = fmax(largest, fabs(s.rho - field(x[0], 0, c)));
     }
-    own_table_miss(table, &p, &none, misses);
+    user_table_error(table, &p, &none, misses);
     *miss = misses[FIELD_DENSITY];
-    own_table_free(table);
+    user_table_free(table);
     return largest;
 }
 
@@ -116,21 +116,21 @@ TEST(smooth_fields_to_their_order)
 TEST(interpolation_across_periodic_ends)
 {
     static const double c[3] = {0, 0, 1};
-    struct own_table *table = make(LINE, 100, 1, c);
+    struct user_table *table = make(LINE, 100, 1, c);
     struct prepared p = box(1, BOUNDARY_PERIODIC);
     struct problem_state in, out;
     for (int k = 0; k < 100; k++) {
         const double x[3] = {draw(-0.002, 0.002)}, image[3] = {x[0] + 1};
-        own_table_sample(table, &p, x, &in);
-        own_table_sample(table, &p, image, &out);
+        user_table_sample(table, &p, x, &in);
+        user_table_sample(table, &p, image, &out);
         near_below(fabs(in.rho - field(x[0], 0, c)), 2e-3);
         near_below(fabs(in.rho - (out.rho)), 1e-12);
     }
     /* nothing is known beyond two spacings from the ends of a box that is not periodic */
     p.boundary[0] = BOUNDARY_OPEN;
-    own_table_sample(table, &p, (double[3]){-0.1}, &out);
+    user_table_sample(table, &p, (double[3]){-0.1}, &out);
     assert_true(isnan(out.rho) && isnan(out.v[0]) && isnan(out.u));
-    own_table_free(table);
+    user_table_free(table);
 }
 
 TEST(tables_over_radius)
@@ -139,15 +139,15 @@ TEST(tables_over_radius)
     struct error error = {0};
     fputs("# time = 1\nr,vr,vphi,rho,u\n0,0,0,1,2\n0.5,1,2,3,4\n0.8,1.6,3.2,3,4\n", file);
     assert_int_equal(fclose(file), 0);
-    struct own_table *table = own_table_read(path_of("t"), &error);
+    struct user_table *table = user_table_read(path_of("t"), &error);
     const struct prepared p = box(2, BOUNDARY_OPEN);
     for (int k = 0; k < 100; k++) { /* vr = 2 r, vphi = 4 r */
         const double x[3] = {draw(0, 1), draw(0, 1)}, dx = x[0] - 0.5, dy = x[1] - 0.5;
         struct problem_state s;
-        own_table_sample(table, &p, x, &s);
+        user_table_sample(table, &p, x, &s);
         near_below(fabs(s.v[0] - (2 * dx - 4 * dy)), 0.02);
         near_below(fabs(s.v[1] - (2 * dy + 4 * dx)), 0.02);
         near_below(fabs(s.P - (0.5 * s.rho * s.u)), 1e-14);
     }
-    own_table_free(table);
+    user_table_free(table);
 }
