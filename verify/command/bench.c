@@ -80,12 +80,27 @@ static enum status prepare_case(const struct request *request, struct code *code
                      "bench: the key n and a ladder exclude each other; allowed: --n N1,N2,...");
 }
 
+/* The first of the schemes asked for, if none of them ran; else NULL. */
+static const struct precision_scheme *broken(const struct precision *precision)
+{
+    const struct precision_scheme *first = NULL;
+    for (size_t i = precision->scheme_count; i-- > 0;) {
+        const struct precision_scheme *scheme = &precision->schemes[i];
+        if (scheme->reference) continue;
+        if (scheme->count) return NULL;
+        first = scheme;
+    }
+    return first;
+}
+
 static enum status present(struct request *request, struct precision *precision, const char *plot,
                            struct error *error)
 {
+    const struct precision_scheme *failed = broken(precision);
     enum status status = plot ? precision_plot(precision, plot, error) : STATUS_OK;
     if (!status) {
         json_t *document = result_new("bench");
+        result_add(document, "status=%s", failed ? "broke_down" : "ok");
         precision_add_json(precision, document);
         status = options_write(request->options, document, error);
     }
@@ -93,6 +108,9 @@ static enum status present(struct request *request, struct precision *precision,
         const struct table_style style = table_style(request->options->color);
         precision_print(precision, &style);
     }
+    if (!status && failed)
+        status = error_set(error, STATUS_BROKE_DOWN, "bench: no scheme asked for ran: %s: %s",
+                           failed->label, failed->excluded);
     return status;
 }
 
