@@ -62,6 +62,22 @@ static enum status check_build(const struct sharing *sharing, const struct optio
                      options->command->name, sharing->cache.build, build);
 }
 
+/* Refuses to forget a file that a share or a list does not write. */
+static enum status refuse_files(const struct sharing *sharing, const struct options *options,
+                                struct error *error)
+{
+    static const char *const files[] = {"junit", "plot"};
+    const char *asked = options->json ? "json" : NULL;
+    if (!sharing->list && !sharing->pool.share.of) return STATUS_OK;
+    for (size_t i = 0; !asked && i < sizeof files / sizeof *files; i++)
+        if (options_value(options, files[i])) asked = files[i];
+    if (!asked) return STATUS_OK;
+    return error_set(
+        error, STATUS_BAD_INPUT, "%s: --%s: not with --%s", options->command->name, asked,
+        sharing->list ? "list, which computes nothing"
+                      : "shard: the call without --shard, which collects the shares, writes it");
+}
+
 enum status sharing_take(struct sharing *sharing, const struct options *options, int jobs,
                          const char *folder, bool force, struct error *error)
 {
@@ -69,7 +85,8 @@ enum status sharing_take(struct sharing *sharing, const struct options *options,
     *sharing = (struct sharing){.list = options_value(options, "list") != NULL};
     if (options_number(options, "jobs", true, 1, JOBS_MAX, &number, error)) return error->status;
     sharing->pool.jobs = number >= 1 ? (int)number : 1;
-    if (take_share(&sharing->pool.share, options, error)) return error->status;
+    if (take_share(&sharing->pool.share, options, error) || refuse_files(sharing, options, error))
+        return error->status;
     if (!folder) folder = options_value(options, "cache");
     if (sharing->pool.share.of && !folder)
         return error_set(error, STATUS_BAD_INPUT,
