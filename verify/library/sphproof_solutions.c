@@ -16,6 +16,19 @@ static enum sphproof_status fault(const char *text, struct sphproof_error *error
     return text ? library_fail(error, STATUS_BAD_INPUT, "%s", text) : SPHPROOF_OK;
 }
 
+/* The positions are finite and at least least. */
+static enum sphproof_status check(size_t n, const double *at, double least,
+                                  struct sphproof_error *error)
+{
+    for (size_t i = 0; i < n; i++)
+        if (!isfinite(at[i]) || at[i] < least)
+            return library_fail(error, STATUS_BAD_INPUT, "position %zu is %g: allowed: finite%s", i,
+                                at[i], least == 0 ? ", 0 or more" : "");
+    return SPHPROOF_OK;
+}
+
+static const double anywhere = -(double)INFINITY, radius = 0;
+
 static enum sphproof_status solve(double gamma, const double left[3], const double right[3],
                                   struct riemann_solution *solution, struct sphproof_error *error)
 {
@@ -30,7 +43,8 @@ enum sphproof_status sphproof_solutions_riemann(double gamma, const double left[
 {
     struct riemann_solution solution;
     if (!(t >= 0)) return fault("t: allowed: 0 or more", error);
-    if (solve(gamma, left, right, &solution, error)) return SPHPROOF_BAD_INPUT;
+    if (solve(gamma, left, right, &solution, error) || check(n, x, anywhere, error))
+        return SPHPROOF_BAD_INPUT;
     for (size_t i = 0; i < n; i++) {
         const struct riemann_state s = riemann_sample(&solution, x[i], x0, t);
         rho[i] = s.rho, v[i] = s.v, P[i] = s.P;
@@ -60,10 +74,11 @@ enum sphproof_status sphproof_solutions_sedov(double gamma, int dim, double rho0
 {
     struct sedov sedov;
     if (!(t > 0)) return fault("t: allowed: above 0", error);
-    if (fault(sedov_solve(gamma, dim, rho0, E, &sedov), error)) return SPHPROOF_BAD_INPUT;
+    if (fault(sedov_solve(gamma, dim, rho0, E, &sedov), error) || check(n, r, radius, error))
+        return SPHPROOF_BAD_INPUT;
     if (shock) *shock = sedov_shock(&sedov, t);
     for (size_t i = 0; i < n; i++) {
-        const struct sedov_state s = sedov_sample(&sedov, fabs(r[i]), t);
+        const struct sedov_state s = sedov_sample(&sedov, r[i], t);
         rho[i] = s.rho, v[i] = s.v, P[i] = s.P;
     }
     return SPHPROOF_OK;
@@ -75,8 +90,9 @@ enum sphproof_status sphproof_solutions_noh(double gamma, int dim, double t, siz
 {
     if (!(gamma > 1) || dim < 1 || dim > 3 || !(t >= 0))
         return fault("allowed: gamma > 1, dim from 1 to 3, t of 0 or more", error);
+    if (check(n, r, radius, error)) return SPHPROOF_BAD_INPUT;
     for (size_t i = 0; i < n; i++) {
-        const struct noh_state s = noh_sample(gamma, dim, fabs(r[i]), t);
+        const struct noh_state s = noh_sample(gamma, dim, r[i], t);
         rho[i] = s.rho, v[i] = s.v, P[i] = s.P;
     }
     return SPHPROOF_OK;
@@ -85,9 +101,9 @@ enum sphproof_status sphproof_solutions_noh(double gamma, int dim, double t, siz
 enum sphproof_status sphproof_solutions_gresho(size_t n, const double *r, double *rho, double *v,
                                                double *P, struct sphproof_error *error)
 {
-    (void)error; /* every input is valid */
+    if (check(n, r, radius, error)) return SPHPROOF_BAD_INPUT;
     for (size_t i = 0; i < n; i++) {
-        const struct vortex_state s = vortex_gresho(fabs(r[i]));
+        const struct vortex_state s = vortex_gresho(r[i]);
         rho[i] = s.rho, v[i] = s.v, P[i] = s.P;
     }
     return SPHPROOF_OK;
@@ -99,8 +115,9 @@ enum sphproof_status sphproof_solutions_yee(double gamma, double beta, size_t n,
 {
     if (!(gamma > 1) || !(vortex_yee(0, beta, gamma).P > 0))
         return fault("allowed: gamma > 1, and beta so small that the centre is not empty", error);
+    if (check(n, r, radius, error)) return SPHPROOF_BAD_INPUT;
     for (size_t i = 0; i < n; i++) {
-        const struct vortex_state s = vortex_yee(fabs(r[i]), beta, gamma);
+        const struct vortex_state s = vortex_yee(r[i], beta, gamma);
         rho[i] = s.rho, v[i] = s.v, P[i] = s.P;
     }
     return SPHPROOF_OK;
@@ -116,6 +133,7 @@ enum sphproof_status sphproof_solutions_wave(double gamma, double rho0, double v
     if (!(t >= 0 && t < simple_wave_breaking_time(&wave)))
         return library_fail(error, STATUS_BAD_INPUT, "t = %g: allowed: from 0 to below %g", t,
                             simple_wave_breaking_time(&wave));
+    if (check(n, x, anywhere, error)) return SPHPROOF_BAD_INPUT;
     for (size_t i = 0; i < n; i++) {
         const struct simple_wave_state s = simple_wave_sample(&wave, x[i], t);
         rho[i] = s.rho, v[i] = s.v, P[i] = s.P;

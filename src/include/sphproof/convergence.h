@@ -18,8 +18,9 @@ struct sphproof_norms {
     double mean; /**< sum |value - exact| / n */
 };
 
-/** Norms of n values against the exact values at the same positions; volume: n weights V, or NULL
- * for equal weights. SPHPROOF_BAD_INPUT: n = 0. */
+/** Norms of n values against the exact values at the same positions; volume: n weights V, finite
+ * and 0 or more, not all 0, or NULL for equal weights. SPHPROOF_BAD_INPUT: n = 0, or such a weight.
+ */
 enum sphproof_status sphproof_convergence_norms(size_t n, const double *volume, const double *value,
                                                 const double *exact, struct sphproof_norms *norms,
                                                 struct sphproof_error *error);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** @file
  * Exact solutions for an ideal gas. Each function computes density rho, velocity v and pressure P,
- * n values each, at n positions. SPHPROOF_BAD_INPUT: a parameter is invalid; nothing is filled
- * then. */
+ * n values each, at n positions. SPHPROOF_BAD_INPUT: a parameter is invalid, a position is not
+ * finite, or a radius is negative; nothing is filled then. */
 #ifndef SPHPROOF_PUBLIC_SOLUTIONS_H
 #define SPHPROOF_PUBLIC_SOLUTIONS_H
 
@@ -48,12 +48,13 @@ enum sphproof_status sphproof_solutions_noh(double gamma, int dim, double t, siz
                                             const double *r, double *rho, double *v, double *P,
                                             struct sphproof_error *error);
 
-/** Gresho's vortex (Gresho & Chan 1990; Liska & Wendroff 2003) at radii r; v: azimuthal,
+/** Gresho's vortex (Gresho & Chan 1990; Liska & Wendroff 2003) at radii r >= 0; v: azimuthal,
  * counter-clockwise. */
 enum sphproof_status sphproof_solutions_gresho(size_t n, const double *r, double *rho, double *v,
                                                double *P, struct sphproof_error *error);
 
-/** The isentropic vortex of strength beta (Yee, Sandham & Djomehri 1999); v: azimuthal. */
+/** The isentropic vortex of strength beta (Yee, Sandham & Djomehri 1999) at radii r >= 0; v:
+ * azimuthal. */
 enum sphproof_status sphproof_solutions_yee(double gamma, double beta, size_t n, const double *r,
                                             double *rho, double *v, double *P,
                                             struct sphproof_error *error);

@@ -163,6 +163,13 @@ TEST(an_order_passes_its_gate)
     assert_true(isnan(norms.l1) && isnan(norms.linf));
     assert_int_equal(sphproof_convergence_norms(0, NULL, at, exact, &norms, &error),
                      SPHPROOF_BAD_INPUT);
+    const double wrong[][2] = {{2, -1}, {0, 0}, {1, (double)NAN}, {1, (double)INFINITY}},
+                 half[] = {1, 0};
+    for (int k = 0; k < 4; k++)
+        assert_int_equal(sphproof_convergence_norms(2, wrong[k], at, exact, &norms, &error),
+                         SPHPROOF_BAD_INPUT);
+    assert_int_equal(sphproof_convergence_norms(2, half, at, exact, &norms, &error), SPHPROOF_OK);
+    assert_true(fabs(norms.l1 / at[0] - 1) < 1e-15);
 }
 
 /* ---- rates and simulations ---- */

@@ -91,15 +91,15 @@ TEST(solutions)
         assert_memory_equal(star.speed, speeds, sizeof speeds);
 
         const int dim = 1 + count % 3;
-        draw_places(-1, 1);
+        draw_places(0, 1);
         assert_int_equal(sphproof_solutions_noh(gamma, dim, t, n, at, rho, v, P, &error),
                          SPHPROOF_OK);
         for (int i = 0; i < count; i++) {
-            const struct noh_state s = noh_sample(gamma, dim, fabs(at[i]), t);
+            const struct noh_state s = noh_sample(gamma, dim, at[i], t);
             state_is(i, s.rho, s.v, s.P);
         }
         ends_at(n);
-        draw_places(-1, 1);
+        draw_places(0, 1);
         assert_null(sedov_solve(1.4, dim, 2, 0.7, &sedov));
         for (int told = 0; told < 2; told++)
             assert_int_equal(sphproof_solutions_sedov(1.4, dim, 2, 0.7, t + 0.1, n, at, rho, v, P,
@@ -107,21 +107,21 @@ TEST(solutions)
                              SPHPROOF_OK);
         assert_true(shock == sedov_shock(&sedov, t + 0.1));
         for (int i = 0; i < count; i++) {
-            const struct sedov_state s = sedov_sample(&sedov, fabs(at[i]), t + 0.1);
+            const struct sedov_state s = sedov_sample(&sedov, at[i], t + 0.1);
             state_is(i, s.rho, s.v, s.P);
         }
         ends_at(n);
-        draw_places(-0.6, 0.6);
+        draw_places(0, 0.6);
         assert_int_equal(sphproof_solutions_gresho(n, at, rho, v, P, &error), SPHPROOF_OK);
         for (int i = 0; i < count; i++) {
-            const struct vortex_state s = vortex_gresho(fabs(at[i]));
+            const struct vortex_state s = vortex_gresho(at[i]);
             state_is(i, s.rho, s.v, s.P);
         }
         ends_at(n);
-        draw_places(-3, 3);
+        draw_places(0, 3);
         assert_int_equal(sphproof_solutions_yee(gamma, 2.5, n, at, rho, v, P, &error), SPHPROOF_OK);
         for (int i = 0; i < count; i++) {
-            const struct vortex_state s = vortex_yee(fabs(at[i]), 2.5, gamma);
+            const struct vortex_state s = vortex_yee(at[i], 2.5, gamma);
             state_is(i, s.rho, s.v, s.P);
         }
         ends_at(n);
@@ -167,6 +167,18 @@ TEST(refused_solutions)
     refused(WAVE(0.1, -1e-300), "t = -1e-300: allowed: from 0 to below");
     refused(WAVE(0.1, simple_wave_breaking_time(&wave)), "allowed: from 0 to below");
     refused(WAVE(7, 1), "");
+    const double nowhere[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, -1e-300};
+    for (int k = 0; k < 4; k++) {
+        at[0] = nowhere[k];
+        refused(SEDOV(2, 1), "position 0 is");
+        refused(NOH(1.4, 2, 1), "allowed: finite, 0 or more");
+        refused(sphproof_solutions_gresho(1, at, rho, v, P, &error), "0 or more");
+        refused(YEE(1.4, 1), "0 or more");
+        if (isfinite(at[0])) continue;
+        refused(RIEMANN(gas, 1), "allowed: finite");
+        refused(WAVE(0.1, 0), "allowed: finite");
+    }
+    at[0] = 0.5;
     ends_at(0);
     assert_int_equal(WAVE(0.1, nextafter(simple_wave_breaking_time(&wave), 0)), SPHPROOF_OK);
     assert_int_equal(RIEMANN(gas, 0), SPHPROOF_OK);
