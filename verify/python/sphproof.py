@@ -76,12 +76,10 @@ def _number(value):
     return float(value) if value in ("nan", "inf", "-inf") else value
 
 
-def _word(value):
-    if isinstance(value, str):
-        return value
+def _word(value, key=None):
     if isinstance(value, (bool, numpy.bool_)):
-        return "yes" if value else "no"
-    return " ".join(repr(one) for one in numpy.ravel(value).tolist())
+        return ("no", "yes")[value] if key != "balsara" else ("off", "on")[value]
+    return " ".join(one if isinstance(one, str) else repr(one) for one in numpy.ravel(value).tolist())
 
 
 def command(name, *arguments, **keys):
@@ -89,7 +87,7 @@ def command(name, *arguments, **keys):
     failed) is under "exit_status"."""
     with tempfile.TemporaryDirectory() as folder:
         out = os.path.join(folder, "result.json")
-        words = [str(word) for word in arguments] + ["%s=%s" % (key, _word(value)) for key, value in keys.items()]
+        words = [str(word) for word in arguments] + ["%s=%s" % (key, _word(value, key)) for key, value in keys.items()]
         done = subprocess.run([_program(), name] + words + ["--quiet", "--json", out], stdin=subprocess.DEVNULL,
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
         document = None
@@ -133,7 +131,8 @@ def run(case, *, threads=1, **keys):
 def judge(*snapshots, **options):
     """`sphproof judge SNAPSHOT... --OPTION VALUE...`: the document. A snapshot is the path of a file, or a dict of
     arrays: x[, y, z], vx[, vy, vz], m, rho, u, P, h as far as known. Options: case="sod", time=0.2, gamma=1.4,
-    left=(1, 0, 1), right=(0.125, 0, 0.1), kernel="cubic_spline", gate="density_l1=2e-3" ..."""
+    left=(1, 0, 1), right=(0.125, 0, 0.1), kernel="cubic_spline", gate="density_l1=2e-3" ...; underscores
+    stand for dashes (h_is="sigma"); True gives an option that has no value (allow_far=True), False or None none."""
     with tempfile.TemporaryDirectory() as folder:
         words = []
         for number, snapshot in enumerate(snapshots):
@@ -143,7 +142,9 @@ def judge(*snapshots, **options):
                 snapshot = path
             words.append(snapshot)
         for name, value in options.items():
-            words += ["--" + name, _word(value)]
+            if value is None or value is False:
+                continue
+            words += ["--" + name.replace("_", "-")] + ([] if value is True else [_word(value)])
         return command("judge", *words)
 
 

@@ -80,6 +80,10 @@ def runs():
     by_states = sphproof.judge(p, left=SOD[0], right=SOD[1], gamma=1.4, time=0.2)
     assert abs(by_states["errors"]["density"]["l1"] / theirs - 1) < 1e-6
     assert "kernel" in refused(2, sphproof.run, "sod", kernel="none")
+    far = dict(p, rho=p["rho"] * 3)
+    for allowed, status in (True, 0), (False, 1), (None, 1):
+        said = sphproof.judge(far, case="sod", time=0.2, h_is="half", allow_far=allowed)
+        assert said["exit_status"] == status and said["kernel"]["candidates"][0]["ratio"] == 2, (allowed, said)
     refused(2, sphproof.judge, {"x": [1, 2], "rho": [1]}, case="sod")
     os.environ["SPHPROOF"] = program + "_that_is_nowhere"
     try:
@@ -100,6 +104,9 @@ def forces():
     order = random.permutation(64)
     second = sphproof.rates(x[order], v[order], 1 / 64, u[order], **keys)
     assert abs(second["force"] - first["force"][order]).max() < 1e-12
+    walls = sphproof.rates(x, v, 1 / 64, u, boundary=("periodic", "reflecting"), balsara=True, viscosity="constant", **keys)
+    settings = walls["document"]["settings"]
+    assert settings["boundary"] == ["periodic", "reflecting"] and settings["balsara"] == "on", settings
     line = sphproof.rates(x[:8, 0], v[:8, 0], numpy.full(8, 0.1), u[:8], lo=0, hi=1)
     assert line["force"].shape == (8, 1)
     refused(2, sphproof.rates, x, v, -1, u, **keys)
