@@ -256,12 +256,11 @@ static void replicates_note(struct buffer *to, const json_t *document)
     const json_t *level = json_array_get(json_object_get(document, "levels"), 0);
     const double replicates = value_member(level, "replicates");
     if (replicates > 1)
-        buffer_format(
-            to,
-            "<p class=\"note\">Means over %.0f runs with n within 2.5 %% (a random start: "
-            "with as many seeds), ± their standard deviation where it exceeds 3 %%: what "
-            "one run may be off the mean.</p>\n",
-            replicates);
+        buffer_format(to,
+                      "<p class=\"note\">Means over %.0f runs with n nearby (a random start: "
+                      "with as many seeds), ± their standard deviation where it exceeds 3 %%: what "
+                      "one run may be off the mean.</p>\n",
+                      replicates);
 }
 
 static void error_table(struct buffer *to, const struct study *studies, size_t count)

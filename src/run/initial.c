@@ -22,9 +22,10 @@ enum status initial_allocate(struct initial *initial, int dim, size_t n, struct 
 
 bool initial_is_shaken(const struct settings *settings)
 {
-    return settings_real(settings, SETTING_jitter) > 0 ||
-           settings_choice(settings, SETTING_lattice) == LATTICE_RANDOM ||
-           settings_choice(settings, SETTING_lattice) == LATTICE_GLASS;
+    const enum lattice lattice = (enum lattice)settings_choice(settings, SETTING_lattice);
+    const bool jittered = lattice == LATTICE_JITTERED && settings->value[SETTING_jitter].automatic;
+    return settings_real(settings, SETTING_jitter) > 0 || jittered || lattice == LATTICE_RANDOM ||
+           lattice == LATTICE_GLASS;
 }
 
 void initial_sample(struct initial *initial, const struct prepared *p, size_t i)

@@ -146,8 +146,8 @@ static enum status check_problem(const struct comparison *c, struct error *error
 
 /* ---- draws ---- */
 
-/* Resolves draw r: another seed for a random start, else another number of particles: in 1D within
- * 2.5 %, in 2D and 3D of a lattice with one more, one less, two more ... along each side. */
+/* Resolves draw r: another seed for a random start, else another number of particles
+ * (study_neighbour). */
 static enum status draw(const struct side *side, size_t r, size_t draws, struct run *run,
                         struct error *error)
 {
@@ -158,14 +158,7 @@ static enum status draw(const struct side *side, size_t r, size_t draws, struct 
     const int dim = side->asked.file.dimension;
     double value = settings_real(settings, key);
     char text[32];
-    if (random)
-        value += (double)r;
-    else if (dim == 1)
-        value = (double)study_neighbour((size_t)value, draws, r);
-    else {
-        const double along = round(pow(value, 1. / dim)), away = (double)((r + 1) / 2);
-        value = round(value * pow((along + (r % 2 ? away : -away)) / along, dim));
-    }
+    value = random ? value + (double)r : (double)study_neighbour((size_t)value, dim, draws, r);
     snprintf(text, sizeof text, "%.0f", value);
     if (r && settings_set(&asked.settings, key, text, SOURCE_USER, NULL, error))
         return error->status;

@@ -178,7 +178,7 @@ static void print_errors(const struct study *study, const struct study_result *r
                style->end);
     if (many)
         printf("%sgeometric means of %zu runs, %s, and their standard deviation%s\n", style->faint,
-               study->replicates, random ? "each with another seed" : "n within 2.5 %", style->end);
+               study->replicates, random ? "each with another seed" : "with n nearby", style->end);
     if (!any) return;
     print_orders(file, result, style);
     printf("%sorder: least squares of log(error) against log(box/n), Student t%s%s\n", style->faint,
@@ -327,8 +327,10 @@ static const struct command_option own_options[] = {
     {"vary", "KEY[=A,B][,...]",
      "repeat the ladder for every member of a family, or for these values"},
     {"replicates", "R",
-     "runs of each level: with other seeds if the start is random (default 3), else with other n "
-     "within 2.5 % (default 9, for smooth solutions 1)"},
+     "runs of each level: with other seeds if the start is random (default 3; 1 for "
+     "lattice=jittered without jitter in 2D and 3D), else with other n: in 1D within 2.5 %, at "
+     "least one particle apart (default 9, for smooth solutions 1), in 2D and 3D lattices with "
+     "one row more, one less ... (default 1)"},
     {"jobs", "J", "number of runs side by side (default 1); results do not depend on it"},
     {"code", "CODE.ini", CODE_OPTION_HELP},
     {"work", "DIR", CODE_WORK_HELP},

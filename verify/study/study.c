@@ -18,13 +18,21 @@ bool study_is_random(const struct settings *settings)
 
 size_t study_replicates(const struct run_settings *settings)
 {
-    if (study_is_random(&settings->settings)) return 3;
-    return settings->file.dimension > 1 || problem_of(&settings->settings)->smooth ? 1 : 9;
+    const struct settings *s = &settings->settings;
+    const bool dear = settings->file.dimension > 1 && s->value[SETTING_jitter].automatic &&
+                      settings_choice(s, SETTING_lattice) == LATTICE_JITTERED;
+    if (study_is_random(s) && !dear) return 3;
+    return settings->file.dimension > 1 || problem_of(s)->smooth ? 1 : 9;
 }
 
-size_t study_neighbour(size_t n, size_t replicates, size_t r)
+size_t study_neighbour(size_t n, int dim, size_t replicates, size_t r)
 {
     if (replicates < 2) return n;
+    if (dim > 1) {
+        const double side = round(pow((double)n, 1. / dim)), away = (double)((r + 1) / 2);
+        const double wanted = fmax(2, r % 2 ? side + away : side - away);
+        return (size_t)round((double)n * pow(wanted / side, dim));
+    }
     const size_t step = (size_t)fmax(1, round(0.05 * (double)n / (double)(replicates - 1)));
     const size_t away = (r + 1) / 2 * step, most = replicates / 2 * step;
     if (n < most + 4) return n + r * step; /* a run has at least 4 */
@@ -63,8 +71,9 @@ static enum status make_runs(struct study *study, size_t c, const struct run_set
     for (size_t l = 0; l < study->level_count; l++)
         for (size_t r = 0; r < study->replicates; r++) {
             struct run_settings asked = *base;
-            const size_t n =
-                random ? study->ladder[l] : study_neighbour(study->ladder[l], study->replicates, r);
+            const size_t n = random ? study->ladder[l]
+                                    : study_neighbour(study->ladder[l], base->file.dimension,
+                                                      study->replicates, r);
             if (set_integer(&asked, SETTING_n, (double)n, error) ||
                 (r && random && set_integer(&asked, SETTING_seed, seed + (double)r, error)) ||
                 run_resolve(run_at(study, c, l, r), &asked, error))

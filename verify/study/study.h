@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Studies: any case, any combination of schemes, a ladder of resolutions, replicates of each: over
- * seeds where the initial state is random, else over numbers of particles within 2.5 % of the
+ * seeds where the initial state is random, else over numbers of particles near the
  * level's. (Where a shock lies among the particles at the end changes from n to n: the error of
  * one n is a draw, with strong shocks from a distribution 14 % wide.) Every run is a job of a pool;
  * from the runs come orders with their 95 % interval, gates, functionals with Richardson
@@ -108,13 +108,15 @@ bool study_suspect_same(const char *what, const struct study_result *a,
 /* True if the initial state is random, so that the seed matters. */
 bool study_is_random(const struct settings *settings);
 
-/* Number of replicates of a case: 3 for a random start, 9 for solutions with jumps (in 1D; in 2D
- * and 3D a lattice allows few numbers of particles), 1 for smooth ones. */
+/* Number of replicates of a case: 3 for a random start, 9 for solutions with jumps in 1D, else 1,
+ * also for the small jitter that lattice=jittered has by default in 2D and 3D, where runs are dear.
+ */
 size_t study_replicates(const struct run_settings *settings);
 
-/* Number of particles of replicate r: the level's own, then alternately above and below it, within
- * 2.5 %, or the next integers if that is less than one particle. */
-size_t study_neighbour(size_t n, size_t replicates, size_t r);
+/* Number of particles of replicate r: the level's own, then alternately above and below it: in 1D
+ * within 2.5 %, or the next integers if that is less than one particle, in 2D and 3D those of a
+ * lattice with one row more, one less, two more ... along each side. */
+size_t study_neighbour(size_t n, int dim, size_t replicates, size_t r);
 
 /* Adds "dimension", "measured" (the figures that judge the case, the most important first),
  * "levels", "orders", "functionals", "floors", "budgets", "excluded", and, if there are any,
