@@ -539,7 +539,7 @@ static void write_verdict(struct judged *judged)
 }
 
 /* True if the field with the best known exact solution can be compared at no particle. */
-static bool sees_nothing(const struct run_result *result)
+static bool window_is_empty(const struct run_result *result)
 {
     for (int f = 0; f < FIELDS; f++)
         if (problem_knows(result->problem.problem, (enum field)f))
@@ -570,7 +570,7 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
     struct kernel kernel;
     *judged = (struct judged){.path = path};
     enum status status = snapshot_read(path, &request->options, &judged->file, error);
-    if (!status) status = judge_place(request, judged, period, error);
+    if (!status) status = judge_geometry(request, judged, period, error);
     if (!status) status = complete(judged, judged->run.problem.gamma, error);
     if (!status && request->kernel >= 0)
         status = plugin_select(&kernel, request->kernel, SINC_ORDER,
@@ -596,7 +596,7 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
                           ? "; --boundary open if the tube has ends"
                           : "");
     }
-    if (!status && sees_nothing(&judged->result)) status = refuse_window(judged, error);
+    if (!status && window_is_empty(&judged->result)) status = refuse_window(judged, error);
     if (!status && judged->slab > 0)
         judged->result.spacing *= sqrt((double)judged->result.n / judged->case_n);
     if (!status) measure_growth(judged);

@@ -69,8 +69,8 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
                      struct judged *judged, struct error *error);
 
 /* Finds gamma, time, box and the case's position in the box; fills judged->run. */
-enum status judge_place(const struct judge_request *request, struct judged *judged,
-                        double period[3], struct error *error);
+enum status judge_geometry(const struct judge_request *request, struct judged *judged,
+                           double period[3], struct error *error);
 
 /* Adds the conserved sums of a snapshot's particles, each moved by `shift`, as a run counts them:
  * no momentum where walls or gravity act. */
@@ -137,6 +137,6 @@ bool judge_tube_ends(const struct judge_request *request, struct judged *judged,
 /* Finds where errors are measured: in the user's window, else from end to end without what
  * returning waves may have reached. box: long enough that a mirrored tube beyond the ends has no
  * influence. Both are pairs along x. STATUS_BAD_INPUT: waves may have reached everything. */
-enum status judge_tube_place(const struct judge_request *request, struct judged *judged,
-                             const struct settings *settings, double x0, const double ends[2],
-                             double window[2], double box[2], struct error *error);
+enum status judge_tube_window(const struct judge_request *request, struct judged *judged,
+                              const struct settings *settings, double x0, const double ends[2],
+                              double window[2], double box[2], struct error *error);

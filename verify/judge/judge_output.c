@@ -86,17 +86,17 @@ static void add_gate(json_t *findings, const json_t *gate)
 {
     const char *name = value_text(gate, "name"), *why = value_text(gate, "why"),
                *relation = value_text(gate, "relation"), *status = value_text(gate, "status");
-    const bool untold = !strcmp(status, finding_words[FINDING_UNDETERMINED]),
+    const bool undecided = !strcmp(status, finding_words[FINDING_UNDETERMINED]),
                asked = !strcmp(value_text(gate, "source"), JUDGE_ASKED);
     char text[400];
-    if (untold)
+    if (undecided)
         snprintf(text, sizeof text, "%s %s %.3g: %s", name, relation, value_member(gate, "bound"),
                  why);
     else
         snprintf(text, sizeof text, "%s %.3g is %s%s %.3g%s%s", name, value_member(gate, "value"),
                  strcmp(status, finding_words[FINDING_FAIL]) ? "" : "not ", relation,
                  value_member(gate, "bound"), *why ? "; " : "", why);
-    add_finding(findings, name, untold && asked ? finding_words[FINDING_FAIL] : status, text);
+    add_finding(findings, name, undecided && asked ? finding_words[FINDING_FAIL] : status, text);
 }
 
 /* One finding for each snapshot and each gate, and one that fails if nothing could be compared. */
@@ -104,7 +104,7 @@ static json_t *findings_json(const struct judged *judged, size_t n, const json_t
 {
     json_t *findings = json_array();
     const json_t *gate, *finding;
-    bool told = false;
+    bool decided = false;
     size_t i;
     for (i = 0; i < n; i++)
         add_finding(findings, judged[i].path,
@@ -114,8 +114,8 @@ static json_t *findings_json(const struct judged *judged, size_t n, const json_t
                     judged[i].verdict);
     json_array_foreach(gates, i, gate) add_gate(findings, gate);
     json_array_foreach(findings, i, finding)
-        told |= strcmp(value_text(finding, "status"), finding_words[FINDING_UNDETERMINED]) != 0;
-    if (!told)
+        decided |= strcmp(value_text(finding, "status"), finding_words[FINDING_UNDETERMINED]) != 0;
+    if (!decided)
         add_finding(findings, "comparison", finding_words[FINDING_FAIL],
                     "nothing could be compared");
     return findings;

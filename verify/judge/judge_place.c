@@ -311,7 +311,7 @@ static enum status place_tube(const struct judge_request *request, struct judged
     if (!*ended) return STATUS_OK;
     double window[2], about[2];
     char text[SETTING_TEXT_MAX];
-    if (judge_tube_place(request, judged, settings, x0, ends, window, about, error))
+    if (judge_tube_window(request, judged, settings, x0, ends, window, about, error))
         return error->status;
     *period = 0;
     box->lo[0] = about[0], box->hi[0] = about[1];
@@ -439,8 +439,8 @@ static enum status take_keys(struct judged *judged, struct settings *settings, s
     return STATUS_OK;
 }
 
-enum status judge_place(const struct judge_request *given, struct judged *judged, double period[3],
-                        struct error *error)
+enum status judge_geometry(const struct judge_request *given, struct judged *judged,
+                           double period[3], struct error *error)
 {
     struct judge_request with_ends =
         *given; /* including the window, if the case has ends and a window */

@@ -20,15 +20,15 @@ static const char *const names[START_FIELDS] = {"velocity", "internal energy", "
 
 /* True if, in 1D, the particle's mass fills the space between its neighbours: spacings may be
  * graded. */
-static bool fills_room(const struct start_gas *gas, size_t i)
+static bool fills_space(const struct start_gas *gas, size_t i)
 {
     const struct snapshot *s = gas->snapshot;
     const size_t last = s->n - 1;
     if (gas->problem->domain.dim > 1) return false;
     const double after = s->x[0][i < last ? i + 1 : i] - s->x[0][i < last ? i : i - 1],
                  before = i ? s->x[0][i] - s->x[0][i - 1] : after,
-                 room = s->m[i] / gas->exact[i].rho;
-    return room > 0.95 * fmin(before, after) && room < 1.05 * fmax(before, after);
+                 space = s->m[i] / gas->exact[i].rho;
+    return space > 0.95 * fmin(before, after) && space < 1.05 * fmax(before, after);
 }
 
 /* The smallest difference from the exact states near the particle: beside a jump, particles that
@@ -39,7 +39,7 @@ static double least_off(const struct start_gas *gas, enum start_field field, siz
     const struct prepared *p = gas->problem;
     double x[3], least = start_off(gas, field, i, &gas->exact[i]);
     memcpy(x, gas->x[i], sizeof x);
-    if (field == START_MASS && least > WRONG && fills_room(gas, i)) return 0;
+    if (field == START_MASS && least > WRONG && fills_space(gas, i)) return 0;
     if (p->problem->smooth || least <= WRONG) return least;
     for (int d = 0; d < p->domain.dim; d++)
         for (int k = 0; k < 6; k++) {
@@ -68,7 +68,7 @@ static size_t near(const double *values, size_t n, double value)
 
 /* Finds the densities of the case's gas and the median particle mass of each; false if there are
  * too many densities, or if most masses of one density differ. */
-static bool find_gases(struct start_gas *gas, double *room)
+static bool find_gases(struct start_gas *gas, double *work)
 {
     const struct snapshot *s = gas->snapshot;
     for (size_t i = 0; i < s->n; i++) {
@@ -80,9 +80,9 @@ static bool find_gases(struct start_gas *gas, double *room)
     for (size_t k = 0; k < gas->gases; k++) {
         size_t n = 0;
         for (size_t i = 0; i < s->n; i++)
-            if (start_alike(gas->exact[i].rho, gas->of[k].rho, 1e-9)) room[n++] = s->m[i];
-        gas->of[k].mass = median(room, n);
-        if (2 * near(room, n, gas->of[k].mass) <= n) return false;
+            if (start_alike(gas->exact[i].rho, gas->of[k].rho, 1e-9)) work[n++] = s->m[i];
+        gas->of[k].mass = median(work, n);
+        if (2 * near(work, n, gas->of[k].mass) <= n) return false;
     }
     return true;
 }
@@ -116,7 +116,7 @@ static struct right_value find_right(double *values, size_t n, double right, boo
 
 /* Finds whether masses are equal, or volumes, or the masses of each density; false if none are.
  * ratio: the file's total mass over the case's; NaN if the box is not closed. */
-static bool measure_masses(struct start_gas *gas, double ratio, double *room)
+static bool measure_masses(struct start_gas *gas, double ratio, double *work)
 {
     const struct snapshot *s = gas->snapshot;
     const struct domain *box = &gas->problem->domain;
@@ -124,16 +124,16 @@ static bool measure_masses(struct start_gas *gas, double ratio, double *room)
     double mean = 0, volume = 1;
     for (int d = 0; d < box->dim; d++) volume *= domain_length(box, d);
     for (size_t i = 0; i < s->n; i++) mean += s->m[i] / (double)s->n;
-    memcpy(room, s->m, s->n * sizeof *room);
-    const struct right_value of_mass = find_right(room, s->n, mean / ratio, off);
-    for (size_t i = 0; i < s->n; i++) room[i] = s->m[i] / gas->exact[i].rho;
-    const struct right_value of_volume = find_right(room, s->n, volume / (double)s->n, off);
+    memcpy(work, s->m, s->n * sizeof *work);
+    const struct right_value of_mass = find_right(work, s->n, mean / ratio, off);
+    for (size_t i = 0; i < s->n; i++) work[i] = s->m[i] / gas->exact[i].rho;
+    const struct right_value of_volume = find_right(work, s->n, volume / (double)s->n, off);
     const bool volumes = of_mass.of_whole != of_volume.of_whole ? of_volume.of_whole
                                                                 : of_volume.count > of_mass.count;
     const struct right_value *right = volumes ? &of_volume : &of_mass;
     gas->mass = of_mass.value;
     gas->volume = volumes ? of_volume.value : 0;
-    if (!right->of_whole && find_gases(gas, room) && gases_fit(gas)) return true;
+    if (!right->of_whole && find_gases(gas, work) && gases_fit(gas)) return true;
     gas->gases = 0;
     return right->of_whole || 2 * right->count > s->n;
 }
@@ -177,7 +177,7 @@ static void say(const struct start_gas *gas, unsigned fields, const char *what, 
     const size_t wrong = count_wrong(gas, fields);
     char share[60], place[120];
     start_share(wrong, gas->snapshot->n, share, sizeof share);
-    start_place(gas, fields, place, sizeof place);
+    start_where(gas, fields, place, sizeof place);
     snprintf(text + strlen(text), size - strlen(text),
              "%s%s of the particles (%zu of %zu) %s the wrong %s%s%s%s", *text ? "; " : "", share,
              wrong, gas->snapshot->n, wrong == 1 ? "has" : "have", what, place, *cause ? ": " : "",
@@ -192,7 +192,7 @@ static bool explain(const struct start_gas *gas, char *text, size_t size)
     unsigned fields = 0, several = 0;
     for (int f = 0; f < START_FIELDS; f++)
         if (count_wrong(gas, 1u << f)) fields |= 1u << f, several++;
-    if (several > 1 && start_cause_places(gas, cause, sizeof cause)) {
+    if (several > 1 && start_cause_positions(gas, cause, sizeof cause)) {
         say(gas, fields, "state for where they are", cause, text, size);
         return true;
     }
@@ -201,7 +201,7 @@ static bool explain(const struct start_gas *gas, char *text, size_t size)
         cause[0] = '\0';
         explained &=
             start_cause(gas, (enum start_field)f, cause, sizeof cause) ||
-            (several == 1 && f <= START_ENERGY && start_cause_places(gas, cause, sizeof cause));
+            (several == 1 && f <= START_ENERGY && start_cause_positions(gas, cause, sizeof cause));
         say(gas, 1u << f, names[f], cause, text, size);
     }
     return explained;
@@ -254,14 +254,14 @@ static void look_at_all_mass(const struct start_gas *gas, double ratio, struct j
     start->explained = true;
 }
 
-static void look(struct start_gas *gas, double precision, double mass_ratio, double *room,
+static void look(struct start_gas *gas, double precision, double mass_ratio, double *work,
                  struct judge_start *start)
 {
     const struct snapshot *s = gas->snapshot;
     const struct problem *problem = gas->problem->problem;
     measure_gas(gas);
     const bool known[START_FIELDS] = {true, !problem->mean_energy,
-                                      measure_masses(gas, mass_ratio, room), pressures_follow(gas)};
+                                      measure_masses(gas, mass_ratio, work), pressures_follow(gas)};
     for (int f = 0; f < START_FIELDS; f++) {
         start->worst[f] = known[f] ? 0 : (double)NAN;
         for (size_t i = 0; known[f] && i < s->n; i++) {
@@ -302,13 +302,13 @@ enum status judge_start_look(const struct run_result *result, double precision, 
     gas.exact = malloc(s->n * sizeof *gas.exact);
     gas.x = calloc(s->n, sizeof *gas.x);
     gas.wrong = calloc(s->n, sizeof *gas.wrong);
-    double *room = malloc(s->n * sizeof *room);
-    const bool sound = gas.exact && gas.x && gas.wrong && room;
+    double *work = malloc(s->n * sizeof *work);
+    const bool sound = gas.exact && gas.x && gas.wrong && work;
     for (size_t i = 0; sound && i < s->n; i++) {
         for (int d = 0; d < result->problem.domain.dim; d++) gas.x[i][d] = s->x[d][i];
         problem_sample(gas.problem, gas.x[i], 0, &gas.exact[i]);
     }
-    if (sound) look(&gas, precision, mass_ratio, room, start);
-    free(gas.exact), free(gas.x), free(gas.wrong), free(room);
+    if (sound) look(&gas, precision, mass_ratio, work, start);
+    free(gas.exact), free(gas.x), free(gas.wrong), free(work);
     return sound ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory for a start");
 }

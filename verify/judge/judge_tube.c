@@ -101,7 +101,7 @@ bool judge_tube_ends(const struct judge_request *request, struct judged *judged,
 
 /* Distance from one end that waves may have reached: waves that the end excites in moving gas, and
  * waves reflected there. */
-static double spoilt(const struct tube *tube, double x0, const double ends[2], int side)
+static double reached_by_waves(const struct tube *tube, double x0, const double ends[2], int side)
 {
     const struct riemann_state *gas = side ? &tube->main.right : &tube->main.left;
     const double head = side ? tube->main.right_head : -tube->main.left_head;
@@ -110,16 +110,17 @@ static double spoilt(const struct tube *tube, double x0, const double ends[2], i
     return tube->fastest * fmax(0, tube->time - arrival);
 }
 
-enum status judge_tube_place(const struct judge_request *request, struct judged *judged,
-                             const struct settings *settings, double x0, const double ends[2],
-                             double window[2], double box[2], struct error *error)
+enum status judge_tube_window(const struct judge_request *request, struct judged *judged,
+                              const struct settings *settings, double x0, const double ends[2],
+                              double window[2], double box[2], struct error *error)
 {
     struct tube tube;
     char value[80];
     if (!solve(settings, &tube))
         return error_set(error, STATUS_BAD_INPUT, "%.200s: its tube has no exact solution",
                          judged->path);
-    const double from[2] = {spoilt(&tube, x0, ends, 0), spoilt(&tube, x0, ends, 1)};
+    const double from[2] = {reached_by_waves(&tube, x0, ends, 0),
+                            reached_by_waves(&tube, x0, ends, 1)};
     window[0] = request->window ? request->ends[0] : ends[0] + from[0];
     window[1] = request->window ? request->ends[1] : ends[1] - from[1];
     if (!(window[0] < window[1]))

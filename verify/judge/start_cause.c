@@ -98,7 +98,7 @@ static double along(const struct start_gas *gas, enum way way, size_t i)
     return way == WAY_ROW ? (double)i : gas->x[i][way];
 }
 
-void start_place(const struct start_gas *gas, unsigned fields, char *text, size_t size)
+void start_where(const struct start_gas *gas, unsigned fields, char *text, size_t size)
 {
     static const char *const names[WAYS] = {"x", "y", "z", "r", "row"};
     const size_t n = gas->snapshot->n;
@@ -430,7 +430,7 @@ static bool turned(const struct start_gas *gas, int mirror)
     return PER_CENT * near >= 95 * wrong;
 }
 
-bool start_cause_places(const struct start_gas *gas, char *text, size_t size)
+bool start_cause_positions(const struct start_gas *gas, char *text, size_t size)
 {
     const int dim = gas->problem->domain.dim;
     struct trial trial = {.gas = gas};

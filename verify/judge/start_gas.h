@@ -42,11 +42,11 @@ double start_off(const struct start_gas *gas, enum start_field field, size_t i,
 void start_share(size_t part, size_t n, char *text, size_t size);
 
 /* Writes where these fields are wrong, such as ", at x > 1". */
-void start_place(const struct start_gas *gas, unsigned fields, char *text, size_t size);
+void start_where(const struct start_gas *gas, unsigned fields, char *text, size_t size);
 
 /* Writes what the wrong values of a field are; false if no simple rule describes them. */
 bool start_cause(const struct start_gas *gas, enum start_field field, char *text, size_t size);
 
 /* True if all particles, or all wrong ones, have the states of other positions, which text
  * names. */
-bool start_cause_places(const struct start_gas *gas, char *text, size_t size);
+bool start_cause_positions(const struct start_gas *gas, char *text, size_t size);

@@ -90,7 +90,7 @@ TEST(regions_along_x)
         kind.circular = rows[k].circular;
         for (int i = 0; i < N; i++) /* another field is wrong everywhere, and not asked for */
             wrong[i] = (rows[k].map[i] == '#' ? 1u << START_MASS : 0) | 1u << START_ENERGY;
-        start_place(&gas, 1u << START_MASS, text, sizeof text);
+        start_where(&gas, 1u << START_MASS, text, sizeof text);
         if (strcmp(text, rows[k].words) != 0) fail_msg("%s: '%s'", rows[k].map, text);
     }
 }
@@ -119,7 +119,7 @@ TEST(regions_along_other_directions)
                 x[i][0] = i % 2 ? 0 : i % 4 ? -i : i, x[i][1] = i % 2 ? i % 4 == 1 ? i : -i : 0;
             wrong[i] = (k == 1 ? i > 7 : k == 3 ? i > 3 && i < 12 : k == 4 ? i > 3 : i < 8) ? 1 : 0;
         }
-        start_place(&gas, 1, text, sizeof text);
+        start_where(&gas, 1, text, sizeof text);
         if (strcmp(text, rows[k].words) != 0) fail_msg("row %zu: '%s'", k, text);
     }
     kind.circular = false;
