@@ -30,7 +30,7 @@ size_t study_neighbour(size_t n, int dim, size_t replicates, size_t r)
     if (replicates < 2) return n;
     if (dim > 1) {
         const double side = round(pow((double)n, 1. / dim)), away = (double)((r + 1) / 2);
-        const double wanted = fmax(2, r % 2 ? side + away : side - away);
+        const double wanted = fmax(0, r % 2 ? side + away : side - away);
         return (size_t)round((double)n * pow(wanted / side, dim));
     }
     const size_t step = (size_t)fmax(1, round(0.05 * (double)n / (double)(replicates - 1)));

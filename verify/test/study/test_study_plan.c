@@ -102,9 +102,10 @@ TEST(numbers)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         for (size_t r = 0; r < rows[k].replicates; r++)
             assert_int_equal(study_neighbour(rows[k].n, 1, rows[k].replicates, r), rows[k].of[r]);
-    static const size_t rows_2d[] = {144, 169, 121, 196}, rows_3d[] = {64, 125, 27, 216, 8, 343, 8};
+    static const size_t rows_2d[] = {144, 169, 121, 196},
+                        rows_3d[] = {64, 125, 27, 216, 8, 343, 1, 512, 0, 729, 0};
     for (size_t r = 0; r < 4; r++) assert_int_equal(study_neighbour(144, 2, 4, r), rows_2d[r]);
-    for (size_t r = 0; r < 7; r++) assert_int_equal(study_neighbour(64, 3, 7, r), rows_3d[r]);
+    for (size_t r = 0; r < 11; r++) assert_int_equal(study_neighbour(64, 3, 11, r), rows_3d[r]);
     assert_int_equal(study_neighbour(64, 3, 1, 0), 64);
     /* 5000, just below one half more */
     assert_int_equal(study_neighbour(6300629, 1, 64, 1), 6300629 + 5000);
