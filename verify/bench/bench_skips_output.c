@@ -82,9 +82,13 @@ static void print_answer(const struct bench_skip *skip, const struct table_style
         printf("  %s", promises[compared ? PROMISE_BITS : PROMISE_UNUSED]);
         return;
     }
-    printf("  %s%s%s: ", skip->kept ? "" : style->bad, skip->kept ? "" : "NOT ",
-           promises[skip->promise]);
-    if (skip->promise == PROMISE_ERROR)
+    const bool of_error = skip->promise == PROMISE_ERROR;
+    if (skip->kept)
+        printf("  %s: ", promises[skip->promise]);
+    else
+        printf("  %s%s%s: ", style->bad, of_error ? "" : "NOT ",
+               of_error ? "larger error" : promises[skip->promise]);
+    if (of_error)
         printf("%s %.4e against %.4e", skip->measured ? skip->measured : "none known",
                skip->error[BENCH_WITHOUT], skip->error[BENCH_WITH]);
     else

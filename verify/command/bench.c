@@ -382,7 +382,9 @@ const struct command command_bench = {
     .name = "bench",
     .synopsis = "[CASE] [KEY=VALUE ...]",
     .help =
-        "what an error costs: CPU time and pair interactions against the L1 error of density\n"
+        "what an error costs: CPU time and pair interactions against the L1 error of density, or "
+        "of\n"
+        "the azimuthal velocity in flows that turn\n"
         "For every scheme of --vary and every resolution of --n (default case: sod): the Pareto\n"
         "front, the cheapest way to 1 %, 0.3 % and 0.1 % of the signal (the exact density's mean\n"
         "distance from its mean), and L1^(2/p) x CPU time at the case's order p against the seed\n"

@@ -126,10 +126,11 @@ static void print_errors(const struct run_settings *settings, const struct run_r
                "density, binned", result->binned_density_l1, NORM_BINS);
     run_interpolation_text(result->interpolation, interpolation, sizeof interpolation);
     if (interpolation[0]) printf("%s\n", interpolation);
-    printf("%sL1 = sum V|q - exact|/sum V, L2 = sqrt(sum V (q - exact)^2/sum V), Linf = max "
-           "|q - exact|,\nparticle mean = sum |q - exact|/N: over the %zu particles in %s at "
-           "t = %g; V = volume; code units%s\n",
-           style->faint, result->errors[0].n, window, result->time, style->end);
+    printf(
+        "%sL1 = sum V|q - exact|/sum V, V = volumes cut at the window's edge; L2 = sqrt(sum V (q - "
+        "exact)^2/sum V), V whole;\nLinf = max |q - exact|, particle mean = sum |q - exact|/N: "
+        "over the %zu particles in %s at t = %g; code units%s\n",
+        style->faint, result->errors[0].n, window, result->time, style->end);
 }
 
 static void print_conservation(const struct run_result *result, const struct table_style *style)
@@ -143,9 +144,10 @@ static void print_conservation(const struct run_result *result, const struct tab
            result->time);
     const struct trace_motion *motion = &result->motion;
     if (result->problem.problem->steady && isfinite(motion->rebound))
-        printf("                 kinetic energy rises by %.1e of the start's above its least, its "
-               "halves differ by %.1e\n",
-               motion->rebound, motion->asymmetry);
+        printf(
+            "                 kinetic energy: regained %.1e, first and second half differ by %.1e "
+            "(of the start's)\n",
+            motion->rebound, motion->asymmetry);
 }
 
 static void print_rest(const struct run_result *result, const struct table_style *style)
@@ -179,9 +181,9 @@ static void print_plan(const struct run_result *result, const struct table_style
 static void print_estimate(const struct run_result *result, const struct table_style *style)
 {
     const struct estimate *e = &result->estimate;
-    printf("\n%sit would take%s     about %.0f MB of memory; at least %.2g steps, %.2g s of CPU "
-           "time\n",
-           style->bold, style->end, 1e-6 * e->memory, e->steps, e->cpu_s);
+    printf("\n%sit would take%s     about %.0f MB of memory, %.2g s of CPU time; %.2g steps if "
+           "signals stayed as at the start\n",
+           style->bold, style->end, 1e-6 * e->memory, e->cpu_s, e->steps);
 }
 
 /* snapshots: intermediate ones; path NULL: none. */

@@ -49,7 +49,7 @@ static double edge(const struct rank *rank, size_t i)
 }
 
 /* Names the range from the first to the last wrong particle, if hardly any particle in it is
- * right. */
+ * right; particles at one position have that. */
 static bool name_range(struct rank *rank, size_t n, const char *what, char *text, size_t size)
 {
     size_t first = 0, end = n, right = 0;
@@ -58,7 +58,9 @@ static bool name_range(struct rank *rank, size_t n, const char *what, char *text
     while (!rank[end - 1].wrong) end--;
     for (size_t i = first; i < end; i++) right += !rank[i].wrong;
     if (50 * right > end - first || end - first == n) return false;
-    if (first == 0)
+    if (rank[end - 1].at - rank[first].at <= 1e-9 * fabs(rank[first].at))
+        snprintf(text, size, ", at %s = %.4g", what, rank[first].at);
+    else if (first == 0)
         snprintf(text, size, ", at %s < %.4g", what, edge(rank, end));
     else if (end == n)
         snprintf(text, size, ", at %s > %.4g", what, edge(rank, first));
@@ -120,20 +122,24 @@ void start_where(const struct start_gas *gas, unsigned fields, char *text, size_
 
 /* ---- wrong values ---- */
 
-/* Share of the wrong particles with a value close to the expected one. */
 typedef double expected(const struct start_gas *gas, size_t i, double factor);
 
-static bool fits(const struct start_gas *gas, enum start_field field, const double *value,
-                 expected *value_of, double factor)
+/* Mean relative difference of the wrong particles from the expected value; INFINITY unless nearly
+ * all are within a thousandth of it. */
+static double misfit(const struct start_gas *gas, enum start_field field, const double *value,
+                     expected *value_of, double factor)
 {
     size_t wrong = 0, near = 0;
+    double sum = 0;
     for (size_t i = 0; i < gas->snapshot->n; i++) {
         if (!(gas->wrong[i] & 1u << field)) continue;
         wrong++;
-        const double want = value_of(gas, i, factor);
-        near += fabs(value[i] - want) <= 1e-3 * fabs(want) + 1e-12;
+        const double want = value_of(gas, i, factor),
+                     off = fabs(value[i] - want) / (fabs(want) + 1e-9);
+        near += off <= 1e-3;
+        sum += fmin(off, 1e-3);
     }
-    return wrong && PER_CENT * near >= 95 * wrong;
+    return wrong && PER_CENT * near >= 95 * wrong ? sum / (double)wrong : (double)INFINITY;
 }
 
 static double exact_energy(const struct start_gas *gas, size_t i, double factor)
@@ -210,18 +216,21 @@ static bool scalar_cause(const struct start_gas *gas, enum start_field field, ch
     const double *value = field == START_ENERGY ? s->u : field == START_MASS ? s->m : s->P;
     expected *exact = field == START_ENERGY ? exact_energy : field == START_MASS ? exact_mass : law;
     const char *should = field == START_PRESSURE ? "(gamma - 1) rho u" : "the case's";
-    const double factor = factor_of(gas, field, value, exact);
+    const double factor = factor_of(gas, field, value, exact),
+                 scaled = misfit(gas, field, value, exact, factor);
     *text = '\0';
-    for (size_t k = 0; k < sizeof usual / sizeof *usual; k++)
-        if (usual[k].field == field && fits(gas, field, value, usual[k].value, 1))
+    for (size_t k = 0; k < sizeof usual / sizeof *usual; k++) {
+        if (usual[k].field != field) continue;
+        const double off = misfit(gas, field, value, usual[k].value, 1);
+        if (isfinite(off) && off <= 2 * scaled + 1e-6) /* single precision decides nothing */
             snprintf(text + strlen(text), size - strlen(text), "%s%s", *text ? ", or " : "it is ",
                      usual[k].words);
+    }
     const double multiple = factor_of(gas, field, value, exact_density);
-    if (!*text && field == START_ENERGY && isfinite(multiple) &&
-        !fits(gas, field, value, exact, factor) && fits(gas, field, value, exact_density, multiple))
+    if (!*text && field == START_ENERGY && isfinite(multiple) && !isfinite(scaled) &&
+        isfinite(misfit(gas, field, value, exact_density, multiple)))
         snprintf(text, size, "it is the mass, or another multiple of the density");
-    if (!*text && isfinite(factor) && fits(gas, field, value, exact, factor))
-        snprintf(text, size, "it is %.4g times %s", factor, should);
+    if (!*text && isfinite(scaled)) snprintf(text, size, "it is %.6g times %s", factor, should);
     if (!*text) { /* a constant offset, measured at the first wrong particle */
         double more = 0;
         size_t all = 0, near = 0;

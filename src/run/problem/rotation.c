@@ -110,7 +110,6 @@ const struct problem problem_rotation = {
     .reference = "disc",
     .least_dim = 2,
     .most_dim = 2,
-    .steady = true,
     .circular = CIRCULAR_ROUND,
     .ends = {{.also = PROBLEM_END(OPEN)}, {.also = PROBLEM_END(OPEN)}, {.also = PROBLEM_END(OPEN)}},
     .prepare = prepare,

@@ -208,6 +208,23 @@ static bool window_is_free(struct walk *walk)
     return true;
 }
 
+/* A steady flow has its initial state at the end as well. */
+static bool is_steady_as_said(struct walk *walk)
+{
+    const double t_end = settings_real(&walk->settings, SETTING_t_end);
+    for (size_t i = 0; walk->problem->steady && i < walk->initial.n; i++) {
+        double x[3];
+        struct problem_state start, end;
+        place(walk, i, x);
+        problem_sample(&walk->p, x, 0, &start);
+        problem_sample(&walk->p, x, t_end, &end);
+        for (int d = 0; d < walk->initial.dim; d++)
+            if (differ(start.rho, end.rho, 0) || differ(start.v[d], end.v[d], 1))
+                return fault(walk, "the flow is not steady");
+    }
+    return true;
+}
+
 /* Functionals and regions at t = 0, where all values are known. */
 static bool start_is_measured(struct walk *walk)
 {
@@ -264,7 +281,7 @@ static void walk_all(struct walk *walk, int dim)
         return;
     }
     if (particles_are_samples(walk) && particles_carry_the_integrals(walk) &&
-        start_is_random_as_said(walk) && window_is_free(walk))
+        start_is_random_as_said(walk) && window_is_free(walk) && is_steady_as_said(walk))
         start_is_measured(walk);
     initial_free(&walk->initial);
 }
@@ -456,6 +473,9 @@ TEST(planted_faults_are_found)
     struct problem turned = *gresho, flat = *gresho;
     turned.fill = backwards;
     assert_non_null(strstr(walk_case("gresho", "n=400", &turned).fault, "another velocity"));
+    struct problem expanding = *(const struct problem *)family_find(&problem_family, "rotation");
+    expanding.steady = true;
+    assert_non_null(strstr(walk_case("rotation", "n=400", &expanding).fault, "not steady"));
     flat.least_dim = flat.most_dim = 3;
     assert_non_null(strstr(walk_case("gresho", "n=400", &flat).fault, "no form in 2 dimensions"));
 }
