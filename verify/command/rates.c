@@ -189,6 +189,9 @@ static enum status take_file(struct request *r, int n, char **arguments, struct 
                              "%s says nothing about the particles of a file: allowed: the keys of "
                              "the scheme, gamma, lo, hi, boundary, gravity",
                              setting_keys[k].name);
+    struct setting_value *conductivity = &r->settings.value[SETTING_shock_conductivity];
+    if (conductivity->source == SOURCE_USER && conductivity->automatic && r->file.dim > 1)
+        conductivity->real[0] = 1; /* an auto that is asked for: as in run */
     if ((status = sharpen(&r->settings, error)) ||
         (status = settings_scheme(&r->settings, r->file.dim, &r->setup.scheme, error)))
         return status;
@@ -241,6 +244,9 @@ static void print_table(const struct request *r, const struct rate_table *t, siz
 {
     char matrix[DESCRIPTION_TEXT];
     printf("%s, %dD, %zu particles; one evaluation, code units\n", r->source, t->dim, t->n);
+    if (r->from_file)
+        printf("gamma = %g, shock_conductivity = %g\n", r->setup.gamma,
+               r->setup.scheme.shock_conductivity);
     if (r->setup.scheme.shifting != SHIFTING_NONE)
         printf("forces and heating are without what particles exchange as they shift\n");
     if (r->widths[0]) printf("h of the snapshot: %s\n", r->widths);
@@ -444,9 +450,12 @@ const struct command command_rates = {
         "one evaluation, nothing moves: h, rho, P, dp/dt, dU/dt of every particle\n"
         "A file holds columns x[,y[,z]], vx[,vy[,vz]], m, u in any order; its header gives the\n"
         "dimension; other usual names (acceleration_x) are known, too. So does a snapshot (see\n"
-        "judge). Beside the keys of the scheme it needs gamma and its box, unless it says them\n"
-        "(# box = 0:1): lo and hi (one number, or one for each direction), boundary (periodic,\n"
-        "open or reflecting; one word or one each), gravity. h is\n"
+        "judge). Beside the keys of the scheme it takes gamma (default 1.4) and needs its box,\n"
+        "unless it says them (# box = 0:1): lo and hi (one number, or one for each direction), "
+        "boundary (periodic,\n"
+        "open or reflecting; one word or one each), gravity. shock_conductivity is 0 unless "
+        "given,\n"
+        "since few codes have it. h is\n"
         "found to 1e-14 unless h_tolerance says otherwise. With --check (a CSV file, or a "
         "snapshot\n"
         "with accelerations; in single precision the tolerance is 1e-5) the exit status is 1 if a\n"

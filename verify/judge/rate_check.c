@@ -107,6 +107,11 @@ static void conduction(struct setup *setup)
     setup->scheme.alpha_u = setup->scheme.shock_conductivity = 0;
 }
 
+static void shock_conduction(struct setup *setup)
+{
+    setup->scheme.shock_conductivity = 1;
+}
+
 static void twice_viscosity(struct setup *setup)
 {
     twice_alpha(setup);
@@ -153,6 +158,7 @@ static const struct {
     {energy, "volume element: theirs is energy"},
     {number, "volume element: theirs is number"},
     {conduction, "conductivity: they have none"},
+    {shock_conduction, "conductivity: theirs is 1 in strong shocks (shock_conductivity=1)"},
     {gamma_5_3, "gamma: theirs is 5/3"},
     {gamma_7_5, "gamma: theirs is 1.4"},
     {half_eta, "eta: theirs is half of ours (h is the support radius here)"},

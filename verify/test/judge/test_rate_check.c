@@ -403,6 +403,8 @@ TEST(each_choice_is_named)
         {"", "volume_element=energy", "rho", "volume element: theirs is energy"},
         {"", "volume_element=number", "rho", "volume element: theirs is number"},
         {"alpha_u=1", "alpha_u=0", "du", "conductivity: they have none"},
+        {"", "shock_conductivity=1", "du",
+         "conductivity: theirs is 1 in strong shocks (shock_conductivity=1)"},
         {"", "gamma=1.6666666666666667", "P", "gamma: theirs is 5/3"},
         {"", "gamma=1.4", "P", "gamma: theirs is 1.4"},
         {"eta=2.8", "eta=1.4", "h", "eta: theirs is half of ours (h is the support radius here)"},
