@@ -122,7 +122,7 @@ static enum status average(struct job *job, int order, struct error *error)
                                                                   : most;
     double sum = 0, squares = 0;
     for (size_t r = 0; r < replicates; r++) {
-        const size_t near = study_neighbour(n, job->run.asked.file.dimension, replicates, r);
+        const size_t near = study_neighbour(n, job->run.asked.file.dimension, replicates, 1, r);
         char key[40], *keys[] = {key};
         double value = job->point->error;
         struct run other;

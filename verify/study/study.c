@@ -25,7 +25,7 @@ size_t study_replicates(const struct run_settings *settings)
     return settings->file.dimension > 1 || problem_of(s)->smooth ? 1 : 9;
 }
 
-size_t study_neighbour(size_t n, int dim, size_t replicates, size_t r)
+size_t study_neighbour(size_t n, int dim, size_t replicates, size_t least, size_t r)
 {
     if (replicates < 2) return n;
     if (dim > 1) {
@@ -33,7 +33,8 @@ size_t study_neighbour(size_t n, int dim, size_t replicates, size_t r)
         const double wanted = fmax(0, r % 2 ? side + away : side - away);
         return (size_t)round((double)n * pow(wanted / side, dim));
     }
-    const size_t step = (size_t)fmax(1, round(0.05 * (double)n / (double)(replicates - 1)));
+    const size_t step =
+        (size_t)fmax((double)least, round(0.05 * (double)n / (double)(replicates - 1)));
     const size_t away = (r + 1) / 2 * step, most = replicates / 2 * step;
     if (n < most + 4) return n + r * step; /* a run has at least 4 */
     return r % 2 ? n + away : n - away;
@@ -73,7 +74,7 @@ static enum status make_runs(struct study *study, size_t c, const struct run_set
             struct run_settings asked = *base;
             const size_t n = random ? study->ladder[l]
                                     : study_neighbour(study->ladder[l], base->file.dimension,
-                                                      study->replicates, r);
+                                                      study->replicates, 1, r);
             if (set_integer(&asked, SETTING_n, (double)n, error) ||
                 (r && random && set_integer(&asked, SETTING_seed, seed + (double)r, error)) ||
                 run_resolve(run_at(study, c, l, r), &asked, error))

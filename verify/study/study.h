@@ -114,9 +114,9 @@ bool study_is_random(const struct settings *settings);
 size_t study_replicates(const struct run_settings *settings);
 
 /* Number of particles of replicate r: the level's own, then alternately above and below it: in 1D
- * within 2.5 %, or the next integers if that is less than one particle, in 2D and 3D those of a
+ * within 2.5 %, but at least `least` particles apart, in 2D and 3D those of a
  * lattice with one row more, one less, two more ... along each side. */
-size_t study_neighbour(size_t n, int dim, size_t replicates, size_t r);
+size_t study_neighbour(size_t n, int dim, size_t replicates, size_t least, size_t r);
 
 /* Adds "dimension", "measured" (the figures that judge the case, the most important first),
  * "levels", "orders", "functionals", "floors", "budgets", "excluded", and, if there are any,

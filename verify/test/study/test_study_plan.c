@@ -50,10 +50,11 @@ TEST(every_run)
                 const struct run *run = &study.runs[k];
                 const struct pool_job *job = &pool.jobs[study.jobs[k]];
                 char name[32], *key = run_job_key(run, "run", &error);
-                assert_true(real_of(run, SETTING_n) == (double)study_neighbour(ladder[l], 1, 3, r));
+                assert_true(real_of(run, SETTING_n) ==
+                            (double)study_neighbour(ladder[l], 1, 3, 1, r));
                 assert_true(real_of(run, SETTING_eta) == etas[c]);
                 assert_true(real_of(run, SETTING_seed) == 1);
-                snprintf(name, sizeof name, "sod, n = %zu", study_neighbour(ladder[l], 1, 3, r));
+                snprintf(name, sizeof name, "sod, n = %zu", study_neighbour(ladder[l], 1, 3, 1, r));
                 assert_string_equal(job->name, name);
                 assert_string_equal(job->key, key);
                 assert_true(job->weight == run_job_weight(run) && job->context == run);
@@ -101,16 +102,19 @@ TEST(numbers)
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         for (size_t r = 0; r < rows[k].replicates; r++)
-            assert_int_equal(study_neighbour(rows[k].n, 1, rows[k].replicates, r), rows[k].of[r]);
+            assert_int_equal(study_neighbour(rows[k].n, 1, rows[k].replicates, 1, r),
+                             rows[k].of[r]);
     static const size_t rows_2d[] = {144, 169, 121, 196},
                         rows_3d[] = {64, 125, 27, 216, 8, 343, 1, 512, 0, 729, 0};
-    for (size_t r = 0; r < 4; r++) assert_int_equal(study_neighbour(144, 2, 4, r), rows_2d[r]);
-    for (size_t r = 0; r < 11; r++) assert_int_equal(study_neighbour(64, 3, 11, r), rows_3d[r]);
-    assert_int_equal(study_neighbour(64, 3, 1, 0), 64);
+    for (size_t r = 0; r < 4; r++) assert_int_equal(study_neighbour(144, 2, 4, 1, r), rows_2d[r]);
+    for (size_t r = 0; r < 11; r++) assert_int_equal(study_neighbour(64, 3, 11, 1, r), rows_3d[r]);
+    assert_int_equal(study_neighbour(64, 3, 1, 1, 0), 64);
+    assert_int_equal(study_neighbour(100, 1, 5, 4, 3), 108);
+    assert_int_equal(study_neighbour(400, 1, 5, 4, 4), 390); /* 5 apart anyway */
     /* 5000, just below one half more */
-    assert_int_equal(study_neighbour(6300629, 1, 64, 1), 6300629 + 5000);
-    assert_int_equal(study_neighbour(200, 1, 1, 0), 200);
-    assert_int_equal(study_neighbour(200, 1, 1, 5), 200);
+    assert_int_equal(study_neighbour(6300629, 1, 64, 1, 1), 6300629 + 5000);
+    assert_int_equal(study_neighbour(200, 1, 1, 1, 0), 200);
+    assert_int_equal(study_neighbour(200, 1, 1, 1, 5), 200);
 }
 
 TEST(how_many_replicates)
