@@ -20,7 +20,7 @@ struct sphproof_setup {
     const double *u;         /**< n: specific internal energies, > 0 */
     double lo[3];            /**< of the box */
     double hi[3];            /**< of the box */
-    const char *boundary[3]; /**< "periodic" (NULL: the same), "open", "reflecting", "fixed" */
+    const char *boundary[3]; /**< "periodic" (NULL: the same), "open", "reflecting" */
     double gravity[3];       /**< constant acceleration; 2D, 3D */
     double gamma;            /**< of the ideal gas, > 1 */
     const char *const
@@ -60,7 +60,7 @@ double sphproof_simulations_state(const struct sphproof_simulation *simulation,
 struct sphproof_sums {
     double mass;        /**< total */
     double momentum[3]; /**< total */
-    double energy;      /**< kinetic and internal */
+    double energy;      /**< kinetic and internal, and with gravity potential */
 };
 
 /** Conserved sums at the current time. */

@@ -334,8 +334,9 @@ TEST(refused_setups)
         if (row == 5) setup.x[1] = NULL, says = "in 2D needs x[1]";
         if (row == 6) x[1][0] = nextafter(setup.lo[1], -2), says = "particle 0: x[1] = ";
         if (row == 7) x[0][63] = nextafter(setup.hi[0], 3), says = "particle 63: x[0] = ";
-        if (row == 8) setup.boundary[0] = "fixed", says = "boundary 'fixed': allowed: periodic";
-        if (row == 9) setup.boundary[1] = "", says = "boundary '': allowed: periodic";
+        if (row == 8) setup.boundary[0] = "fixed", says = "reflecting; fixed layers need densities";
+        if (row == 9)
+            setup.boundary[1] = "", says = "boundary '': allowed: periodic open reflecting";
         if (row == 10) /* the ends belong to the box */
             x[0][0] = setup.lo[0], x[0][7] = setup.hi[0], x[1][7] += 0.01;
         if (row == 11) /* positions beyond open ends are allowed */
