@@ -28,7 +28,10 @@ static void still_row(struct buffer *to, const json_t *const *documents, size_t 
     for (size_t k = 0; k < count; k++) {
         const json_t *still = json_object_get(budget_of(documents[k]), "still_gas");
         const char *status = value_text(still, "status");
-        html_cell_number(to, value_member(still, "value"));
+        if (json_is_number(json_object_get(still, "value")))
+            html_cell_number(to, value_member(still, "value"));
+        else
+            html_cell(to, "—");
         buffer_add(to, "<td>");
         if (!strcmp(status, "pass") || !strcmp(status, "fail")) html_status(to, status);
         buffer_add(to, "</td>");

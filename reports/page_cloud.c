@@ -304,11 +304,12 @@ static void run_table(struct buffer *to, const json_t *const *runs, size_t count
                    "and corrected).</p>\n");
 }
 
-static const struct html_column functionals[] = {COLUMN("scheme", "^label", .kind = CELL_TEXT),
-                                                 COLUMN("scalar", "name", .kind = CELL_WORDS),
-                                                 COLUMN("#value", "value"),
-                                                 COLUMN("#exact or reference", "reference"),
-                                                 {0}};
+static const struct html_column functionals[] = {
+    COLUMN("scheme", "^label", .kind = CELL_TEXT),
+    COLUMN("scalar", "name", .kind = CELL_WORDS),
+    COLUMN("#value", "value", .otherwise = "—", .finite = true),
+    COLUMN("#exact or reference", "reference", .otherwise = "—", .finite = true),
+    {0}};
 
 static void gate_status(struct buffer *to, const json_t *gate)
 {

@@ -196,6 +196,22 @@ void page_since(struct buffer *to, const json_t *results)
     buffer_add(to, "</p>\n");
 }
 
+void page_since_plain(struct buffer *to, const json_t *results)
+{
+    const json_t *since = json_object_get(json_object_get(results, "history"), "since");
+    if (!json_is_object(since)) return;
+    buffer_format(to, "Since the last report (git %.*s): ", REVISION, value_text(since, "git"));
+    since_words(to, since);
+    const json_t *worst = first_worse(json_object_get(since, "figures"));
+    if (worst) {
+        buffer_format(to, "; most: %s ", value_text(worst, "path"));
+        value(to, json_object_get(worst, "old"));
+        buffer_add(to, " → ");
+        value(to, json_object_get(worst, "new"));
+    }
+    buffer_add(to, ".\n\n");
+}
+
 static void since_section(struct buffer *to, const json_t *since)
 {
     static const char *const verdicts[] = {"worse", "incomparable", "better"};
@@ -236,7 +252,8 @@ static void change_table(struct buffer *to, const json_t *changes)
     size_t rows = 0, others;
     buffer_add(to, "<h3>Where figures moved</h3>\n");
     if (!json_array_size(changes)) {
-        buffer_add(to, "<p>No error and no order has moved in all these nights.</p>\n");
+        buffer_add(to, "<p>No error and no order by which a case is judged has moved beyond "
+                       "its noise over all these nights.</p>\n");
         return;
     }
     html_table(to, "changes", "|figure|#before|#after|#change|first night|revision");

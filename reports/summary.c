@@ -54,6 +54,7 @@ char *summary_text(const json_t *results)
                   passed, passed + value_member(verdict, "figures_failed"),
                   value_text(verdict, "gates"), value_member(verdict, "mutants_detected"),
                   value_member(verdict, "mutants"), value_member(verdict, "runs"));
+    page_since_plain(&to, results);
     orders(&to, json_object_get(results, "studies"));
     buffer_format(&to, "git %s, %s, %s\n", value_text(results, "git"),
                   value_text(results, "compiler"), value_text(results, "date"));

@@ -114,7 +114,9 @@ static json_t *document_make(const struct riemann_solution *s, const struct samp
 
 static void print_state(const char *name, double rho, double v, double P)
 {
-    printf("%-12s %18.11g %18.11g %18.11g\n", name, rho, v, P);
+    char velocity[32] = "-"; /* of a vacuum */
+    if (!isnan(v)) snprintf(velocity, sizeof velocity, "%.11g", v);
+    printf("%-12s %18.11g %18s %18.11g\n", name, rho, velocity, P);
 }
 
 static void print_wave(const char *side, enum riemann_wave wave, double head, double tail)
