@@ -137,6 +137,7 @@ static enum status average(struct job *job, int order, struct error *error)
         sum += y / (double)replicates;
         squares += y * y / (double)replicates;
     }
+    job->point->error_spread = (double)NAN;
     if (replicates < 2) return STATUS_OK;
     const double freedom = (double)replicates / (double)(replicates - 1);
     job->point->error = exp(sum);
@@ -433,7 +434,7 @@ static json_t *measured_json(const struct bench_subject *subject, const struct j
 {
     const struct precision_point *point = job->point;
     const struct bench_time *time = &subject->time;
-    return result_object("status=%d message=%s n=%zu error=%g error_spread=%g pairs=%g? wall_s=%g "
+    return result_object("status=%d message=%s n=%zu error=%g error_spread=%g? pairs=%g? wall_s=%g "
                          "cpu_s=%g spread=%g times=%zu samples=%d error_of=%s signal=%g",
                          (int)subject->failure.status, subject->failure.message, point->n,
                          point->error, point->error_spread, point->pairs, time->wall_s, time->cpu_s,

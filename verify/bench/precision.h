@@ -22,7 +22,7 @@ extern const double precision_targets[PRECISION_TARGETS]; /* relative to the sig
 struct precision_point {
     size_t scheme, n;       /* n: as the lattice allowed */
     double error, relative; /* geometric mean over neighbouring n if the solution jumps */
-    double error_spread;    /* standard deviation of its logarithm; 0 of a single n */
+    double error_spread;    /* standard deviation of its logarithm; NaN of a single n */
     double pairs;           /* pair interactions */
     bool on_front;
     struct settings settings; /* as used, resolved */

@@ -62,21 +62,26 @@ static void print_schemes(const struct precision *precision, const struct precis
             continue;
         }
         const struct precision_point *p = &precision->points[scheme->first + scheme->count - 1];
-        printf("%-*s %7zu %11.4e %7.3f%% %3.0f%% %10.3e %6.0f%% %11.3e %11.3e %9.3g\n", (int)width,
-               scheme->brief, p->n, p->error, 100 * p->relative, 100 * p->error_spread,
-               p->time.cpu_s, 100 * p->time.spread, p->pairs, scheme->merit, scheme->gain);
+        char spread[8] = "-"; /* of a single run */
+        if (!isnan(p->error_spread))
+            snprintf(spread, sizeof spread, "%.0f%%", 100 * p->error_spread);
+        printf("%-*s %7zu %11.4e %7.3f%% %4s %10.3e %6.0f%% %11.3e %11.3e %9.3g\n", (int)width,
+               scheme->brief, p->n, p->error, 100 * p->relative, spread, p->time.cpu_s,
+               100 * p->time.spread, p->pairs, scheme->merit, scheme->gain);
     }
     if (hidden) printf("... and %zu more (all of them: --json)\n", hidden);
-    printf("%sat the finest n, best first. error: of %s, absolute and of the signal %.6g (the "
-           "exact one's mean distance from\nits mean); +-: its deviation over neighbouring n, of "
-           "which it is the mean; CPU s: least of %d samples, all threads;\nspread: their median "
-           "above it; merit: error^(%d/p) x CPU s, which does not depend on n at the case's order "
-           "p = %d;\ngain: that of %s over the scheme's%s\n",
-           style->faint, precision->error_of, precision->signal, precision->points[0].time.samples,
-           precision->dim + 1, precision->order,
-           precision->dim > 1 ? "SPH as textbooks have it"
-                              : "the seed program's corrected method in plain C",
-           style->end);
+    printf(
+        "%sat the finest n, best first. error: of %s, absolute and of the signal %.6g (the "
+        "exact one's mean distance from\nits mean; of a scalar or a uniform field its size, of a "
+        "uniform velocity the sound speed);\n+-: its deviation over neighbouring n, of which it "
+        "is the mean; CPU s: least of %d samples, all threads;\nspread: their median above it; "
+        "merit: error^(%d/p) x CPU s, which does not depend on n at the case's order "
+        "p = %d;\ngain: that of %s over the scheme's%s\n",
+        style->faint, precision->error_of, precision->signal, precision->points[0].time.samples,
+        precision->dim + 1, precision->order,
+        precision->dim > 1 ? "SPH as textbooks have it"
+                           : "the seed program's corrected method in plain C",
+        style->end);
     for (size_t i = 0; i < precision->scheme_count; i++)
         if (!list[i]->count) printf("excluded: %s: %s\n", list[i]->label, list[i]->excluded);
 }
@@ -263,7 +268,7 @@ static json_t *point_json(const struct precision *precision, const struct precis
     static const char *const references[] = {"", "graded", "seed", "seed_plain"};
     const struct precision_scheme *scheme = &precision->schemes[point->scheme];
     json_t *item = result_object(
-        "scheme=%s settings=%p n=%zu error=%g error_over_signal=%g error_spread=%g wall_s=%g "
+        "scheme=%s settings=%p n=%zu error=%g error_over_signal=%g error_spread=%g? wall_s=%g "
         "cpu_s=%g spread=%g samples=%d pair_interactions=%g? figure_of_merit=%g on_front=%d?",
         scheme->label, (void *)settings_json(&point->settings), point->n, point->error,
         point->relative, point->error_spread, point->time.wall_s, point->time.cpu_s,

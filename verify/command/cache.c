@@ -1,12 +1,29 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * sphproof cache: the contents of a folder of cached results, and its pruning. */
+#include <dirent.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "cache.h"
 #include "command.h"
 #include "result.h"
 #include "text.h"
+
+/* True if the folder has what no cache has: a cache has folders of two digits, and slurm. */
+static bool has_others(const char *folder)
+{
+    DIR *opened = opendir(folder);
+    bool found = false;
+    for (struct dirent *entry; opened && !found && (entry = readdir(opened));) {
+        const char *name = entry->d_name;
+        const bool digits = strlen(name) == 2 && strspn(name, "0123456789abcdef") == 2;
+        found = name[0] != '.' && !digits && strcmp(name, "slurm") != 0;
+    }
+    if (opened) closedir(opened);
+    return found;
+}
 
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
@@ -18,6 +35,10 @@ static enum status run(const struct options *options, int n, char **arguments, s
         return error_set(error, STATUS_BAD_INPUT,
                          "cache: --prune '%.40s': allowed: days, a number >= 0", text);
     if (cache_prune(arguments[0], days * 24 * 3600, &census, error)) return error->status;
+    if (!census.entries && !census.removed && has_others(arguments[0]))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "cache: %.200s is no cache: it has other files, and no result",
+                         arguments[0]);
     if (options->speak)
         printf("%zu results, %.3g MB; %zu removed\n", census.entries, census.bytes / 1e6,
                census.removed);

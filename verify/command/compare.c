@@ -404,7 +404,7 @@ static void print_all(const struct comparison *c, const struct options *options)
                of->verdict == PAIRED_BETTER  ? style.good
                : of->verdict == PAIRED_WORSE ? style.bad
                                              : style.faint,
-               of->verdict == PAIRED_NONE ? "no different" : paired_verdicts[of->verdict],
+               of->verdict == PAIRED_NONE ? "not told apart" : paired_verdicts[of->verdict],
                style.end);
     }
     printf(

@@ -79,10 +79,10 @@ static enum status take_time(const struct judge_request *request, struct judged 
         if (strcmp(file->notes.note[k].what, "not taken") == 0)
             untaken = file->notes.note[k].evidence;
     if (!time.known)
-        return error_set(
-            error, STATUS_BAD_INPUT,
-            "%.200s: says no time; --time T helps, in text also a line '# time = T'%s%.200s",
-            judged->path, *untaken ? "; not taken: " : "", untaken);
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: says no time; a line '# time = T' of a text file helps, and "
+                         "judge --time T%s%.200s",
+                         judged->path, *untaken ? "; not taken: " : "", untaken);
     if (!(time.value >= 0))
         return error_set(error, STATUS_BAD_INPUT, "%.200s: time = %g; allowed: 0 or above",
                          judged->path, time.value);
@@ -457,8 +457,8 @@ enum status judge_geometry(const struct judge_request *given, struct judged *jud
     const char *name = request->case_name ? request->case_name : said;
     if (!*name)
         return error_set(error, STATUS_BAD_INPUT,
-                         "%.200s: what should it be? It names no case: --case CASE, or --left and "
-                         "--right",
+                         "%.200s: what should it be? It names no case; a line '# case = CASE' of a "
+                         "text file helps, and judge --case CASE, or --left and --right",
                          judged->path);
     if (!request->case_name) snapshot_note(&judged->file.notes, "case", name, "the file says so");
     if (request->asked)

@@ -612,6 +612,7 @@ TEST(test_study)
         if (i) assert_true(p->scheme >= p[-1].scheme);
         near_inside(p->error, 1e-4, 0.1);
         near_relative(p->relative, p->error / precision.signal, 1e-6);
+        assert_true(p->error_spread > 0);
         on_front += p->on_front;
         assert_false(p->on_front && precision.schemes[p->scheme].reference > REFERENCE_GRADED);
     }
@@ -690,6 +691,7 @@ TEST(test_errors_relative_to_the_wave)
     assert_int_equal(precision.order, 2);
     near_relative(precision.points[0].relative, precision.points[0].error / precision.signal,
                   1e-12);
+    assert_true(isnan(precision.points[0].error_spread)); /* of one run */
     /* a quarter of the error for four times the work: the merit L1 x CPU is the same at any
      * resolution */
     const struct precision_point *finest = &precision.points[1];

@@ -62,8 +62,8 @@ static const struct {
      {{0.5}, {2}},
      {{(double)NAN}, {(double)NAN}},
      "density              1.0000e+00   5.0000e-01                          -50.0 %  [.unknown]\n"
-     "velocity             2.0000e+00   2.0000e+00                             +0 %  [.no "
-     "different]\n",
+     "velocity             2.0000e+00   2.0000e+00                             +0 %  [.not "
+     "told apart]\n",
      "",
      "a single draw does not tell how much of the difference is chance: density less by 50.0 %; no "
      "difference can be told in velocity (1 draw)"},
@@ -73,8 +73,8 @@ static const struct {
      {{1, 2}},
      {{1, 2}},
      {{1, 1}, {2, 3}},
-     "density              1.4142e+00   1.4142e+00                +0 % (+0 to +0 %)  [.no "
-     "different]\n",
+     "density              1.4142e+00   1.4142e+00                +0 % (+0 to +0 %)  [.not "
+     "told apart]\n",
      "CPU time           b/a = 2.5 (2 to 3)\n",
      "no difference can be told in density (2 draws)"},
     {2,
@@ -92,8 +92,8 @@ static const struct {
      {{1, 1}},
      {{1.5, 1.6}},
      {{(double)NAN, (double)NAN}, {1, 1}},
-     "density              1.0000e+00   1.5492e+00            +55 % (-24 to +215 %)  [.no "
-     "different]\n",
+     "density              1.0000e+00   1.5492e+00            +55 % (-24 to +215 %)  [.not "
+     "told apart]\n",
      "",
      "no difference can be told in density (2 draws)"},
     {3,
@@ -122,8 +122,8 @@ static const struct {
      {{1, 2, 3}, {0}},
      {{1, 2.5, 2.5}, {1, 1, 1}},
      {{1, 1, 0}, {3, 2, 1}},
-     "density              1.8171e+00   1.8420e+00             +1 % (-51 to +110 %)  [.no "
-     "different]\n",
+     "density              1.8171e+00   1.8420e+00             +1 % (-51 to +110 %)  [.not "
+     "told apart]\n",
      "CPU time           too short for this clock\n",
      "no difference can be told in density (3 draws)"},
     {2,
@@ -133,8 +133,8 @@ static const struct {
      {{40, 45}, {1.0000105, 1.00001}},
      {{1, 1}, {1, 1.5}},
      "density              1.0000e+00   4.2426e+01       +4143 % (+848 to +18893 %)  [-worse]\n"
-     "velocity             1.0000e+00   1.0000e+00 +0.00102 % (+0.00039 to +0.00166 %)  [.no "
-     "different]\n",
+     "velocity             1.0000e+00   1.0000e+00 +0.00102 % (+0.00039 to +0.00166 %)  [.not "
+     "told apart]\n",
      "CPU time           b/a = 1.25 (1 to 1.5)\n",
      "b is worse in density by 4143 % (848 to 18893 %); no difference can be told in velocity (2 "
      "draws)"},
@@ -164,8 +164,8 @@ static const struct {
      {{1, 1}},
      {{1, 1.000023}},
      {{0, 1}, {0, 1}},
-     "density              1.0000e+00   1.0000e+00    +0.001 % (-0.013 to +0.016 %)  [.no "
-     "different]\n",
+     "density              1.0000e+00   1.0000e+00    +0.001 % (-0.013 to +0.016 %)  [.not "
+     "told apart]\n",
      "CPU time           too short for this clock\n",
      "no difference can be told in density (2 draws)"},
 };

@@ -93,7 +93,8 @@ TEST(refused_requests)
         int dim;
         const char *head, *name, *left, *right, *box, *says;
     } rows[] = {
-        {1, TIMED, NULL, NULL, NULL, NULL, "what should it be? It names no case: --case CASE"},
+        {1, TIMED, NULL, NULL, NULL, NULL,
+         "what should it be? It names no case; a line '# case = CASE'"},
         {1, TIMED, "no_such", NULL, NULL, NULL, "no_such"},
         {1, TIMED, "sod", "1 0", NULL, NULL, "--left"},
         {1, TIMED, "sod", NULL, "1 0 1 2 3", NULL, "--right"},

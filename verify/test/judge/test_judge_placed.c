@@ -67,7 +67,7 @@ TEST(sources_of_time)
     assert_string_equal(note(&judged, "time")->evidence, "the file says so");
     judge_free(&judged);
     gas.head[0] = '\0';
-    refuses(&request, "says no time; --time T helps");
+    refuses(&request, "says no time; a line '# time = T' of a text file helps");
     request.time = (struct snapshot_value){true, -1e-9};
     refuses(&request, "allowed: 0 or above");
     request.time.value = 0;
