@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Runs of the default schemes with and without skips, on random blasts, tubes and pulses in gas at
  * rest or in motion as a whole, in 1D, 2D and 3D: the same figures, momentum and energy kept, and
- * something skipped each time. Times are short: no scheme has amplified anything yet. */
+ * something skipped each time. Times are short: no scheme has amplified anything yet. Argument,
+ * optional: so many times as many setups. */
 #include "test.h"
 
 #include "draw.h"
@@ -134,7 +135,8 @@ static void same_figures(int dim, enum shifting shifting, int draws)
     struct scheme scheme = keyed_scheme(dim, keys);
     if (dim == 3) scheme.eta = 2.4; /* a third of the neighbours */
     if (dim > 1) scheme.shock_conductivity = 1;
-    for (int k = 0; k < draws; k++) {
+    const int times = test_word(1) ? atoi(test_word(1)) : 1;
+    for (int k = 0; k < draws * times; k++) {
         const double hot = pow(10, dim == 1 ? draw(0.5, 4) : draw(0.5, 6));
         struct setup setup =
             draw_setup(dim, (enum kind)(k % KINDS), hot, (k + (dim == 3)) / KINDS % 2);
