@@ -173,6 +173,7 @@ static bool start_is_random_as_said(struct walk *walk)
     struct error error;
     for (int shaken = 0; shaken < 2; shaken++) {
         struct initial one, two;
+        settings.value[SETTING_jitter].automatic = false;
         settings.value[SETTING_jitter].real[0] = 0.1 * shaken;
         const bool random = walk->problem->random(&settings);
         if (initial_create(&one, &walk->p, &settings, &error)) return fault(walk, "no particles");
