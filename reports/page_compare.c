@@ -75,7 +75,8 @@ static void table(struct buffer *to, const json_t *document)
         if (!isnan(half)) /* Student's interval is that of the logarithm */
             buffer_format(to, " (%+.*f to %+.*f)", places, 100 * (ratio * exp(-half / ratio) - 1),
                           places, 100 * (ratio * exp(half / ratio) - 1));
-        html_format(to, "</td><td>%s</td></tr>\n", strcmp(verdict, "none") ? verdict : "not told apart");
+        html_format(to, "</td><td>%s</td></tr>\n",
+                    strcmp(verdict, "none") ? verdict : "not told apart");
     }
     html_table_end(to);
     buffer_format(to,

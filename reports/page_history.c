@@ -176,6 +176,19 @@ static void how_long(struct buffer *to, const json_t *since, const json_t *resul
     buffer_format(to, ", %.0f %s%s before", count, units[u].name, count == 1 ? "" : "s");
 }
 
+/* The figure that got worse by most, with marks around its values. */
+static void add_worst(struct buffer *to, const json_t *since, const char *open, const char *close)
+{
+    const json_t *worst = first_worse(json_object_get(since, "figures"));
+    if (!worst) return;
+    html_format(to, "; most: %s", value_text(worst, "path"));
+    buffer_add(to, open);
+    value(to, json_object_get(worst, "old"));
+    buffer_add(to, " → ");
+    value(to, json_object_get(worst, "new"));
+    buffer_add(to, close);
+}
+
 void page_since(struct buffer *to, const json_t *results)
 {
     const json_t *since = json_object_get(json_object_get(results, "history"), "since");
@@ -185,14 +198,7 @@ void page_since(struct buffer *to, const json_t *results)
     how_long(to, since, results);
     buffer_add(to, "): ");
     since_words(to, since);
-    const json_t *worst = first_worse(json_object_get(since, "figures"));
-    if (worst) {
-        html_format(to, "; most: %s <b>", value_text(worst, "path"));
-        value(to, json_object_get(worst, "old"));
-        buffer_add(to, " → ");
-        value(to, json_object_get(worst, "new"));
-        buffer_add(to, "</b>");
-    }
+    add_worst(to, since, " <b>", "</b>");
     buffer_add(to, "</p>\n");
 }
 
@@ -202,13 +208,7 @@ void page_since_plain(struct buffer *to, const json_t *results)
     if (!json_is_object(since)) return;
     buffer_format(to, "Since the last report (git %.*s): ", REVISION, value_text(since, "git"));
     since_words(to, since);
-    const json_t *worst = first_worse(json_object_get(since, "figures"));
-    if (worst) {
-        buffer_format(to, "; most: %s ", value_text(worst, "path"));
-        value(to, json_object_get(worst, "old"));
-        buffer_add(to, " → ");
-        value(to, json_object_get(worst, "new"));
-    }
+    add_worst(to, since, " ", "");
     buffer_add(to, ".\n\n");
 }
 

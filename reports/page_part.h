@@ -16,8 +16,8 @@ struct page;
 void page_head(struct buffer *to, const char *title);
 bool page_end(struct page_writer *writer, struct page *page);
 
-/* A line for the head of the page, the same as plain text, and the section: changes since the previous night and over all
- * nights. */
+/* A line for the head of the page, the same as plain text, and the section: changes since the
+ * previous night and over all nights. */
 void page_since(struct buffer *to, const json_t *results);
 void page_since_plain(struct buffer *to, const json_t *results);
 void page_history(struct page_writer *writer, const json_t *history);

@@ -32,15 +32,15 @@ static double square_of_limit(const struct cells_fields *fields, const struct ce
 }
 
 /* Largest part of a disturbance that passes through a neighbour within one step, through its
- * density and then its force. Near free surfaces, where gas is not in equilibrium as far as
- * matrices reach, it is ten times as large. */
+ * density and then its force. In a box with an open side it is a hundred times as large, because
+ * gas below a free surface is not in equilibrium as far as matrices reach. */
 static double carried(const struct cells *cells)
 {
     const struct cells_method *method = &cells->method;
     bool open = false;
     for (int k = 0; k < method->box.dim; k++)
         open = open || !(method->box.periodic[k] || method->wall[k]);
-    return open ? 1e-4 : 1e-5;
+    return open ? 1e-3 : 1e-5;
 }
 
 /* Upper bound of the disturbance that arrives from a neighbour, in units of the pressure term. */

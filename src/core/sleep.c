@@ -134,8 +134,8 @@ static struct leak find_leak(const struct simulation *simulation)
     return leak;
 }
 
-/* A sleeping particle lacks at most so many tolerances. Within a step, free surfaces of gas disturb
- * what sleeps below them by up to 65 (54 drawn scenes), other gas by less than 1. */
+/* A sleeping particle lacks at most so many tolerances. `test_skipped_setups 10` finds momentum
+ * lost where this is 1: below free surfaces, and in other gas now and then. */
 static const double lacking = 100;
 
 /* The part of a leak that sleep can explain; the rest remains visible in the sums, where errors of

@@ -7,7 +7,8 @@
 
 #include "pieces.h"
 
-/* Finds the places of these pieces, which own them, for pieces_find. STATUS_ENVIRONMENT: no memory. */
+/* Finds the places of these pieces, which own them, for pieces_find. STATUS_ENVIRONMENT: no memory.
+ */
 enum status places_find(struct pieces *pieces, struct error *error);
 
 /* The i-th random number in [0, 1[ of the sequence for seed (splitmix64, Steele et al. 2014). */

@@ -93,10 +93,10 @@ static void print_front(const struct precision *precision, const struct table_st
     for (size_t i = 0; list && i < precision->point_count; i++)
         if (precision->points[i].on_front) list[n++] = &precision->points[i];
     if (list) qsort(list, n, sizeof *list, by_cost);
-    printf(
-        "\n%sPareto front: nothing else is both cheaper and better (methods compared with take no "
-        "part)%s\n",
-        style->bold, style->end);
+    printf("\n%sPareto front: no other scheme is both cheaper and better; methods compared with "
+           "take no "
+           "part%s\n",
+           style->bold, style->end);
     for (size_t i = 0; i < n; i++)
         printf("  %10.3e CPU s  error %10.4e  n = %-7zu %s\n", list[i]->time.cpu_s, list[i]->error,
                list[i]->n, precision->schemes[list[i]->scheme].brief);

@@ -448,19 +448,21 @@ const struct command command_rates = {
     .synopsis = "PARTICLES.csv|SNAPSHOT|CASE [KEY=VALUE ...]",
     .help =
         "one evaluation, nothing moves: h, rho, P, dp/dt, dU/dt of every particle\n"
-        "A file holds columns x[,y[,z]], vx[,vy[,vz]], m, u in any order; its header gives the\n"
-        "dimension; other usual names (acceleration_x) are known, too. So does a snapshot (see\n"
-        "judge). Beside the keys of the scheme it takes gamma (default 1.4) and needs its box,\n"
-        "unless it says them (# box = 0:1): lo and hi (one number, or one for each direction), "
-        "boundary (periodic,\n"
-        "open or reflecting; one word or one each), gravity. shock_conductivity is 0 unless "
-        "given,\n"
-        "since few codes have it. h is\n"
-        "found to 1e-14 unless h_tolerance says otherwise. With --check (a CSV file, or a "
-        "snapshot\n"
-        "with accelerations; in single precision the tolerance is 1e-5) the exit status is 1 if a\n"
-        "column departs by more than the tolerance; choices of the\n"
-        "scheme are then changed one by one to see which of them explains it.",
+        "A file has the columns x[,y[,z]], vx[,vy[,vz]], m, u in any order, whose number gives "
+        "the\n"
+        "dimension; other usual names (acceleration_x) are known, too, and so are snapshots (see\n"
+        "judge). Keys are those of the scheme, gamma (default: the file's, or 1.4) and, unless "
+        "the\n"
+        "file says its box (# box = 0:1), lo and hi (one number, or one for each direction),\n"
+        "boundary (periodic, open or reflecting; one word or one each) and gravity.\n"
+        "shock_conductivity is 0 unless given, since few codes have it. h is found to 1e-14 "
+        "unless\n"
+        "h_tolerance says otherwise. With --check (a CSV file, or a snapshot with accelerations; "
+        "in\n"
+        "single precision the tolerance is 1e-5) the exit status is 1 if a column departs by more\n"
+        "than the tolerance; choices of the scheme are then changed one by one to see which of "
+        "them\n"
+        "explains it.",
     .run = run,
     .options = own_options,
     .examples = "sphproof rates particles.csv lo=0 hi=1 kernel=cubic_spline eta=2.4\n"

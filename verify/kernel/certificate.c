@@ -7,7 +7,6 @@
 
 #include <gsl/gsl_errno.h>
 
-
 struct certificate_sink {
     struct property_sink sink;
     struct certificate *certificate;

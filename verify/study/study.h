@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Studies: any case, any combination of schemes, a ladder of resolutions, replicates of each: over
- * seeds where the initial state is random, else over numbers of particles near the
- * level's. (Where a shock lies among the particles at the end changes from n to n: the error of
+ * seeds where the initial state is random, else over numbers of particles near the level's.
+ * (Where a shock lies among the particles at the end changes from n to n: the error of
  * one n is a draw, with strong shocks from a distribution 14 % wide.) Every run is a job of a pool;
  * from the runs come orders with their 95 % interval, gates, functionals with Richardson
  * extrapolation and GCI, error budgets, and whatever looks too good to be true. */
@@ -114,8 +114,8 @@ bool study_is_random(const struct settings *settings);
 size_t study_replicates(const struct run_settings *settings);
 
 /* Number of particles of replicate r: the level's own, then alternately above and below it: in 1D
- * within 2.5 %, but at least `least` particles apart, in 2D and 3D those of a
- * lattice with one row more, one less, two more ... along each side. */
+ * within 2.5 %, but at least `least` particles apart; in 2D and 3D those of a lattice with one row
+ * more, one less, two more ... along each side. */
 size_t study_neighbour(size_t n, int dim, size_t replicates, size_t least, size_t r);
 
 /* Adds "dimension", "measured" (the figures that judge the case, the most important first),

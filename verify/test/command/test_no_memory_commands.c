@@ -54,6 +54,14 @@ static int run(const char *line, int failing, char *to)
     return status;
 }
 
+/* Number of figures that are not known. */
+static int nans(const char *text)
+{
+    int count = 0;
+    while ((text = strstr(text, "\"nan\""))) text++, count++;
+    return count;
+}
+
 TEST(commands)
 {
     static const char *const before[] = {
@@ -112,7 +120,7 @@ TEST(commands)
             const int now = run(lines[c], k, printed);
             const bool same = now == status && strcmp(printed, usual) == 0,
                        told = now == STATUS_ENVIRONMENT ? strstr(errors, "mmory") != NULL
-                              : now == STATUS_OK        ? strstr(printed, "\"nan\"") != NULL
+                              : now == STATUS_OK        ? nans(printed) > nans(usual)
                                                         : strstr(printed, "mmory") != NULL;
             size_t at = 0;
             while (usual[at] && usual[at] == printed[at]) at++;
