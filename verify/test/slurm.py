@@ -17,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import traceback
 
 import cluster
 
@@ -107,16 +108,28 @@ def kill(nodes):
 
 
 def hold(nodes):
-    """Waits for a new task at its first computation, the long one, and stops it there. Returns its name."""
+    """Waits for a new task at its first computation, the long one, and stops it there. Returns its name and its
+    processes."""
     def new():
         return [task for task, state in queue().items() if state == "RUNNING" and "_" in task and task not in held]
 
     nodes.wait(lambda: new() and len(nodes.tasks()) >= 2, "task and its worker", 200)
-    for pid in nodes.tasks():
+    stopped = list(nodes.tasks())
+    for pid in stopped:
         with contextlib.suppress(ProcessLookupError):
             os.kill(pid, signal.SIGSTOP)
     held.add(new()[0])
-    return max(held, key=lambda task: int(task.split("_")[0]))
+    return max(held, key=lambda task: int(task.split("_")[0])), stopped
+
+
+def end_held(nodes, end):
+    """Holds the next task and ends it with end(its name), which is said again if Slurm, on a busy host, loses it."""
+    task, stopped = hold(nodes)
+    for patience in (30, 30, 60):
+        end(task)
+        with contextlib.suppress(RuntimeError):
+            return nodes.wait(lambda: not set(stopped) & set(nodes.tasks()), "end of a held task", patience)
+    expect("a held task ends", False, (task, queue(), nodes.states()))
 
 
 @functools.cache
@@ -141,8 +154,8 @@ def test_again(nodes):
         cache = re.sub(r"\W+", "-", what)
         options = ("--engine-options", *more) if more else ()
         running = start(HELD, cache, "--engine-tasks", "1", "--json", "again.json", *options)
-        end(hold(nodes))
-        heard = running.communicate(timeout=100)[1]
+        end_held(nodes, end)
+        heard = running.communicate()[1]
         expect(what, running.returncode in (0, 1), heard)
         expect("%s: results" % what, load("again.json") == held_alone(), heard)
         expect("%s: submitted" % what, heard.count("submitted again") == (said is not None), heard)
@@ -158,15 +171,15 @@ def test_given_up(nodes, end, state, *more):
     expect("given up: something to lose", len(kept) == 3, kept)
     running = start(HELD, "given-up", "--engine-tasks", "1", *more)
     for _ in range(3):
-        end(hold(nodes))
-    heard = running.communicate(timeout=300)[1]
+        end_held(nodes, end)
+    heard = running.communicate()[1]
     expect("given up", running.returncode == 4 and "submitted again (2 of 2)" in heard, (running.returncode, heard))
     found = re.search(r"share 1 of 1 \(%s, submitted 3 times\), log (\S+):" % state, heard)
     expect("given up: log", found and os.path.exists(found[1]), heard)
     expect("given up: what", "missing: sod, n = 8000 (share 1)" in heard, heard)
     expect("given up: kept", entries("given-up") == kept, entries("given-up"))
     again = start(HELD, "given-up", "--engine-tasks", "1", "--json", "given-up.json")
-    heard = again.communicate(timeout=100)[1]
+    heard = again.communicate()[1]
     expect("given up: computed twice", kept.items() <= entries("given-up").items())
     expect("given up, called again", again.returncode in (0, 1) and load("given-up.json") == held_alone(), heard)
 
@@ -212,7 +225,7 @@ def test_power(nodes):
     second = start(LONG, "power", "--json", "power.json")
     yield  # Slurm notices it after some seconds
     expect("attached", queue().keys() <= before.keys(), (queue(), before))
-    said = second.communicate(timeout=100)[1]
+    said = second.communicate()[1]
     expect("a node without power", second.returncode in (0, 1), said)
     expect("a node without power: results", load("power.json") == alone(LONG), said)
     expect("a node without power: computed twice", kept.items() <= entries("power").items())
@@ -236,16 +249,24 @@ def test_report(nodes):
     expect("a report from two nodes", one == other, [key for key in one if one[key] != other.get(key)])
 
 
+def too_slow(nodes, frame):
+    """Says where the test waited and what Slurm did last."""
+    where = "".join(traceback.format_stack(frame)[-3:])
+    with open(os.path.join(nodes.folder, "ctld.log"), encoding="utf-8", errors="replace") as file:
+        last = "".join(file.readlines()[-30:])
+    sys.exit("too slow: %s\n%s\n%s %s\n%s" % (faults, where, queue(), nodes.states(), last))
+
+
 def main():
     if cluster.missing():
         print("skipped: not here: %s (Debian: slurm-wlm, munge)" % " ".join(cluster.missing()))
         return 1 if night else 77
-    signal.signal(signal.SIGALRM, lambda *_: sys.exit("too slow: %s" % faults))
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that daemons are ended
-    signal.alarm(3600 if night else 280)
+    signal.alarm(3600 if night else 700)
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         nodes = cluster.Cluster(folder, data)
+        signal.signal(signal.SIGALRM, lambda _, frame: too_slow(nodes, frame))
         try:
             nodes.begin()
             if night:
