@@ -35,12 +35,12 @@ static enum status compute(const void *context, json_t **document, struct error 
     return status;
 }
 
-static enum status plan(struct pool *pool, struct part *parts, size_t *count,
-                        const struct suite_choice *choice, struct error *error)
+/* Plans the chosen checks; a part without a check is behind the last one. */
+static enum status plan(struct pool *pool, struct part *part, const struct suite_choice *choice,
+                        struct error *error)
 {
     for (size_t i = 0; i < check_registry_count; i++) {
         const struct check *check = check_registry[i];
-        struct part *part = &parts[*count];
         char key[sizeof part->name + 32];
         if (!suite_chosen(check, choice)) continue;
         *part = (struct part){.check = check, .mutants = choice->mutants};
@@ -49,24 +49,25 @@ static enum status plan(struct pool *pool, struct part *parts, size_t *count,
         part->job = pool_add(pool, part->name, key, suite_cost(check), compute, part);
         if (part->job == (size_t)-1)
             return error_set(error, STATUS_ENVIRONMENT, "verify: no memory for a check");
-        ++*count;
+        part++;
     }
     return STATUS_OK;
 }
 
-static enum status join(struct suite *suite, const struct pool *pool, const struct part *parts,
-                        size_t count, struct error *error)
+static enum status join(struct suite *suite, const struct pool *pool, const struct part *part,
+                        struct error *error)
 {
-    const struct check *checks[count + 1];
-    const json_t *documents[count + 1];
-    for (size_t i = 0; i < count; i++) {
-        const struct pool_job *job = &pool->jobs[parts[i].job];
+    const struct check *checks[check_registry_count];
+    const json_t *documents[check_registry_count];
+    size_t count = 0;
+    for (; part->check; part++) {
+        const struct pool_job *job = &pool->jobs[part->job];
         if (!job->document) {
             *error = job->error;
             return error->status;
         }
-        checks[i] = parts[i].check;
-        documents[i] = job->document;
+        checks[count] = part->check;
+        documents[count++] = job->document;
     }
     return suite_join(suite, checks, documents, count, error);
 }
@@ -77,7 +78,6 @@ enum status verify_shares_run(struct suite *suite, const struct suite_choice *ch
     static const char *const others[] = {"first", "kernel-plugin"};
     struct sharing sharing;
     struct pool pool = {0};
-    size_t count = 0;
     *whole = false;
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         if (options_value(options, others[i]))
@@ -86,13 +86,13 @@ enum status verify_shares_run(struct suite *suite, const struct suite_choice *ch
                              others[i]);
     if (sharing_take(&sharing, options, 1, NULL, false, error)) return error->status;
     struct part *parts = calloc(check_registry_count + 1, sizeof *parts);
-    enum status status = parts ? plan(&pool, parts, &count, choice, error)
+    enum status status = parts ? plan(&pool, parts, choice, error)
                                : error_set(error, STATUS_ENVIRONMENT, "verify: no memory");
     if (!status && sharing.list)
         status = sharing_list(&sharing, &pool, error);
     else if (!status)
         status = sharing_run(&sharing, &pool, "checks", options, whole, error);
-    if (!status && *whole) status = join(suite, &pool, parts, count, error);
+    if (!status && *whole) status = join(suite, &pool, parts, error);
     pool_free(&pool);
     free(parts);
     return status;

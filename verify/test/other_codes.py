@@ -561,7 +561,8 @@ def test_nothing_left():
     write("bad.ini", FILE % ("hang sod", 60, "none"))
     words = "code.py hang sod 61"
     for number in signal.SIGINT, signal.SIGTERM, signal.SIGKILL:
-        child = subprocess.Popen([program, "run", "sod", "n=61", "--code", "bad.ini"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        child = subprocess.Popen([program, "run", "sod", "n=61", "--code", "bad.ini"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                 preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         until(lambda: running(words), "the code never ran")
         child.send_signal(number)
         child.wait()

@@ -87,7 +87,7 @@ def nothing_left(name):
 def interrupted():
     """Ctrl-C ends the run and the process that watches it with the signal."""
     p = subprocess.Popen([program, "run", "sod", "n=100000", "kernel=" + COPY], stdout=subprocess.DEVNULL,
-                         stderr=subprocess.PIPE)
+                         stderr=subprocess.PIPE, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
     time.sleep(1)
     p.send_signal(signal.SIGINT)
     check(p.wait(60) == -signal.SIGINT and not p.stderr.read(), "interrupt", p.returncode)

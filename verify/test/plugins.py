@@ -142,8 +142,9 @@ def wait_for(condition, seconds=20):
 def judge_interrupt(number):
     """An interrupt ends everything, also if the plug-in has processes of its own."""
     path = os.path.realpath(module("forks_and_sleeps"))
-    work = subprocess.Popen([PROGRAM, "kernel", path, "--dim", "1"], stdout=subprocess.DEVNULL,
-                            stderr=subprocess.DEVNULL)
+    work = subprocess.Popen([PROGRAM, "kernel", path, "--dim", "1"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                            # a background job of a script, as this test may be, ignores interrupts
+                            preexec_fn=lambda: signal.signal(number, signal.SIG_DFL))
     if not wait_for(lambda: len(processes(path)) == 3):
         work.kill()
         return "%d processes at work, not 3" % len(processes(path))

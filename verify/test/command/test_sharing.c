@@ -252,6 +252,53 @@ TEST(damaged_and_unwritable_caches)
     unlink(path);
 }
 
+static struct {
+    enum status status;
+    int jobs;
+} planted;
+
+static enum status compute_planted(const struct engine_work *work, struct error *error)
+{
+    assert_ptr_equal(work->options, &call.options);
+    assert_ptr_equal(work->pool, &call.pool);
+    assert_ptr_equal(work->cache, &call.sharing.cache);
+    assert_int_equal(work->jobs, planted.jobs);
+    assert_int_equal(work->tasks, 9);
+    assert_string_equal(work->progress->what, "converge");
+    work->progress->what = "tasks";
+    work->progress->spoke = 1, work->progress->terminal = true; /* its line is taken away */
+    return planted.status ? error_set(error, planted.status, "no tasks") : STATUS_OK;
+}
+
+/* An engine is told what to compute; what it lacks is computed here unless it fails. */
+TEST(engines)
+{
+    static const struct engine engine = {.name = "planted", .compute = compute_planted};
+    static const char *const jobs[] = {NULL, "1", "3"};
+    for (int k = 0; k < 3; k++)
+        for (enum status s = STATUS_OK; s <= STATUS_ENVIRONMENT; s++) {
+            int said[2], usual[2];
+            end(NULL), begin(NULL);
+            set("cache", call.place.cache_folder), set("jobs", jobs[k]);
+            assert_int_equal(
+                sharing_take(&call.sharing, &call.options, 5, NULL, false, &call.error), STATUS_OK);
+            call.sharing.engine = &engine, call.sharing.tasks = 9;
+            planted.status = s, planted.jobs = k == 2 ? 3 : 1;
+            fill_planned();
+            listen_to(said, usual);
+            assert_int_equal(sharing_run(&call.sharing, &call.pool, "converge", &call.options,
+                                         &call.whole, &call.error),
+                             s);
+            listened(said, usual);
+            assert_true(call.whole);
+            assert_string_equal(call.said, "\r\033[K");
+            assert_string_not_equal(call.sharing.progress.what, "tasks");
+            assert_string_equal(call.error.message, s ? "no tasks" : "");
+            for (int i = 0; i < N; i++) assert_int_equal(call.pool.jobs[i].done, !s);
+            pool_free(&call.pool);
+        }
+}
+
 /* Nothing is printed where speak is off. */
 TEST(silent_share)
 {
