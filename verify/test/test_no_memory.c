@@ -12,7 +12,7 @@
 #include "gas.h"
 #include "initial.h"
 #include "line/line.h"
-#include "made_no_memory.h"
+#include "failing_memory.h"
 #include "map.h"
 #include "particle_file.h"
 #include "pool.h"

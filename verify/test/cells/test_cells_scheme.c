@@ -2,7 +2,7 @@
  * What a scheme's numbers do in 2D and 3D: beta where there is no alpha. */
 #include "test.h"
 
-#include "made_lattice.h"
+#include "sample_lattice.h"
 #include "solver.h"
 
 #include "cells/cells.h"

@@ -4,8 +4,8 @@
  * scheme. */
 #include "test.h"
 
-#include "made_bytes.h"
-#include "made_lattice.h"
+#include "byte_buffer.h"
+#include "sample_lattice.h"
 #include "solver.h"
 #include "width.h"
 

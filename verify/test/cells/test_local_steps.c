@@ -5,9 +5,9 @@
 #include "test.h"
 
 #include "keyed.h"
-#include "made_bytes.h"
-#include "made_lattice.h"
-#include "made_simulation.h"
+#include "byte_buffer.h"
+#include "sample_lattice.h"
+#include "sample_simulation.h"
 #include "solver.h"
 
 static uint64_t seed;

@@ -7,9 +7,9 @@
 
 #include "draw.h"
 #include "keyed.h"
-#include "made_bytes.h"
-#include "made_lattice.h"
-#include "made_simulation.h"
+#include "byte_buffer.h"
+#include "sample_lattice.h"
+#include "sample_simulation.h"
 #include "solver.h"
 
 static const char *member = "fluxes";

@@ -7,7 +7,7 @@
 #include "draw.h"
 #include "cells/cells.h"
 #include "grid.h"
-#include "made_lattice.h"
+#include "sample_lattice.h"
 #include "operator.h"
 #include "shapes.h"
 #include "summation.h"

@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-#include "made_document.h"
-#include "made_study.h"
+#include "drawn_document.h"
+#include "sample_study.h"
 #include "printed.h"
 /* the command itself, because its static functions are tested */
 #include "../../command/converge.c"

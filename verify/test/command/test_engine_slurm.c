@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The engine slurm on a made-up cluster (made_slurm.h): what it submits, and what becomes of a
+ * The engine slurm on a made-up cluster (fake_slurm.h): what it submits, and what becomes of a
  * study when its tasks end in every possible way. */
 #define _GNU_SOURCE /* nftw */
 #include "test.h"
 
-#include "made_slurm_call.h"
+#include "fake_slurm_call.h"
 
 /* ---- fates of tasks ---- */
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The engine slurm on a cluster that is made up (made_slurm.h): a controller that does not answer,
+ * The engine slurm on a cluster that is made up (fake_slurm.h): a controller that does not answer,
  * interrupts, several calls for one study, what is left behind. */
 #define _GNU_SOURCE /* nftw */
 #include "test.h"
 
-#include "made_slurm_call.h"
+#include "fake_slurm_call.h"
 
 /* ---- commands that do not answer ---- */
 

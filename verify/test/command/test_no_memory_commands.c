@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "command.h"
-#include "made_no_memory.h"
-#include "made_place.h"
+#include "failing_memory.h"
+#include "own_folder.h"
 
 enum { WORDS = 40, TEXT = 1 << 18, MANY = 1 << 28 };
 

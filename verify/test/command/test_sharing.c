@@ -7,7 +7,7 @@
 
 #include <fcntl.h>
 
-#include "made_jobs.h"
+#include "sample_jobs.h"
 #include "sharing.h"
 
 enum { N = 7, SHARES = 3 };

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "made_place.h"
+#include "own_folder.h"
 #include "slurm.h"
 
 /* Makes a command that prints `output` and `complaint`, exits with the code and saves its

@@ -8,7 +8,7 @@
  * FILE. "$ show FILE" prints a file, of rows of numbers their sums, or the names in a folder. There
  * is a gnuplot that keeps its script as drawn.gp. "$ WORDS > FILE" sends standard output there, and
  * not into the transcript. "$ compute report FOLDER" puts results drawn at random for all that a
- * quick report computes (made_pieces.h) into that cache. "$ damage FROM TO vx=vy 1 2 9" exchanges
+ * quick report computes (drawn_pieces.h) into that cache. "$ damage FROM TO vx=vy 1 2 9" exchanges
  * two columns of the snapshot FROM in every second row from the first to the ninth (all of them
  * unless that is said); "u*2" doubles one, "x+1" adds to it. "u!" gives it a name that
  * nobody reads. With SPHPROOF_KEEP=FOLDER the
@@ -29,8 +29,8 @@
 
 #include "buffer.h"
 #include "command.h"
-#include "made_document.h"
-#include "made_pieces.h"
+#include "drawn_document.h"
+#include "drawn_pieces.h"
 #include "report.h"
 
 enum { SHORT = 6, WORDS = 80, COLUMNS = 12, LINE_MAX = 1 << 16 };

@@ -6,7 +6,7 @@
 #include "draw.h"
 #include "breakdown.h"
 #include "keyed.h"
-#include "made_simulation.h"
+#include "sample_simulation.h"
 #include "solver.h"
 
 typedef long double real;

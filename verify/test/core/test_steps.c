@@ -7,8 +7,8 @@
 #include <time.h>
 
 #include "line/line.h"
-#include "made_bytes.h"
-#include "made_simulation.h"
+#include "byte_buffer.h"
+#include "sample_simulation.h"
 #include "solver.h"
 
 /* --- steps ------------------------------------------------------------------------------------ */

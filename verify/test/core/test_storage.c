@@ -6,7 +6,7 @@
 
 #include <unistd.h>
 
-#include "made_bytes.h"
+#include "byte_buffer.h"
 #include "pages.h"
 #include "particles.h"
 

@@ -3,7 +3,7 @@
  * them; and what is refused. */
 #include "test.h"
 
-#include "made_snapshot.h"
+#include "sample_snapshot.h"
 #include "near.h"
 #include "riemann.h"
 

@@ -4,7 +4,7 @@
 #include "test.h"
 
 #include "judge_autopsy.h"
-#include "made_snapshot.h"
+#include "sample_snapshot.h"
 #include "near.h"
 
 static const struct {

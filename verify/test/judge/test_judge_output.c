@@ -2,7 +2,7 @@
  * The document of judged snapshots says what was found, of each of them and of all. */
 #include "test.h"
 
-#include "made_snapshot.h"
+#include "sample_snapshot.h"
 #include "near.h"
 
 /* Uniform gas in 2D with this error of its density, at this time and with this much more mass. */

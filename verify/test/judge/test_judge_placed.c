@@ -3,7 +3,7 @@
  * is asked for in vain. */
 #include "test.h"
 
-#include "made_snapshot.h"
+#include "sample_snapshot.h"
 #include "near.h"
 
 /* ---- gamma, time ---- */

@@ -3,7 +3,7 @@
  * the solution. */
 #include "test.h"
 
-#include "made_snapshot.h"
+#include "sample_snapshot.h"
 #include "near.h"
 
 /* ---- noise ---- */

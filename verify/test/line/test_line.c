@@ -7,7 +7,7 @@
 
 #include "draw.h"
 #include "line/line.h"
-#include "made_simulation.h"
+#include "sample_simulation.h"
 
 enum { GHOSTS = 256, SETUPS = 40 };
 

@@ -14,7 +14,7 @@
 
 #include "line/line.h"
 #include "line/pass.h"
-#include "made_simulation.h"
+#include "sample_simulation.h"
 
 /* --- passes ----------------------------------------------------------------------------------- */
 

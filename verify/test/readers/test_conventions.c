@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "conventions.h"
-#include "made_place.h"
+#include "own_folder.h"
 #include "near.h"
 #include "snapshot_csv.h"
 

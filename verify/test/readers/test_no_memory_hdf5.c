@@ -4,8 +4,8 @@
 #include "test.h"
 
 #ifdef HAVE_HDF5
-#include "made_layouts.h"
-#include "made_no_memory.h"
+#include "sample_layouts.h"
+#include "failing_memory.h"
 #include "snapshot_file.h"
 
 static enum status read_file(struct error *error)

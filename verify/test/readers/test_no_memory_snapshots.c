@@ -3,8 +3,8 @@
  * library. The argument is the folder of the fuzzers' examples. */
 #include "test.h"
 
-#include "made_no_memory.h"
-#include "made_snapshot.h"
+#include "failing_memory.h"
+#include "sample_snapshot.h"
 #include "snapshot_csv.h"
 #include "sphproof/convergence.h"
 #include "sphproof/gradients.h"

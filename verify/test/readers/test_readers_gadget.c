@@ -4,7 +4,7 @@
  * planted must be read; what is spoilt must be refused. */
 #include "test.h"
 
-#include "made_gadget.h"
+#include "drawn_gadget.h"
 
 TEST(every_form)
 {

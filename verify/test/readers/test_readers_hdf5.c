@@ -10,7 +10,7 @@
 #include <signal.h>
 #include <sys/resource.h>
 
-#include "made_layouts.h"
+#include "sample_layouts.h"
 
 TEST(missing_items)
 {

@@ -6,7 +6,7 @@
 #ifdef HAVE_HDF5
 #include <float.h>
 
-#include "made_layouts.h"
+#include "sample_layouts.h"
 
 /* ---- other names and additional items of a layout ---- */
 

@@ -6,7 +6,7 @@
 #ifdef HAVE_HDF5
 #include <float.h>
 
-#include "made_layouts.h"
+#include "sample_layouts.h"
 
 static const struct layout *const gadget = &layouts[0];
 enum { PARTS_MOST = 4 };

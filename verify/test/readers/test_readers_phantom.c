@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "made_place.h"
+#include "own_folder.h"
 #include "snapshot_file.h"
 
 enum { N = 14, BYTES = 1 << 16, KINDS = 8, ARRAYS = 10, VALUES = 12 };

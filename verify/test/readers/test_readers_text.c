@@ -2,7 +2,7 @@
  * Tables of text in every style: what is planted must be read, to the last bit. */
 #include "test.h"
 
-#include "made_table.h"
+#include "drawn_table.h"
 #ifdef HAVE_ZLIB
 #include <zlib.h>
 #endif

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "made_table.h"
+#include "drawn_table.h"
 
 /* ---- columns that the user maps ---- */
 

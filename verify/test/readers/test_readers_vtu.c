@@ -4,7 +4,7 @@
  * wrong at one place is refused with what was found there and what is allowed. */
 #include "test.h"
 
-#include "made_table.h"
+#include "drawn_table.h"
 
 enum { ARRAYS = 6, BYTES_MAX = 1 << 14 };
 enum form { TEXT, BASE64, APPENDED, FORMS };

@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "made_diff.h"
+#include "sample_diff.h"
 
 static void problem_is(const char *command, const char *inside, const char *name, bool counts)
 {

@@ -13,8 +13,8 @@
 #include "buffer.h"
 #include "diff.h"
 #include "history.h"
-#include "made_document.h"
-#include "made_place.h"
+#include "drawn_document.h"
+#include "own_folder.h"
 #include "report_piece.h"
 
 enum { DOCUMENTS = 150, HISTORIES = 12, SERIES = 400, KEPT_TOGETHER = 10 };

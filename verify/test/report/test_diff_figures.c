@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "made_diff.h"
+#include "sample_diff.h"
 
 /* ---- figures, in both directions ---- */
 

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "history.h"
-#include "made_place.h"
+#include "own_folder.h"
 #include "near.h"
 #include "result.h"
 #include "value.h"

@@ -11,9 +11,9 @@
 
 #include "buffer.h"
 #include "claims.h"
-#include "made_document.h"
-#include "made_pieces.h"
-#include "made_place.h"
+#include "drawn_document.h"
+#include "drawn_pieces.h"
+#include "own_folder.h"
 #include "pairing.h"
 #include "report.h"
 #include "report_piece.h"

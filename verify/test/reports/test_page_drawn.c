@@ -5,7 +5,7 @@
 #include "test.h"
 
 #include "findings.h"
-#include "made_document.h"
+#include "drawn_document.h"
 #include "markup.h"
 #include "page.h"
 #include "verdict.h"

@@ -6,7 +6,7 @@
 
 #include "buffer.h"
 #include "layout.h"
-#include "made_document.h"
+#include "drawn_document.h"
 #include "script.h"
 
 enum { PLOTS = 250, PICTURES = 200, PANELS = 3, SERIES = 4, POINTS = 12, KEPT_TOGETHER = 10 };

@@ -5,7 +5,7 @@
 #include "test.h"
 
 #include "disc.h"
-#include "made_cloud.h"
+#include "drawn_cloud.h"
 #include "noh.h"
 #include "shells.h"
 

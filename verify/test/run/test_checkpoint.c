@@ -9,7 +9,7 @@
 #include "cache.h"
 #include "checkpoint.h"
 #include "clock.h"
-#include "made_simulation.h"
+#include "sample_simulation.h"
 
 static char folder[] = "checkpoint.XXXXXX", path[64];
 static char build[CHECKPOINT_WORD + 1];

@@ -8,7 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "made_place.h"
+#include "own_folder.h"
 #include "relax.h"
 
 enum { N = RELAX_STORE_LEAST };

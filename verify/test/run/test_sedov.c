@@ -4,7 +4,7 @@
  */
 #include "test.h"
 
-#include "made_cloud.h"
+#include "drawn_cloud.h"
 #include "sedov.h"
 #include "shells.h"
 

@@ -4,7 +4,7 @@
  * way of the linker's --wrap (meson.build). */
 #include "test.h"
 
-#include "made_place.h"
+#include "own_folder.h"
 #include "snapshot_writer.h"
 
 extern const struct snapshot_writer writer_hdf5;

@@ -2,7 +2,7 @@
  * Snapshots on the way: how many, when, where; what a run keeps to go on from. */
 #include "test.h"
 
-#include "made_simulation.h"
+#include "sample_simulation.h"
 #include "snapshot_file.h"
 #include "snapshot_writer.h"
 #include "snapshots.h"

@@ -4,7 +4,7 @@
 #include "test.h"
 
 #include "draw.h"
-#include "made_place.h"
+#include "own_folder.h"
 #include "user_table.h"
 
 /* rho = 1 + a x + b y + c sin(2 pi x), P = 2 rho, v = (rho, -rho). */

@@ -12,7 +12,7 @@
 #include <sys/wait.h>
 #include <time.h>
 
-#include "made_jobs.h"
+#include "sample_jobs.h"
 #include "output.h"
 
 TEST(any_number_of_processes)

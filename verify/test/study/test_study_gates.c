@@ -4,7 +4,7 @@
 #include "test.h"
 
 #include "gates.h"
-#include "made_study.h"
+#include "sample_study.h"
 #include "measure.h"
 
 static double factor;

@@ -3,7 +3,7 @@
  * or are missing; still gas, errors that are too good and settings without effect. */
 #include "test.h"
 
-#include "made_study.h"
+#include "sample_study.h"
 #include "measure.h"
 
 static double mean_log(int f, int m, size_t l, size_t replicates)

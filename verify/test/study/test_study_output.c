@@ -3,7 +3,7 @@
 #include "test.h"
 
 #include "judged.h"
-#include "made_study.h"
+#include "sample_study.h"
 #include "result.h"
 
 static json_t *pack_norms(const double values[NORMS])

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "check_registry.h"
-#include "made_checks.h"
+#include "sample_checks.h"
 #include "suite.h"
 #include "suite_output.h"
 #include "worst.h"

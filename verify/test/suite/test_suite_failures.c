@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "made_place.h"
+#include "own_folder.h"
 #include "suite_output.h"
 
 static const struct check first = {.group = "a", .name = "first", .property = "one is one"},

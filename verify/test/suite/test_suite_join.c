@@ -2,7 +2,7 @@
  * Suites that are put together from checks that ran elsewhere. */
 #include "test.h"
 
-#include "made_checks.h"
+#include "sample_checks.h"
 
 /* The document of a suite without times. */
 static json_t *told(const struct suite *suite)

@@ -3,7 +3,7 @@
 #include "test.h"
 
 #include "allowance.h"
-#include "made_place.h"
+#include "own_folder.h"
 
 static void put(const char *folder, const char *name, const char *text)
 {

@@ -7,7 +7,7 @@
 #include <time.h>
 #include <sys/wait.h>
 
-#include "made_jobs.h"
+#include "sample_jobs.h"
 
 /* Old entries are removed on request, and not when another process opens the folder. */
 TEST(old_entries_are_pruned)

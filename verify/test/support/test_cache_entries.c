@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "cache.h"
-#include "made_place.h"
+#include "own_folder.h"
 #include "version.h"
 
 /* Fowler, Noll and Vo's own test vectors. */

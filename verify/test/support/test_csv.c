@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 #include "csv.h"
-#include "made_place.h"
+#include "own_folder.h"
 
 enum { ROWS_MAX = 600, COLUMNS = 5, TEXT_MAX = 1 << 17 };
 

@@ -5,8 +5,8 @@
 
 #include <float.h>
 
-#include "made_notes.h"
-#include "made_place.h"
+#include "expected_note.h"
+#include "own_folder.h"
 
 enum { TYPES = 6, MOST = 40, BYTES = 1 << 16 };
 enum { POS, VEL, ID, MASS, U, RHO, HSML, ACCE, BLOCKS };

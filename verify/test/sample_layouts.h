@@ -3,9 +3,9 @@
  * and where HAVE_HDF5 is defined. */
 #pragma once
 
-#include "made_hdf5.h"
-#include "made_notes.h"
-#include "made_place.h"
+#include "sample_hdf5.h"
+#include "expected_note.h"
+#include "own_folder.h"
 #include "snapshot_file.h"
 
 enum { N = 12, ITEMS_MAX = 40 };

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "judge.h"
-#include "made_place.h"
+#include "own_folder.h"
 
 enum { N = 240 };
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A study, and a call of the engine slurm for it on the cluster of made_slurm.h. Include after
+ * A study, and a call of the engine slurm for it on the cluster of fake_slurm.h. Include after
  * cmocka.h; needs _GNU_SOURCE. */
 #pragma once
 
 #include <fcntl.h>
 #include <glob.h>
 
-#include "made_jobs.h"
-#include "made_slurm.h"
+#include "sample_jobs.h"
+#include "fake_slurm.h"
 #include "sharing.h"
 
 enum { N = 8, SHARES = 3 };

@@ -3,8 +3,8 @@
  * Include after test.h. */
 #pragma once
 
-#include "made_notes.h"
-#include "made_place.h"
+#include "expected_note.h"
+#include "own_folder.h"
 
 enum { ROWS = 9, TEXT_MAX = 1 << 15, TYPE = SNAPSHOT_COLUMNS, OTHER };
 

@@ -3,7 +3,7 @@
  * and one of so many broke down. */
 #pragma once
 
-#include "made_document.h"
+#include "drawn_document.h"
 #include "pool.h"
 #include "report_piece.h"
 #include "settings.h"
