@@ -310,13 +310,12 @@ static bool take_array(const struct vtk *vtk, const struct tag *tag, struct arra
     array->end = memchr(array->at, '<', (size_t)(end - array->at));
     if (!array->end) return refuse(vtk, "the array '%s' is cut off: no tag ends it", array->name);
     if (!strcmp(format, "appended")) {
-        if (!vtk->appended || !text_real(value_of(tag, "offset", number), &value) || value < 0 ||
-            value > (double)(vtk->ended - vtk->appended))
+        const double most = vtk->appended ? (double)(vtk->ended - vtk->appended) : -1;
+        if (!text_real(value_of(tag, "offset", number), &value) || value < 0 || value > most)
             return refuse(vtk,
-                          "the array '%s' has the offset '%s'; allowed: 0 to %zu, the length "
+                          "the array '%s' has the offset '%s'; allowed: 0 to %.0f, the length "
                           "of the appended data",
-                          array->name, number,
-                          vtk->appended ? (size_t)(vtk->ended - vtk->appended) : 0);
+                          array->name, number, fmax(0, most));
         array->at = vtk->appended + (size_t)value, array->end = vtk->ended;
         array->raw = vtk->raw;
     } else if (!array->text && strcmp(format, "binary"))
@@ -475,8 +474,7 @@ static bool take_tag(struct vtk *vtk, const struct tag *tag, const char **sectio
 static bool recognises(const struct snapshot_source *source)
 {
     char start[400];
-    snprintf(start, sizeof start, "%.*s", (int)(source->size < 399 ? source->size : 399),
-             source->hdf5 ? "" : (const char *)source->bytes);
+    snprintf(start, sizeof start, "%.399s", source->hdf5 ? "" : (const char *)source->bytes);
     return start[strspn(start, " \t\r\n\xef\xbb\xbf")] == '<' && strstr(start, "<VTKFile");
 }
 

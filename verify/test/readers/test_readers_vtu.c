@@ -232,6 +232,8 @@ static const struct {
     {APPENDED, "offset=\"0\"", "offset=\"1000000\"",
      "'Points' has the offset '1000000'; allowed: 0 to"},
     {APPENDED, "offset=\"0\"", "offset=\"-1\"", "'Points' has the offset '-1'; allowed: 0 to"},
+    {TEXT, "format=\"ascii\">\n ", "format=\"appended\" offset=\"0\">\n ",
+     "'Points' has the offset '0'; allowed: 0 to 0, the length"},
     /* longer than the longest word, and as long */
     {APPENDED, "offset=\"0\"", "offset=\"" ZEROS "0000\"", "'Points' has the offset ''"},
     {APPENDED, "offset=\"0\"", "offset=\"-" ZEROS "01\"", "'Points' has the offset '-0"},
