@@ -58,8 +58,9 @@ static bool name_range(struct rank *rank, size_t n, const char *what, char *text
     while (!rank[end - 1].wrong) end--;
     for (size_t i = first; i < end; i++) right += !rank[i].wrong;
     if (50 * right > end - first || end - first == n) return false;
-    if (rank[end - 1].at - rank[first].at <= 1e-9 * fabs(rank[first].at))
-        snprintf(text, size, ", at %s = %.4g", what, rank[first].at);
+    const double from = rank[first].at;
+    if (rank[end - 1].at - from <= 1e-9 * fabs(from))
+        snprintf(text, size, ", at %s = %.4g", what, from);
     else if (first == 0)
         snprintf(text, size, ", at %s < %.4g", what, edge(rank, end));
     else if (end == n)

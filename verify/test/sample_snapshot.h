@@ -21,6 +21,7 @@ struct planted {
     char head[200];
     bool has_u, has_P, has_h;
     double x[3][N], v[3][N], m[N], rho[N], u[N], P[N], h[N];
+    int others; /* the last rows are no gas */
 };
 
 static struct planted gas;
@@ -45,15 +46,16 @@ static inline char *put(const char *name)
     assert_non_null(out);
     fprintf(out, "%s", gas.head);
     for (int d = 0; d < gas.dim; d++) fprintf(out, "%c,v%c,", 'x' + d, 'x' + d);
-    fprintf(out, "m%s%s%s,rho\n", gas.has_u ? ",u" : "", gas.has_P ? ",P" : "",
-            gas.has_h ? ",h" : "");
+    fprintf(out, "m%s%s%s,rho%s\n", gas.has_u ? ",u" : "", gas.has_P ? ",P" : "",
+            gas.has_h ? ",h" : "", gas.others ? ",itype" : "");
     for (int i = 0; i < N; i++) {
         for (int d = 0; d < gas.dim; d++) fprintf(out, "%.17g,%.17g,", gas.x[d][i], gas.v[d][i]);
         fprintf(out, "%.17g", gas.m[i]);
         if (gas.has_u) fprintf(out, ",%.17g", gas.u[i]);
         if (gas.has_P) fprintf(out, ",%.17g", gas.P[i]);
         if (gas.has_h) fprintf(out, ",%.17g", gas.h[i]);
-        fprintf(out, ",%.17g\n", gas.rho[i]);
+        fprintf(out, gas.others ? ",%.17g,%d\n" : ",%.17g\n", gas.rho[i],
+                i < N - gas.others ? 1 : 2);
     }
     fclose(out);
     return path;

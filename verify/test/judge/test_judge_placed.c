@@ -162,6 +162,69 @@ TEST(positions_of_tubes)
     refuses(&request, "long along y, but positions reach from 0 to 1");
 }
 
+/* A line of gas whose volumes are as long together as the case's box, to a hundredth, fills that
+ * box from 0 on, about 0, or about its own middle, whichever holds it first. */
+TEST(lines_as_long_as_the_box)
+{
+    static const struct {
+        const char *name;
+        double lo, length, corner; /* the corner of the box; 9: it ends where the volumes do */
+    } rows[] = {{"sod", 0, 2, 0},
+                {"sod", 0, 1.982, 0},
+                {"sod", 0.018, 1.982, 0},
+                {"sod", 0, 1.978, 9},
+                {"sod", 0.01, 2, 0.01},
+                {"sod", -0.01, 2, -0.01},
+                {"sod", 0, 2.018, 0.009},
+                {"sod", 0, 2.022, 9},
+                {"sod", 5, 2, 5},
+                {"sod", -5, 2, -5},
+                {"sod", -1.5, 2, -1.5},
+                {"sound_wave", -0.5, 1, -0.5},
+                {"sound_wave", 0.3, 1, 0.3},
+                {"sound_wave", -0.3, 1, -0.3}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct judge_request request = {.case_name = rows[k].name, .time = {true, 0}, .kernel = -1};
+        struct judged judged;
+        const double volume = rows[k].length / N, corner = rows[k].corner,
+                     box = strcmp(rows[k].name, "sod") ? 1 : 2;
+        plant(1, 0, "");
+        for (int i = 0; i < N; i++) gas.x[0][i] = rows[k].lo + (i + 0.5) * volume;
+        for (int i = 0; i < N; i++) gas.m[i] = volume;
+        judges(&request, &judged);
+        const struct domain *domain = &judged.run.problem.domain;
+        near_absolute(domain->lo[0] - (corner < 9 ? corner : rows[k].lo), 0, 1e-12);
+        near_absolute(domain->hi[0] - domain->lo[0] - (corner < 9 ? box : rows[k].length), 0,
+                      1e-12);
+        assert_true(judged.file.boxed == (corner < 9));
+        assert_true(!strstr(note(&judged, "box")->evidence, "as long as the case's") ==
+                    !(corner < 9));
+        judge_free(&judged);
+    }
+}
+
+/* What is no gas is a wall where it lies outside the gas in any direction, and then the gas does
+ * not fill its box; what lies among the gas, its ends included, is no wall. */
+TEST(walls)
+{
+    for (int dim = 1; dim <= 3; dim++)
+        for (int axis = 0; axis < dim; axis++)
+            for (int k = 0; k < 6; k++) {
+                static const double at[] = {-0.2, 0, 0.5, 0.5, 1, 1.2}; /* of the extent */
+                const struct judge_request request = uniform_gas();
+                struct judged judged;
+                plant(dim, 0, "# box = -1:3 -1:2 -1:2\n");
+                gas.others = 2;
+                for (int i = N - 2; i < N; i++)
+                    for (int d = 0; d < dim; d++)
+                        gas.x[d][i] = (d == axis ? at[k] : 0.5) * (d ? 1 : 2);
+                if (k == 3) gas.x[axis][N - 2] = -0.5; /* one is, and one is not */
+                judges(&request, &judged);
+                assert_true(judged.boxed == (k > 0 && k < 5));
+                judge_free(&judged);
+            }
+}
+
 /* ---- missing values, and keys in vain ---- */
 
 /* If volumes fill a line, it extends half a volume beyond its outermost particles, also where these

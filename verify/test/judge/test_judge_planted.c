@@ -94,7 +94,7 @@ TEST(sums_of_any_box)
     for (int draw = 0; draw < 60; draw++) {
         struct prepared *p = &run.problem;
         struct conservation got = {0}, want = {0};
-        const double nowhere[3] = {0};
+        const double shift[3] = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
         for (int d = 0; d < 3; d++) {
             p->boost[d] = uniform(-1, 1);
             p->gravity[d] = uniform(0, 1) < 0.3 ? uniform(-2, 2) : 0;
@@ -107,12 +107,13 @@ TEST(sums_of_any_box)
                 const bool pushed = p->boundary[d] == BOUNDARY_REFLECTING ||
                                     p->boundary[d] == BOUNDARY_FIXED || p->gravity[d] != 0;
                 x[d][i] = uniform(-1, 1), v[d][i] = uniform(-1, 1);
-                want.energy += m[i] * (0.5 * v[d][i] * v[d][i] - p->gravity[d] * x[d][i]);
+                want.energy += m[i] * (0.5 * v[d][i] * v[d][i] -
+                                       p->gravity[d] * (x[d][i] + shift[d]));
                 want.kinetic += 0.5 * m[i] * pow(v[d][i] - p->boost[d], 2);
                 want.momentum[d] += pushed ? 0 : m[i] * v[d][i];
             }
         }
-        judge_sum(p, &s, nowhere, &got);
+        judge_sum(p, &s, shift, &got);
         near_relative(got.kinetic, want.kinetic, 1e-13);
         near_absolute(got.energy, want.energy, 1e-13);
         for (int d = 0; d < 3; d++) near_absolute(got.momentum[d], want.momentum[d], 1e-13);

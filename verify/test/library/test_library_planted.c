@@ -324,6 +324,7 @@ TEST(refused_setups)
         struct sphproof_setup setup = drawn_setup(2);
         const struct sphproof_rates none = {0};
         static const char *const narrow[] = {"kernel=cubic_spline", "eta=1.7", NULL};
+        char outside[120];
         const char *says = NULL;
         setup.keys = narrow;
         if (row == 0) setup.dim = 0, says = "dim = 0: allowed: 1, 2, 3";
@@ -332,8 +333,15 @@ TEST(refused_setups)
         if (row == 3) setup.u = NULL, says = "m and u of its particles";
         if (row == 4) setup.x[0] = NULL, says = "in 2D needs x[0]";
         if (row == 5) setup.x[1] = NULL, says = "in 2D needs x[1]";
-        if (row == 6) x[1][0] = nextafter(setup.lo[1], -2), says = "particle 0: x[1] = ";
-        if (row == 7) x[0][63] = nextafter(setup.hi[0], 3), says = "particle 63: x[0] = ";
+        if (row == 6) x[1][0] = nextafter(setup.lo[1], -2);
+        if (row == 7) x[0][63] = nextafter(setup.hi[0], 3);
+        if (row == 6 || row == 7) {
+            const int a = row == 6, i = a ? 0 : 63;
+            says = outside;
+            snprintf(outside, sizeof outside,
+                     "particle %d: x[%d] = %.9g: allowed: in the box, %.9g to %.9g", i, a, x[a][i],
+                     setup.lo[a], setup.hi[a]);
+        }
         if (row == 8) setup.boundary[0] = "fixed", says = "reflecting; fixed layers need densities";
         if (row == 9)
             setup.boundary[1] = "", says = "boundary '': allowed: periodic open reflecting";

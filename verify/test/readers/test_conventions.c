@@ -169,6 +169,23 @@ TEST(particles_near_ends_are_not_compared)
     }
 }
 
+/* The ends are those of all particles, whatever the place in the file: beside a particle far away
+ * the others are inside. */
+TEST(the_outermost_particle)
+{
+    const struct kernel kernel = kernel_called("cubic_spline");
+    for (int side = 0; side < 2; side++)
+        for (int row = 0; row < 3; row++) { /* the first, the last, and none */
+            const struct snapshot_file file = scatter(1, numbers[1], 0.06, 0);
+            if (row < 2) storage[0][row ? file.n - 1 : 0] = side ? 1.3 : -0.3;
+            sum_densities(&file, open_box, &kernel, 2, DENSITY_MASSES);
+            for (size_t i = 0; i < file.n; i++)
+                if ((side ? 1 - storage[0][i] : storage[0][i]) < 0.12)
+                    storage[SNAPSHOT_RHO][i] *= 1.5;
+            assert_true(found_in(&file, open_box, &kernel, NULL).known == (row == 2));
+        }
+}
+
 /* On a lattice any kernel fits; densities that are no sum fit none; a kernel that nearly fits is
  * not known, and the message says how nearly it fits. */
 TEST(unknown_kernels)
