@@ -20,11 +20,6 @@ static double used(const json_t *figure)
     return finding_ratio(value_member(figure, "value"), value_member(figure, "bound"));
 }
 
-static bool same(const json_t *a, const json_t *b, const char *member)
-{
-    return !strcmp(value_text(a, member), value_text(b, member));
-}
-
 static struct span next_check(const json_t *figures, size_t first)
 {
     struct span span = {.first = first, .end = first, .worst = first};
@@ -32,7 +27,9 @@ static struct span next_check(const json_t *figures, size_t first)
     double most = -1;
     for (size_t n = json_array_size(figures); span.end < n; span.end++) {
         const json_t *figure = json_array_get(figures, span.end);
-        if (!same(figure, leader, "group") || !same(figure, leader, "name")) break;
+        if (strcmp(value_text(figure, "group"), value_text(leader, "group")) ||
+            strcmp(value_text(figure, "name"), value_text(leader, "name")))
+            break;
         const char *status = value_text(figure, "status");
         bool skipped = !strcmp(status, "skip");
         span.failed += !strcmp(status, "fail");
@@ -126,7 +123,8 @@ void page_checks(struct page_writer *writer, const json_t *verify)
         struct buffer command = {0};
         html_format(to, "<h3>%-s</h3>\n", group);
         html_table(to, "checks", "check|#hold|nearest to its bound|#value|#bound|#floor|#of bound");
-        while (i < n && same(json_array_get(figures, i), leader, "group")) {
+        while (i < n && !strcmp(value_text(json_array_get(figures, i), "group"),
+                                value_text(leader, "group"))) {
             const struct span span = next_check(figures, i);
             check_row(to, figures, &span);
             if (span.failed > 1) failing_figures(to, figures, &span);

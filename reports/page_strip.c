@@ -42,7 +42,7 @@ static void path(struct buffer *to, const char *class, const struct frame *f, co
                  const double *y, size_t n, size_t most, bool joined)
 {
     const size_t stride = (n + most - 1) / most;
-    double last_x = -1, last_y = -1;
+    double last_x = (double)NAN, last_y = (double)NAN;
     bool pen = false;
     buffer_format(to, "<path class=\"%s\" d=\"", class);
     for (size_t i = 0; i < n; i += stride) {

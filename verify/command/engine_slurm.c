@@ -419,20 +419,17 @@ static void last_line(const char *path, char line[LINE])
 static enum status give_up(const struct array *array, struct error *error)
 {
     const struct pool *pool = array->work->pool;
-    size_t shown = 0;
-    int first = 0;
+    size_t shares = 0, shown = 0;
     char line[LINE], path[sizeof array->folder + 96];
     for (int s = 1; s <= array->count; s++) {
         const struct share *share = &array->shares[s];
-        if (!share->lacking || shown++ >= SHOWN) continue;
+        if (!share->lacking || shares++ >= SHOWN) continue;
         slurm_share_log(array->folder, array->name, share->job, s, path, sizeof path);
         last_line(path, line);
-        if (!first) first = s;
         fprintf(stderr, "sphproof: share %d of %d (%s, submitted %d times), log %s: %s\n", s,
                 array->count, share->state[0] ? share->state : "not in the queue", share->tries,
                 path, line);
     }
-    shown = 0;
     for (size_t i = 0; i < pool->count; i++)
         if (array->of[i] && shown++ < SHOWN)
             fprintf(stderr, "sphproof: missing: %s (share %d)\n", pool->jobs[i].name, array->of[i]);

@@ -80,7 +80,7 @@ static enum status take_request(const struct options *options, int n, char **arg
 {
     const char *name = options_value(options, "operator");
     const char *kernel = options_value(options, "kernel"), *dim = options_value(options, "dim");
-    double number = 0;
+    double number;
     int index;
     if (n != 1) return command_usage(options, error, "one cloud is needed, %d given", n);
     if (!name || !kernel || !dim)

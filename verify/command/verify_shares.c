@@ -45,7 +45,7 @@ static enum status plan(struct pool *pool, struct part *part, const struct suite
         if (!suite_chosen(check, choice)) continue;
         *part = (struct part){.check = check, .mutants = choice->mutants};
         snprintf(part->name, sizeof part->name, "%s/%s", check->group, check->name);
-        snprintf(key, sizeof key, "check %s%s", part->name, part->mutants ? " with mutants" : "");
+        snprintf(key, sizeof key, "check %s, mutants %d", part->name, part->mutants);
         part->job = pool_add(pool, part->name, key, suite_cost(check), compute, part);
         if (part->job == (size_t)-1)
             return error_set(error, STATUS_ENVIRONMENT, "verify: no memory for a check");

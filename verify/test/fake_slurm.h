@@ -15,7 +15,7 @@
 #include "clock.h"
 #include "pool.h"
 
-enum { MADE_TASKS = 40, MADE_TRIES = 4, MADE_SHARES = 8 };
+enum { MADE_TASKS = 40, MADE_TRIES = 4, MADE_SHARES = 14 };
 
 /* How a task ends. */
 enum fate {

@@ -10,7 +10,7 @@
 #include "fake_slurm.h"
 #include "sharing.h"
 
-enum { N = 8, SHARES = 3 };
+enum { N = 14, SHARES = 3 };
 
 static const struct command_option list[] = {
     {"jobs", "J", ""},    {"n", "N", ""},  {"words", "WORDS", ""}, {"flag", NULL, ""},
@@ -38,7 +38,7 @@ static inline void set(const char *name, const char *value)
         if (strcmp(list[i].name, name) == 0) call.values[i] = value;
 }
 
-/* A study of 8 computations in 3 shares, without results or tasks. */
+/* A study of N computations in 3 shares, without results or tasks. */
 static inline int begin(void **state)
 {
     (void)state;

@@ -112,6 +112,25 @@ TEST(share_that_fails_three_times)
     }
 }
 
+/* Of many missing computations the first ten are named. */
+TEST(many_are_missing)
+{
+    again();
+    for (int s = 1; s <= SHARES; s++)
+        for (int t = 0; t < 3; t++) made.fates[s][t] = ENDS_BADLY;
+    assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+    for (int i = 0; i < N; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "sphproof: missing: task %d (share ", i);
+        assert_int_equal(strstr(call.said, name) != NULL, i < 10);
+    }
+    for (int s = 1; s <= SHARES; s++) {
+        char share[32];
+        snprintf(share, sizeof share, "share %d of 3 (FAILED, ", s);
+        says(share);
+    }
+}
+
 /* Messages about a share describe its last task. */
 TEST(messages_describe_the_last_task)
 {
@@ -186,17 +205,17 @@ TEST(only_what_is_missing)
 TEST(number_of_shares)
 {
     static const struct {
-        double weight; /* of each of the 8 computations */
+        double weight; /* of each of the first 8 computations; the others have none */
         int jobs, tasks, shares;
         const char *array;
     } cases[] = {{0, 1, 0, 1, "1 "},     {10, 1, 0, 1, "1 "},    {150, 1, 0, 2, "1-2 "},
                  {149, 1, 0, 1, "1 "},   {150, 2, 0, 1, "1 "},   {300, 2, 0, 2, "1-2 "},
                  {300, 1, 0, 4, "1-4 "}, {10, 1, 4, 4, "1-4 "},  {1e9, 1, 1, 1, "1 "},
-                 {224, 1, 0, 2, "1-2 "}, {225, 1, 0, 3, "1-3 "}, {1e9, 1, 0, 8, "1-8 "}};
+                 {224, 1, 0, 2, "1-2 "}, {225, 1, 0, 3, "1-3 "}, {1e9, 1, 0, N, "1-9 "}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char of[40];
         again();
-        for (int k = 0; k < N; k++) call.pool.jobs[k].weight = cases[i].weight;
+        for (int k = 0; k < N; k++) call.pool.jobs[k].weight = k < 8 ? cases[i].weight : 0;
         call.work.jobs = cases[i].jobs;
         call.work.tasks = cases[i].tasks;
         assert_int_equal(compute_all(), STATUS_OK);
