@@ -170,7 +170,10 @@ void gates_add_conserved(const json_t *run, json_t *list)
     const bool walls = says(run, "boundary", "reflecting") || says(run, "boundary", "fixed");
     add_conserved("mass", run, list);
     if (!walls && !is_heavy(run)) add_conserved("momentum", run, list);
-    /* fixed layers exchange energy with the gas */
-    if (says(run, "energy", "total") && !is_heavy(run) && !says(run, "boundary", "fixed"))
+    /* fixed layers exchange energy with the gas; the work of gravity is exact in global steps of
+     * the default integrator, and in others to their order */
+    const bool exact = !is_heavy(run) || (says(run, "integrator", "predicted_midpoint") &&
+                                          says(run, "steps", "global"));
+    if (says(run, "energy", "total") && exact && !says(run, "boundary", "fixed"))
         add_conserved("energy", run, list);
 }
