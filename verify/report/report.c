@@ -222,7 +222,9 @@ static enum status add_cases(struct report *report, struct error *error)
         if (add_case(report, c, error)) return error->status;
     for (size_t c = 0; c < report->case_count; c++) {
         const struct reported *of = &report->cases[c];
-        struct report_piece bench = {.kind = REPORT_BENCH, .where = of->name};
+        struct report_piece bench = {.kind = REPORT_BENCH,
+                                     .where = of->name,
+                                     .rules = {.least_s = 0.01, .most_s = 1, .samples = 3}};
         if (prepare(of, 0, &bench.settings, error)) return error->status;
         if (of->studied && bench.settings.file.bench && (of->dimension == 1 || report->nightly) &&
             add_piece(report, bench, error))
@@ -246,7 +248,9 @@ static enum status add_skips(struct report *report, struct error *error)
                   {"sedov_3d", {"n=24^3", "t_end=0.002"}},
                   {"noh_2d", {"n=40^2"}}};
     for (size_t k = 0; k < sizeof setups / sizeof *setups; k++) {
-        struct report_piece skips = {.kind = REPORT_SKIPS, .where = setups[k].name};
+        struct report_piece skips = {.kind = REPORT_SKIPS,
+                                     .where = setups[k].name,
+                                     .rules = {.least_s = 0.01, .most_s = 2, .samples = 3}};
         char words[2][40], *keys[] = {words[0], words[1]};
         int count = 0;
         for (; count < 2 && setups[k].keys[count]; count++)

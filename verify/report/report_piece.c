@@ -105,7 +105,7 @@ static const char *vary(const struct settings *settings)
 static enum status compute_bench(const struct report_piece *piece, json_t **document,
                                  struct error *error)
 {
-    const struct bench_rules rules = {.least_s = 0.01, .most_s = 1, .samples = 3};
+    const struct bench_rules *rules = &piece->rules;
     const struct case_file *file = &piece->settings.file;
     const char *varied = vary(&piece->settings.settings);
     struct precision precision = {0};
@@ -113,12 +113,12 @@ static enum status compute_bench(const struct report_piece *piece, json_t **docu
     if (!sweep) return error_set(error, STATUS_ENVIRONMENT, "no memory for a bench");
     enum status status = sweep_parse(sweep, varied, error);
     if (!status)
-        status = precision_measure(&piece->settings, sweep, file->ladder, file->ladder_count,
-                                   &rules, &precision, error);
+        status = precision_measure(&piece->settings, sweep, file->ladder, file->ladder_count, rules,
+                                   &precision, error);
     if (!status) {
         char reproduce[256];
         snprintf(reproduce, sizeof reproduce, "sphproof bench %s --vary %s --time %g --samples %d",
-                 piece->where, varied, rules.least_s, rules.samples);
+                 piece->where, varied, rules->least_s, rules->samples);
         *document = result_new("bench");
         precision_add_json(&precision, *document);
         result_add(*document, "reproduce=%s", reproduce);
@@ -131,14 +131,13 @@ static enum status compute_bench(const struct report_piece *piece, json_t **docu
 static enum status compute_skips(const struct report_piece *piece, json_t **document,
                                  struct error *error)
 {
-    const struct bench_rules rules = {.least_s = 0.01, .most_s = 2, .samples = 3};
     struct bench_skips skips;
     const enum status status =
-        bench_skips_measure(&piece->settings, 1, &rules, BENCH_SLEEP, &skips, error);
+        bench_skips_measure(&piece->settings, 1, &piece->rules, BENCH_SLEEP, &skips, error);
     if (!status) {
         char reproduce[256];
         snprintf(reproduce, sizeof reproduce, "sphproof bench %s %s --skips --samples %d",
-                 piece->where, piece->keys, rules.samples);
+                 piece->where, piece->keys, piece->rules.samples);
         *document = result_new("bench");
         json_object_set_new(*document, "points", json_array());
         bench_skips_add_json(&skips, true, *document);

@@ -6,6 +6,7 @@
 
 #include <jansson.h>
 
+#include "bench.h"
 #include "pool.h"
 #include "run.h"
 
@@ -25,6 +26,7 @@ struct report_piece {
     int dim;                      /* of a kernel */
     char keys[80];                /* of skips and autopsies, as words */
     const char *sizes;            /* of autopsies: 16^2,24^2,... */
+    struct bench_rules rules;     /* of a bench and of skips */
     bool slow;                    /* includes slow checks */
     size_t case_number;           /* of a run */
     int scheme;                   /* of a run: index of its scheme */

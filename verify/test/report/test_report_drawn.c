@@ -103,10 +103,22 @@ TEST(small_pieces)
          "sphproof autopsy yee eta=2.5 --n 8^2,9^2,10^2,11^2",
          {"levels", "shares"}},
         {{.kind = REPORT_AUTOPSY, .where = "yee", .sizes = "8^2"}, "n=8^2", NULL, NULL, {NULL}},
-        {{.kind = REPORT_SKIPS, .where = "sod", .keys = "n=60"},
+        {{.kind = REPORT_BENCH, .where = "sod", .rules = {1e-5, 1, 1}},
+         "cfl=0.3",
+         "bench",
+         "sphproof bench sod --vary kernel=quadratic_spline,cubic_spline,quartic_spline,gradient "
+         "--time 1e-05 --samples 1",
+         {"points", "cheapest"}},
+        {{.kind = REPORT_BENCH, .where = "sound_wave", .rules = {1e-5, 1, 2}},
+         "cfl=0.3",
+         "bench",
+         "sphproof bench sound_wave --vary kernel=quadratic_spline,cubic_spline,"
+         "viscosity=none,constant,reconstructed,fading --time 1e-05 --samples 2",
+         {"points", "cheapest"}},
+        {{.kind = REPORT_SKIPS, .where = "sod", .keys = "n=60", .rules = {1e-5, 1, 1}},
          "n=60",
          "bench",
-         "sphproof bench sod n=60 --skips --samples 3",
+         "sphproof bench sod n=60 --skips --samples 1",
          {"points", "skips"}},
         {{.kind = REPORT_AUTOPSY, .where = "sod", .sizes = "20,30,40,50"},
          "n=20",
@@ -121,9 +133,11 @@ TEST(small_pieces)
         char key[40], end[] = "t_end=0.01", *keys[] = {key, end};
         json_t *document;
         snprintf(key, sizeof key, "%s", rows[k].key);
-        if (run_prepare(&piece.settings, piece.where, 2, keys, &error) ||
-            report_piece_add(&pool, &piece, &error))
+        if (run_prepare(&piece.settings, piece.where, 2, keys, &error))
             fail_msg("%s", error.message);
+        piece.settings.file.ladder_count = 2; /* of a bench */
+        piece.settings.file.ladder[0] = 20, piece.settings.file.ladder[1] = 30;
+        if (report_piece_add(&pool, &piece, &error)) fail_msg("%s", error.message);
         const enum status status = pool.jobs[0].compute(&piece, &document, &error);
         if (rows[k].command) {
             if (status) fail_msg("row %zu: %s", k, error.message);
