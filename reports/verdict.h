@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The verdict over a report's results: is it well, and if not, what, by how much, and how to see it
- * again. It follows from the findings (findings.h), and page, summary and JUnit show it.
+ * The verdict on a report's results: what failed, by how much, and which command reproduces it. It
+ * follows from the findings (findings.h); page, summary and JUnit file show it.
  *
  * results.json, a document of command "report" (each entry below is also what its own command
  * writes, see verify/schema; what a report has not is left out):

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Timing that can be trusted on a busy machine (after the benchmark library of FFTW): every subject
- * is warmed up, its work is repeated, doubling, until one sample takes a least time, and then
- * samples of all subjects are taken in turn, so that a burst of foreign load does not hit one
- * alone. What counts is the least sample; the median says how far to trust it. */
+ * Timing on a busy machine (after the benchmark library of FFTW). Each subject is warmed up, its
+ * work is repeated until one sample takes a minimum time, and then samples of all subjects are
+ * taken in turn, so that other load does not affect one alone. The result is the shortest sample;
+ * the median shows how reliable it is. */
 #pragma once
 
 #include <stddef.h>

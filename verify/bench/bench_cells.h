@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The solver's sums in 2D and 3D by themselves: a slightly disordered lattice of particles that
- * stand still; search, density, matrix and force, each alone or several in a row. What a step costs
- * beyond them is moving, widths, the equation of state and bookkeeping. */
+ * Times the solver's sums in 2D and 3D without a simulation: search, density, matrix and force,
+ * each alone or several in a row, on a slightly disordered lattice of particles at rest. A step
+ * costs in addition moving, widths, the equation of state and bookkeeping. */
 #pragma once
 
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Cost of a pair: every kernel in the solver's loops and steps (1D) and sums (2D and 3D) and in
- * every gradient operator in 1D, 2D and 3D; specialised, generic, and the same arithmetic without
- * any search. */
+ * Times a pair of particles for every kernel: in the solver's loops and steps (1D) and sums (2D and
+ * 3D) and in every gradient operator in 1D, 2D and 3D; specialised, generic, and the same
+ * arithmetic without a search. */
 #pragma once
 
 #include <jansson.h>

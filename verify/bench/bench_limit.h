@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The practical limit of a gradient operator: its arithmetic on neighbours that lie one after the
- * other in memory, with nothing to search, gather or choose. Written once more, so that it also
- * says what the sums must be. */
+ * The fastest possible gradient operator: its arithmetic on neighbours that are contiguous in
+ * memory, without search, gathering or branches. It is an independent implementation, so that it
+ * also gives the expected sums. */
 #pragma once
 
 #include "operator.h"

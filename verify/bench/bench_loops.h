@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The solver's 1D loops by themselves: a state of particles that stands still, neighbour offsets
- * known, arrays contiguous, nothing searched. What a whole step costs beyond this is search,
- * bookkeeping and memory. */
+ * Times the solver's loops in 1D without a simulation: particles at rest, known neighbour offsets,
+ * contiguous arrays. A whole step costs in addition search, bookkeeping and memory. */
 #pragma once
 
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The fraction of a run that is skipped, that could be skipped, and where and when gas sleeps. */
+ * Computes which fraction of a run is or could be skipped, and where and when gas is inactive. */
 #pragma once
 
 #include "initial.h"

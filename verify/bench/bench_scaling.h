@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How cost grows with the number of particles: of a step, of a whole run, of memory; and what
- * threads gain. Exponents are least-squares slopes in log-log with their 95 % interval. */
+ * Measures how the cost of a step and of a run, and memory, grow with n, and the speed-up by
+ * threads. Exponents are least-squares slopes in log-log with their 95 % interval. */
 #pragma once
 
 #include <jansson.h>

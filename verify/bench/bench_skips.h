@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Cost of each kind of skipped work, and whether results are the same without it. Work that a key
- * restores: both runs are made and compared. Passes that the plan does not contain and whose
- * results nothing reads are timed by themselves. */
+ * Measures what each kind of skipped work saves, and whether results are the same without it. If a
+ * key restores the work, both runs are made and compared. Passes that the plan leaves out because
+ * nothing reads their results are timed separately. */
 #pragma once
 
 #include <jansson.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Which schemes are worth their time: the front, the cheapest ways, figures of merit. */
+ * Finds schemes worth their time: Pareto front, cheapest ways to an error, figures of merit. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

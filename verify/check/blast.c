@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Checks of the exact flows that run towards a centre or from it: Sedov's blast, Noh's collision,
- * the spinning disc. Shocks obey their jump conditions, the contents of balls change by what flows
- * through their surfaces, and what is known beside (Sedov's constants, Primakoff's blast) comes
- * out. The equations between shocks: check flow. */
+ * Checks the exact flows to or from a centre: Sedov's blast, Noh's collision, the spinning disc.
+ * Shocks obey their jump conditions, the contents of balls change by the flux through their
+ * surfaces, and other known results (Sedov's constants, Primakoff's blast) are reproduced. The
+ * check flow tests the equations between shocks. */
 #include <math.h>
 #include <string.h>
 

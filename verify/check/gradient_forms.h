@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Operators as subjects of checks: right ones, and right names with wrong flags. */
+ * Gradient operators as subjects of checks: right ones, and right names with wrong flags. */
 #pragma once
 
 #include "check.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The solver against the oracle, all pairs in long double, in 1D to 3D: every quantity of one
- * evaluation, or of the state some steps later, is measured. */
+ * Compares the solver with the oracle (all pairs in long double) in 1D to 3D, for every quantity of
+ * one evaluation or of the state some steps later. */
 #pragma once
 
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The seed program's method on its own tube, digit by digit, through the same door as every command
- * (case, settings, set-up, solver, norms); and the set-up of Riemann problems. */
+ * Compares the seed program's method on its own tube with its results, digit by digit, computed as
+ * every command does; and tests the set-up of Riemann problems. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

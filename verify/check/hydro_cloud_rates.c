@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Density, smoothing length, force, heating and time step of disordered clouds in 2D and 3D against
- * the oracle, for the choices that stand in the sums: every geometry of a pair with one physics,
- * and every physics with one geometry, turn by turn, in 3D a share of them; in the slow suite every
- * one with every other in 2D, and all of those in 3D. */
+ * Compares density, smoothing length, force, heating and time step of disordered clouds in 2D and
+ * 3D with the oracle, for the choices that enter the sums: every geometry of a pair with one
+ * physics, and every physics with one geometry, in turn; in 3D a part of them. The slow suite
+ * combines every one with every other in 2D, and has all of the former in 3D. */
 #include "check.h"
 #include "hydro_against.h"
 #include "hydro_setup.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Whole runs over a few natural time steps in 2D and 3D, with particles that cross the ends of the
- * box, against the oracle: every integrator, with the choices that its steps carry along. */
+ * Compares whole runs over a few natural time steps in 2D and 3D, with particles that cross the
+ * ends of the box, with the oracle: every integrator, with the choices that its steps depend on. */
 #include "check.h"
 #include "hydro_against.h"
 #include "hydro_setup.h"

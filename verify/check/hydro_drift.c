@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Conservation over a run of a shock tube, for every combination of the families; and the order of
- * each integrator against dt on a smooth problem without viscosity. */
+ * Measures conservation over a run of a shock tube, for every combination of the families, and the
+ * order of each integrator against dt on a smooth problem without viscosity. */
 #include <math.h>
 #include <string.h>
 

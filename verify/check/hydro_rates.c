@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Density, smoothing length, force and heating of disordered states against the oracle, for
- * every combination of the families that stand in the sums. */
+ * Compares density, smoothing length, force and heating of disordered states with the oracle, for
+ * every combination of the families that enter the sums. */
 #include <math.h>
 
 #include "check.h"

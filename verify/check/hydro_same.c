@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Choices that must not change the result: threads, specialised loops, skipped work. */
+ * Checks that threads, specialised loops and skipped work do not change results. */
 #include <math.h>
 
 #include "check.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Whole runs over a few natural time steps, with particles that cross the ends of the box, against
- * the oracle: every integrator, each with its own choice of time steps, and the last ones cut. */
+ * Compares runs over a few natural time steps, with particles that cross the ends of the box, with
+ * the oracle: every integrator, each with its own choice of time steps, the last one shortened. */
 #include "check.h"
 #include "hydro_against.h"
 #include "hydro_setup.h"

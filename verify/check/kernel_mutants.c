@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Wrong kernels. Those of the seed pages and of the seed program keep their number
- * (CONVENTIONS section 7); the others are slips that people make. */
+ * Wrong kernels. Those of the seed pages and of the seed program have their number there
+ * (CONVENTIONS section 7); the others are typical mistakes. */
 #include "kernel_mutants.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Norms: on particles with unequal volumes whose errors are known, where the wrong weights, the
- * wrong power or a wrong window change the answer. */
+ * Checks norms on particles with unequal volumes and known errors, for which wrong weights, a wrong
+ * power or a wrong window change the result. */
 #include "norm.h"
 
 #include <gsl/gsl_qrng.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Orders: on synthetic errors whose order, noise and class are known. The interval is judged by its
- * coverage: over many noisy ladders it must hold the true order in 95 % of them. */
+ * Checks orders on synthetic errors of known order, noise and class. The interval is judged by its
+ * coverage: over many noisy ladders it must contain the true order in 95 % of them. */
 #include "order.h"
 
 #include <gsl/gsl_randist.h>

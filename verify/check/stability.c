@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Linear theory against the solver: the linearised rates and time steps that the stability atlas
- * is made of are differences of the solver's own, and its limits of eta are the known ones. */
+ * Compares linear theory with the solver: the linearised rates and time steps of the stability
+ * atlas are differences of the solver's own, and its limits of eta are the known ones. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How the solver starts from states that are hard from the first step on: particles at one place,
- * light particles at rest beside a high pressure, and a density that falls steeply within one
- * smoothing length. */
+ * Checks that the solver starts from difficult states: coincident particles, light particles at
+ * rest beside a high pressure, and a density that falls steeply within one smoothing length. */
 #include <math.h>
 
 #include "check.h"

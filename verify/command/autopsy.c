@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof autopsy: which part of a scheme its order is lost to, over a ladder of resolutions. */
+ * sphproof autopsy: finds which parts of a scheme cost its order, over a ladder of resolutions. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

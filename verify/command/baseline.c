@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof baseline: figures that were accepted once, each time with a reason. A baseline file
- * keeps the document it was made from and every reason so far. */
+ * sphproof baseline: accepts figures, each time with a reason. A baseline file keeps the document
+ * that it was made from and all reasons so far. */
 #include <ctype.h>
 #include <errno.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof bench: what an error costs. */
+ * sphproof bench: work-precision, costs of kernels, scaling, and savings by skips. */
 #include "bench.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof diff: what a change did to the figures of two result documents. */
+ * sphproof diff: compares the figures of two result documents, before and after a change. */
 #include "diff.h"
 
 #include <stdio.h>

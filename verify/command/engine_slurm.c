@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * --engine slurm: an array of tasks, each a share of the study (--shard), into the cache.
+ * --engine slurm: computes the shares (--shard) of a study as Slurm tasks that fill the cache.
  *
  * What is missing in the cache decides, never what Slurm says of a task: a share is submitted if
  * some of its results are missing and no task works on it. The same command, called again,

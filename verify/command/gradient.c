@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof gradient: an operator applied to the columns of a user's points, and the judgement of
- * gradients that another code computed on them. */
+ * sphproof gradient: applies an operator to the columns of a user's points, and checks gradients
+ * that another code computed on them. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof kernel: the certificate of a built-in kernel or of a user's own. That of a user's is
- * made in a process of its own; here its text, document and curves are only passed on. */
+ * sphproof kernel: the certificate of a built-in kernel or of a user's plug-in. The latter is made
+ * in a child process; here its text, document and curves are only passed on. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof rates: one evaluation of particles that a file or a case gives, and the judgement of
- * rates that another code computed on them. */
+ * sphproof rates: one evaluation of the particles of a file or a case, and the comparison with
+ * rates that another code computed. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

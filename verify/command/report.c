@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof report: computes everything and writes the page, the results and what belongs to them.
- */
+ * sphproof report: computes all results and writes the page, results.json and the files beside
+ * them. */
 #include "report.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Calls of Slurm's own commands: arrays of tasks under one name. Slurm's manuals: sbatch(1),
+ * Calls sbatch, squeue and scancel for arrays of tasks under one name. Slurm's manuals: sbatch(1),
  * squeue(1), scancel(1). */
 #pragma once
 

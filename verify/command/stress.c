@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof stress: what survives, where it breaks and how. */
+ * sphproof stress: tests numerical stability, and reports where and how schemes break down. */
 #include "stress.h"
 
 #include <gsl/gsl_errno.h>

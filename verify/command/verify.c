@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof verify: runs the checks, and with --mutants shows what they are able to reject. */
+ * sphproof verify: runs the checks, and with --mutants reports which mutants they reject. */
 #include <gsl/gsl_errno.h>
 #include <stdio.h>
 #include <stdlib.h>

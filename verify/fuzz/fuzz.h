@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Targets for coverage-guided fuzzing: whatever the bytes are, a target returns within a second of
- * CPU time, without a crash, a leak or a broken promise (FUZZ_PROMISE). Built with -Dfuzzer=true
+ * Targets for coverage-guided fuzzing. For any bytes a target must return within a second of CPU
+ * time, without a crash, a leak or a broken promise (FUZZ_PROMISE). Built with -Dfuzzer=true
  * (clang) they are run by libFuzzer, otherwise by replay.c. */
 #pragma once
 

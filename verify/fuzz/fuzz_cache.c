@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Entries of the cache: the bytes as they are, and as the body of an entry whose checksum is right.
- * Either is a document, or is not there. */
+ * Fuzzes entries of the cache: the bytes as they are, and as the body of an entry with a correct
+ * checksum. Each must be read as a document or count as missing. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>

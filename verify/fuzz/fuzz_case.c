@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Case files; those that are accepted go on to the plan of their run. */
+ * Fuzzes case files; for accepted ones also makes the plan of the run. */
 #include <stdlib.h>
 
 #include "fuzz.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * CSV files as clouds of points in 1, 2 and 3 dimensions; every operator on those that are
- * accepted: numbers, or a state that says why not. */
+ * Fuzzes CSV files as point clouds in 1, 2 and 3 dimensions. For accepted ones every operator must
+ * give numbers, or a state that says why not. */
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * HDF5 files of real codes, damaged: bytes changed, cut off. The library of HDF5 does not withstand
- * that, which is why files are read in another process (guard.h): what is promised is a refusal, or
- * columns of sound numbers, and that no figure comes of a process that died. The bytes say which
- * file, and what is changed in all its variants; each variant has changes of its own besides. */
+ * Fuzzes HDF5 files of real codes: bytes are changed or cut off. The HDF5 library does not survive
+ * that, so that files are read in another process (guard.h). The reader must refuse the file or
+ * give columns of valid numbers, and no result may come from a process that died. The bytes select
+ * the file and the changes in all its variants; each variant has further changes of its own. */
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>

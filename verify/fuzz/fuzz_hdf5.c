@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * HDF5 files of every layout that is read, made in memory: sound ones, but for what the bytes say
- * of each dataset and attribute, four bytes each: left out, of another type, shape, storage or
- * value, a link or a group in its place. They are read in this process, so that coverage leads to
- * what readers do with them; files that the library itself may not survive: fuzz_damage.c. */
+ * Fuzzes HDF5 files of every layout, made in memory. Four bytes each change a dataset or attribute
+ * of a valid file: left out, of another type, shape, storage or value, or replaced by a link or a
+ * group. The files are read in this process, so that coverage includes the readers. fuzz_damage.c
+ * has files that the library itself may not survive. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

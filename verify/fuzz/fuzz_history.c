@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Files of earlier nights, against a report with one figure of each kind. */
+ * Fuzzes the history file of earlier nights, for a report with one figure of each kind. */
 #include <stdlib.h>
 
 #include "fuzz.h"

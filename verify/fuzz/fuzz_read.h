@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What is promised of a snapshot that is read: it is refused, or its columns are sound numbers,
- * from which kernel and meaning of h are then sought. */
+ * Reads a fuzzed snapshot: it must be refused or have columns of valid numbers, for which the
+ * kernel and the meaning of h are then searched. */
 #pragma once
 
 #include "snapshot_file.h"

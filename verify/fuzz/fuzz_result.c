@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Result documents as diff reads them: two, with a NUL byte between them, or one against itself,
- * where nothing can have become worse. */
+ * Fuzzes result documents as read by diff: two, separated by a NUL byte, or one compared with
+ * itself, where nothing may be worse. */
 #include <stdlib.h>
 #include <string.h>
 

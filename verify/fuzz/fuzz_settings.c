@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * KEY=VALUE arguments, one a line, on top of a built-in case; what was accepted is written as text
- * and read again, and goes on to the plan of a run. */
+ * Fuzzes KEY=VALUE arguments, one a line, for a built-in case. Accepted ones are written as text
+ * and read again, and the plan of the run is made. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Snapshots of any format, as the bytes are: binaries of GADGET and Phantom, ASCII of SPLASH,
- * tables. HDF5, which is read in another process, takes far longer: one size in 512, the rest is
- * left to fuzz_hdf5.c and fuzz_damage.c. */
+ * Fuzzes snapshots of any format: GADGET and Phantom binaries, SPLASH's ASCII, tables. HDF5, which
+ * is read in another process, takes far longer: only one size in 512 is read here, fuzz_hdf5.c and
+ * fuzz_damage.c test the rest. */
 #include <string.h>
 
 #include "fuzz.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * For compilers without libFuzzer: replay N FOLDER ... gives a target every file of these folders,
- * then N inputs made of them by random cuts, copies and changes, the same ones each time. */
+ * Runs a target without libFuzzer. `replay N FOLDER ...` gives it every file of these folders, then
+ * N inputs made from them by random cuts, copies and changes, the same ones each time. */
 #include <dirent.h>
 #include <fcntl.h>
 #include <signal.h>

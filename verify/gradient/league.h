@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The league table of gradient operators: what each is exact for, how it converges on disordered
- * points, what it conserves, and what it costs. */
+ * The league table of gradient operators: the polynomials for which each is exact, its convergence
+ * on disordered points, what it conserves, and its cost. */
 #pragma once
 
 #include <jansson.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The gradient operators once more, straight from their formulas: every pair, long double, one
- * matrix inverted by cofactors. Shares nothing with src but the kernel's shape. An oracle for the
- * fast loops; and, with one fault switched on, the wrong operators that the checks must reject. */
+ * A second implementation of the gradient operators, straight from their formulas: every pair, long
+ * double, one matrix inverted by cofactors. Shares only the kernel's shape with src. An oracle for
+ * the fast loops; with one fault switched on, the wrong operators that checks must reject. */
 #pragma once
 
 #include "operator.h"

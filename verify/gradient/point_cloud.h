@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A point cloud from a CSV file: columns x[,y,z],volume first, then one column a field, in any
- * place among these optionally h, the support radius. */
+ * Reads a point cloud from a CSV file: columns x[,y,z],volume first, then one column for each
+ * field, and anywhere among these an optional column h, the support radius. */
 #pragma once
 
 #include "csv.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The certificate of a kernel in one dimension: what was measured on it, and whether every property
+ * The certificate of a kernel in one dimension: what was measured, and whether every property
  * holds. */
 #pragma once
 

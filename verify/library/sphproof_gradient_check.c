@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A user's gradient operator against what it promises. */
+ * Checks a user's gradient operator against what it promises. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mutants that no result can tell from the original. Part of verify/mutants/score.
+"""Finds mutants that cannot change any result. Part of verify/mutants/score.
 
-The compiler finds some of them: it makes the same code of both. The others are listed with their reasons
-in FOLDER/equivalent.txt beside the sources, one a line below the name of their file:
+The compiler finds some of them: those for which it makes the same code as for the original. The others are
+listed with their reasons in FOLDER/equivalent.txt beside the sources, one a line below the name of their file:
 
   [FILE]
   function :: change :: reason

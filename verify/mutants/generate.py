@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Generated mutants: every operator, constant, index, sign, order of arguments, statement and
-returned status of the judged files, found with libclang (Debian: python3-clang) and written into a
-copy of the tree as alternatives that an environment variable switches on (schemata.h).
+"""Generates mutants: finds every operator, constant, index, sign, order of arguments, statement and
+returned status of the judged files with libclang (Debian: python3-clang), and writes alternatives
+into a copy of the tree, which an environment variable switches on (schemata.h).
 
-What no switch reaches (numbers in initialisers, enumerators, arguments of macros at file scope) is
-found as text and compiled singly: single.py."""
+single.py makes those that cannot be switched (numbers in initialisers, enumerators, arguments of
+macros at file scope): each is compiled separately."""
 import bisect
 import glob
 import itertools

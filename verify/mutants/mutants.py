@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Source mutants: one-line faults that the checks must catch.
+"""Builds one-line faults of the sources, which the checks must detect.
 
   mutants.py check SOURCE WORK               does each one still apply exactly once?
   mutants.py run SOURCE WORK [NAME ...] (names or groups) build each fault into a copy of the tree and expect

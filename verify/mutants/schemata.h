@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Included before every source of a tree that generate.py has rewritten: how one of its mutants is
- * switched on by the environment, SPHPROOF_MUTANT=number. Where a file is named by SPHPROOF_REACH,
- * nothing is switched; it then tells for every mutant, one byte each, whether a process came by (1)
- * and whether the mutant would have made a difference there (2). */
+ * Included before every source of a tree that generate.py has rewritten. Switches one of its
+ * mutants on if the environment has SPHPROOF_MUTANT=NUMBER. If SPHPROOF_REACH names a file, no
+ * mutant is switched on; instead the file gets one byte for each mutant: whether a process executed
+ * it (1) and whether the mutant would have computed another value there (2). */
 #pragma once
 
 /* No headers are included here, because a source may define feature macros before it includes them.

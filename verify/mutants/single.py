@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Constants that no switch can reach: numbers in initialisers of static data, in enumerators, in macros that are a
-number, and in macro calls at file scope (KERNEL, INTEGRATOR, KEY, ROW ...). Each such mutant is a separate text that
-is compiled singly, see verify/mutants/score."""
+"""Generates mutants of constants that cannot be switched at run time: numbers in initialisers of static data, in
+enumerators, in macros that are a number, and in macro calls at file scope (KERNEL, INTEGRATOR, KEY, ROW ...). Each is
+compiled separately, see verify/mutants/score."""
 import os
 import re
 

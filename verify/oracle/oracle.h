@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The oracle: the equations of density, smoothing length, force, energy and time stepping written
- * down once more, for 1, 2 and 3 dimensions, straight from the text, in long double, with loops
- * over all pairs and images. Slow and plain on purpose; shares types with src, but no code. */
+ * The oracle: a second implementation of the equations of density, smoothing length, force, energy
+ * and time stepping in 1D to 3D, straight from the text, in long double, with loops over all pairs
+ * and images. Deliberately slow and simple; shares types with src, but no code. */
 #pragma once
 
 #include "oracle_kernel.h"

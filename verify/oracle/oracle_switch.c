@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The switch of Cullen & Dehnen 2010 once more: CONVENTIONS eqs. 6.6 and 6.7. */
+ * The oracle's switch of Cullen & Dehnen 2010: CONVENTIONS eqs. 6.6 and 6.7. */
 #include <math.h>
 
 #include "oracle_parts.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Claims that are made about schemes, each measured: two sets of keys on the same case, one figure
- * of either, and which is nearer to the exact value, for several kernels and viscosities. */
+ * Measures claims about schemes: one figure of runs with two sets of keys on the same case, and
+ * which is nearer to the exact value, for several kernels and viscosities. */
 #pragma once
 
 #include <jansson.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The effect of a change: the metrics of two result documents of one command, each judged against
- * its noise. */
+ * Compares two result documents of one command: each metric's change is judged against its noise.
+ */
 #pragma once
 
 #include "metric.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The history of a report: one line of JSON per night with all its headline figures (date, git,
- * mode, processor, verdict, {path: value}), and what it tells: what has changed since last night,
- * and since when each figure has been where it is. */
+ * mode, processor, verdict, {path: value}), the changes since last night, and the night at which
+ * each figure reached its level. */
 #pragma once
 
 #include <jansson.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The pieces of a report that are no studies: runs with their profiles, groups of checks, kernel
- * certificates, the league of gradient operators, what an error costs, what skips save, what an
- * order is lost to; each one job of a pool. */
+ * The pieces of a report that are not studies: runs with their profiles, groups of checks, kernel
+ * certificates, the league of gradient operators, work-precision, savings by skips, autopsies; each
+ * is one job of a pool. */
 #pragma once
 
 #include <jansson.h>

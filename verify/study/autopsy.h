@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a scheme loses its order to, on problems whose exact solution is smooth: the error of the
- * velocity over a ladder of resolutions, taken apart. Three parts are measured on whole runs (the
- * time step, what the measure makes of exact fields) and the others on single evaluations of the
- * acceleration where every particle has the exact velocity and energy, against the exact
- * acceleration -grad P/rho + g: at the regular positions of the start and at the positions that the
- * run itself has come to. Code units. */
+ * Finds why a scheme loses its order, on problems with a smooth exact solution: splits the error of
+ * the velocity over a ladder of resolutions into parts. Two of them are measured on whole runs (the
+ * time step, and the effect of the measure on exact fields) and the others on single evaluations of
+ * the acceleration, where every particle has the exact velocity and energy, against the exact
+ * acceleration -grad P/rho + g: at the regular initial positions and at the positions that the run
+ * itself has reached. Code units. */
 #pragma once
 
 #include <jansson.h>

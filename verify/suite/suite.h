@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Running checks: every check on all its right subjects, and on its mutants where asked. A check
- * that rejects none of its mutants is vacuous: a failure of the harness, reported as a figure. */
+ * Runs checks on all their right subjects and, if requested, on their mutants. A check that rejects
+ * none of its mutants is vacuous: a failure of the harness, reported as a figure. */
 #pragma once
 
 #include <jansson.h>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""bits.py SOURCE FOLDER: every build computes the same bits.
+"""bits.py SOURCE FOLDER: tests that every build computes the same bits.
 
 Builds the program in FOLDER with gcc and with clang (if installed): with loops chosen at run time, and compiled
 entirely for the baseline, AVX2 and AVX-512 (if this processor has them). All builds, each with 1, 2 and 7 threads,

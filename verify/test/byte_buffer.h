@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Memory that a serialiser writes a state to, and restores it from. Include after test.h. */
+ * A buffer in memory that a serialiser writes to and reads from. Include after test.h. */
 #pragma once
 
 #include "serialiser.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Numbers drawn at random, the same in every run. Include after test.h. */
+ * Random numbers, the same in every run. Include after test.h. */
 #pragma once
 
 static uint64_t draw_state = 1;

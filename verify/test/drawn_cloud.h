@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Particles anywhere in a box, and questions to a problem about them, for the tests of gas that
- * falls onto a centre or flies away from it. Include after test.h. */
+ * Random particles in a box, and what a problem measures of them, for tests of collapsing and
+ * expanding gas. Include after test.h. */
 #pragma once
 
 #include "prepared.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Documents drawn at random from a template, and what is made of them told by one number each, so
- * that a list of numbers tells whether any byte of hundreds of pages has changed.
+ * Draws random JSON documents from a template, and reduces what is made of them to hashes, so that
+ * a list of hashes shows whether any byte of hundreds of pages has changed.
  *
  * A template is JSON. "@NAME": the template's member NAME. "#": a number, odd ones often. "#n": an
  * integer from 1 to 12. "#t": text that HTML has to escape. ["|", a, b, ...]: one of them. ["*",

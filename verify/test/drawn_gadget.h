@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Binaries of GADGET with random particles, and what their reader must find. Include after
+ * Writes GADGET binaries with random particles, and tests what their reader finds. Include after
  * test.h. */
 #pragma once
 

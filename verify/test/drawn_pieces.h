@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What the computations of a report came to, drawn from data/drawn/pieces.json: a document each,
- * and one of so many broke down. */
+ * Draws random results for all computations of a report from data/drawn/pieces.json; some of them
+ * break down. */
 #pragma once
 
 #include "drawn_document.h"

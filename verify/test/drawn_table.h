@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Tables of text with random columns, written in every style, and what readers must find in them.
+ * Writes text tables with random columns in every style, and tests what readers find in them.
  * Include after test.h. */
 #pragma once
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a reader says that it assumed. Include after test.h. */
+ * Tests which assumptions a reader notes. Include after test.h. */
 #pragma once
 
 #include "snapshot_file.h"

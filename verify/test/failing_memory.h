@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Calls for memory that fail. The linker's --wrap brings every call for some of the project here
- * first, where the first one fails, then the second one, and so on until all goes well. Include
- * after cmocka.h, in tests of meson.build's list `wraps`. */
+ * Makes allocations fail: the linker's --wrap redirects allocations of parts of the project to this
+ * file. The first one fails, then the second one, and so on until none fails. Include after
+ * cmocka.h, in tests of meson.build's list `wraps`. */
 #pragma once
 
 #include <errno.h>

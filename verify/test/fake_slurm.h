@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Slurm as the engine sees it, in this process: sbatch, squeue and scancel answer what Slurm 22.05
- * answered (recorded on a cluster of two nodes), seconds pass only while somebody sleeps, and every
- * task meets the fate that a test has written for it. Needs the linker's --wrap of child_run,
+ * Simulates Slurm inside this process for tests of the engine: sbatch, squeue and scancel give the
+ * answers of Slurm 22.05 (recorded on a cluster of two nodes), time passes only while the process
+ * sleeps, and a test sets the fate of each task. Needs the linker's --wrap of child_run,
  * clock_wall, isatty and nanosleep. Include after test.h. */
 #pragma once
 

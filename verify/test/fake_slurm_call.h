@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A study, and a call of the engine slurm for it on the cluster of fake_slurm.h. Include after
+ * Calls the engine slurm for a study on the simulated cluster of fake_slurm.h. Include after
  * cmocka.h; needs _GNU_SOURCE. */
 #pragma once
 
 #include <fcntl.h>
 #include <glob.h>
 
-#include "sample_jobs.h"
 #include "fake_slurm.h"
+#include "sample_jobs.h"
 #include "sharing.h"
 
 enum { N = 14, SHARES = 3 };

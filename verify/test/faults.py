@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""faults.py SPHPROOF [PART ...] [--kills N] [--json FILE]: what the world does to the program, and
-what comes of it.
+"""faults.py SPHPROOF [PART ...] [--kills N] [--json FILE]: how the program ends when its
+environment fails.
 
-Each fault: exit status, words of the message, and that nothing is lost: files that were there are
-as they were, files that are new are whole, no temporary stays. Prints a table, and writes it as a
+Tests for each fault the exit status, words of the message, and that nothing is lost: existing files
+are unchanged, new files are complete, no temporary file is left. Prints a table, and writes it as a
 result document. PART: only these (default: all); N (default 0): so many reports are killed at
 random moments as well, which takes some minutes."""
 import argparse

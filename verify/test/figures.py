@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""figures.py PROGRAM SOURCE   documents show the tables of reports/figures/measure, and no other figures
+"""figures.py PROGRAM SOURCE   tests that documents show the tables of reports/figures/measure, and no other figures
 
-On the tree: `measure --text` is content; sentences around the tables have no figures of their own. On a small
-tree, with a program that answers at once: measure prints, renews and checks, and tells each of a list of
-faults. What `measure --check` finds on the tree itself is for the night."""
+On the tree: `measure --text` finds no fault, and sentences around the tables have no figures of their own. On a
+small tree, with a program that answers at once: measure prints, renews and checks, and reports each of a list of
+faults. The nightly run calls `measure --check` on the tree itself."""
 import contextlib
 import importlib.machinery
 import importlib.util

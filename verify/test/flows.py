@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""flows.py SPHPROOF: every case in 2D and 3D at a small size, with its default scheme.
+"""flows.py SPHPROOF: tests every case in 2D and 3D at a small size, with its default scheme.
 
 Each must conserve, and be near the limit of some functionals."""
 from script import expect, json_of, play

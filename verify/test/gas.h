@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * For tests of where particles start. Include after test.h. */
+ * A gas with a jump, for tests of initial states. Include after test.h. */
 #pragma once
 
 #include "keyed.h"

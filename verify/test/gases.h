@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The gases of a tube that was made of keys, solved, for the tests of tubes. Include after
- * test.h.
+ * Solves the Riemann problem of a tube that keys define, for tests of tubes. Include after test.h.
  */
 #pragma once
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""gates.py SPHPROOF: gates on the error alone. The default scheme passes them at small sizes; schemes that are known
+"""gates.py SPHPROOF: tests gates on errors. The default scheme passes them at small sizes; schemes that are known
 to be worse fail the gates that are named here, and no others."""
 import json
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `meson install` leaves, tried as a stranger would.
+"""Tests an installation (`meson install`) as a user would.
 
   installed.py SOURCE BUILD WORK LIBDIR CC...    installs into a folder of WORK, then: the files are those that
                                                  should be there; the library exports what its headers document;

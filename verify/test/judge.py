@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""judge.py SPHPROOF: `sphproof judge` on files written by GIZMO, SWIFT and Phantom, against the results of an
+"""judge.py SPHPROOF: `sphproof judge` on files written by GIZMO, SWIFT and Phantom, compared with the results of an
 independent script (data/snapshots/expected.json); on our own runs, whose errors must be the same; one list of
 findings in all forms of output; and input that must be refused. (Conclusions and assumptions of judge:
 verify/test/judge; layouts, byte orders and damage: verify/test/readers.)"""

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Settings, schemes and runs made of a line of keys, such as "n=100 t_end=0.1 left=1,0,1". What is
- * refused fails the test. Include after test.h. */
+ * Makes settings, schemes and runs from a line of keys, such as "n=100 t_end=0.1 left=1,0,1". A
+ * test fails if they are refused. Include after test.h. */
 #pragma once
 
 #include "run.h"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""kill -9 at random moments of a command that keeps finished computations in a cache: those finished before a kill
-are there after it, and are never computed again.
+"""Kills commands (kill -9) at random moments. Computations that they finished before are in the cache
+afterwards, and are never repeated.
 
 A kill before anything is finished tests nothing. So every second kill waits for one more finished computation than
 before, however slow the machine is, and a command that ends before its kill starts anew with an empty cache."""

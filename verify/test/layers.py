@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Who includes whom, read from the sources.
+"""Tests which files include which, by reading the sources.
 
   layers.py SOURCE            the folders of src, reference, reports and verify, and their files, must include
                               each other without a circle, and a library only the core and those libraries that

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Is a document well-formed? Elements nest and close, attributes are quoted and unique, '&' starts
- * an entity, ids are distinct. For XML and for HTML written as XML. */
+ * Tests whether XML, or HTML written as XML, is well-formed: elements nest and close, attributes
+ * are quoted and unique, '&' starts an entity, ids are unique. */
 #pragma once
 
 #include <ctype.h>

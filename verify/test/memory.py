@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""memory.py SPHPROOF: the memory that `run --explain` estimates for a run, against the memory that it uses, both
+"""memory.py SPHPROOF: compares the memory that `run --explain` estimates for a run with the memory that it uses, both
 beyond those of a tiny run (systems count the memory of libraries differently); runs for which there is not enough
 memory are refused before they begin, with the number."""
 import json

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Comparisons of floating-point numbers for the cmocka tests. Written as !(error <= bound), so that
- * a NaN anywhere fails (cmocka's own float asserts pass NaN == 1). A failure prints value,
- * expected, error and bound. test.h includes this behind cmocka.h; NEAR_FAIL may be defined before
- * (test_near.c does). */
+ * Comparisons of floating-point numbers for cmocka. They are written as !(error <= bound), so that
+ * any NaN fails (cmocka's own float asserts pass NaN == 1). A failure prints value, expected, error
+ * and bound. test.h includes this after cmocka.h; NEAR_FAIL may be defined before (as in
+ * test_near.c). */
 #pragma once
 
 #include <math.h>

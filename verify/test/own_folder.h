@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A folder of a test's own, beside what was built: there before the first test, and gone with all
- * that is in it after the last one. Include after test.h. */
+ * Makes a temporary folder in the current one before the first test, and removes it after the last
+ * one. Include after test.h. */
 #pragma once
 
 #include <unistd.h>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Python module installs with pip from the tree, without network, and finds program and library.
+"""Tests that pip installs the Python module from the tree, without network, and that it finds program and library.
 
   pip_install.py SOURCE PROGRAM LIBRARY WORK
 

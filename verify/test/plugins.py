@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Plug-in kernels with well-hidden faults, and foreign code at its worst: the table examples/hostile.txt has the
-program's answer to each.
+"""Tests plug-in kernels with subtle faults, and plug-ins that crash, hang or write where they must not: the table
+examples/hostile.txt has the program's answer to each.
 
   plugins.py PROGRAM FOLDER TABLE [OPTION ...]   FOLDER: of the plug-ins; OPTIONs for `sphproof kernel`
 

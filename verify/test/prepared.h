@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Problems made of a line of keys, and parts of their descriptors by name, for the tests of
- * problems. Include after test.h. */
+ * Makes problems from a line of keys, and finds parts of their descriptors by name. Include after
+ * test.h. */
 #pragma once
 
 #include "initial.h"

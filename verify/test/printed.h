@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a function prints on standard output, as a text, and how a text is expected where some words
- * of it have a colour. */
+ * Captures what a function prints on standard output, and compares texts some of whose words are
+ * coloured. */
 #pragma once
 
 #include <unistd.h>

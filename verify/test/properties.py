@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""properties.py SPHPROOF COUNT [FIRST]: properties of runs with any valid settings.
+"""properties.py SPHPROOF COUNT [FIRST]: tests properties of runs with random valid settings.
 
 COUNT runs with random settings (draw number FIRST, FIRST + 1, ...; the same ones every time). Each must end well,
 with finite numbers that conserve what the scheme conserves, or break down with exit status 3 and a reason; soon, and

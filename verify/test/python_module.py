@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Python module, against physical laws and the program, not against stored figures.
+"""Compares the Python module with physical laws and with the program, not with stored figures.
 
   python_module.py PROGRAM LIBRARY MODULE_FOLDER
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""rates.py SPHPROOF: `sphproof rates` against rates that independent code computed (data: rates_2d.csv and
+"""rates.py SPHPROOF: compares `sphproof rates` with rates that independent code computed (data: rates_2d.csv and
 rates_3d.csv: one evaluation for rates_*_particles.csv, with h to 1e-14, of which every ninth particle is kept), in
 any order of columns, and in 1D. (Messages of --check: the transcripts and test_rate_check.)"""
 import csv

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""readme.py keys PROGRAM PAGE        a page's table of keys is the program's
-   readme.py scripts PROGRAM SOURCE WORK  the scripts: wrong options and --help answer before
-                                  anything is built, right ones reach the program as they are, those
-                                  of the nightly jobs, too
-   readme.py stories SOURCE WORK  the stories of all pages, and what else they say to type, in a copy of the tree"""
+"""readme.py keys PROGRAM PAGE        tests that a page's table of keys is the program's
+   readme.py scripts PROGRAM SOURCE WORK  tests scripts: they answer wrong options and --help before
+                                  anything is built, and pass right ones unchanged to the program,
+                                  those of the nightly jobs, too
+   readme.py stories SOURCE WORK  runs all commands of all pages in a copy of the tree"""
 import fnmatch
 import json
 import os

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What comments and pages refer to exists.
+"""Tests that everything that comments and pages refer to exists.
 
   references.py SOURCE    in comments of the sources, in scripts and in pages: every equation and section of
                           src/CONVENTIONS.md that is cited, every file (`pair.h`, `src/line/*.c`), every name

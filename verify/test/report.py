@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""report.py SPHPROOF FOLDER: the report as a whole, in FOLDER: killed and resumed; repeated on an unchanged night
+"""report.py SPHPROOF FOLDER: tests the report as a whole, in FOLDER: killed and resumed; repeated on an unchanged night
 without gnuplot; repeated with damaged entries after a better night, whose changes it reports with the same results.
 Its history; its files; the page needs no other file; each plot can be drawn again; kept results are the computed
 ones; and failures of all kinds."""

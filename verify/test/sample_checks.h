@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Checks of nothing but a number, for tests of what runs them: good ones, one that fails, one that
- * misses a mutant, vacuous ones. */
+ * Small checks for tests of the harness: some pass, one fails, one misses a mutant, some are
+ * vacuous. Each measures a given number. */
 #pragma once
 
 #include "suite.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Documents for tests of diff. Include after test.h. */
+ * JSON documents for tests of diff. Include after test.h. */
 #pragma once
 
 #include "diff.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * HDF5 files made from a list of what is in them, in every form in which a code may store it.
+ * Writes HDF5 files from a list of their items, in every form in which a code may store them.
  * Include after cmocka.h and where HAVE_HDF5 is defined. */
 #pragma once
 

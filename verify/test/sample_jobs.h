@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Jobs for tests of the pool and of the cache: each counts that it was computed, and leaves a
- * document that is known; some crash or take long. Include after test.h. */
+ * Jobs for tests of the pool and of the cache: each counts its computations and leaves a known
+ * document; some crash or take long. Include after test.h. */
 #pragma once
 
 #include <ftw.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Gas on a lattice in 2D and 3D and a plain scheme, of which each test changes what it likes before
- * it makes a simulation of it. Include after test.h. */
+ * Gas on a lattice in 2D and 3D with a plain scheme, which tests may change before they make a
+ * simulation. Include after test.h. */
 #pragma once
 
 #include "integrator.h"

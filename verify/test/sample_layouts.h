@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * All that each layout in HDF5 may hold, and what a reader must find there. Include after cmocka.h
- * and where HAVE_HDF5 is defined. */
+ * All items that each HDF5 layout may hold, and what a reader must find. Include after cmocka.h and
+ * where HAVE_HDF5 is defined. */
 #pragma once
 
-#include "sample_hdf5.h"
 #include "expected_note.h"
 #include "own_folder.h"
+#include "sample_hdf5.h"
 #include "snapshot_file.h"
 
 enum { N = 12, ITEMS_MAX = 40 };

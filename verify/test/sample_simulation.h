@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A small simulation on a periodic line, whose particles are all different: for tests of what is
- * done with a simulation, whatever it computes. Include after test.h. */
+ * A small simulation on a periodic line with distinct particles, for tests to which its physics
+ * does not matter. Include after test.h. */
 #pragma once
 
 #include "keyed.h"

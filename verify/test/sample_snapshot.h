@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Snapshots as text with values that a test plants, and what judge says of them. Include after
- * test.h. */
+ * Writes text snapshots with values that a test sets, and judges them. Include after test.h. */
 #pragma once
 
 #include "judge.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Studies whose runs are documents that are made here, of errors and functionals that fall with the
- * spacing by known orders: nothing is computed. A test may change them before they are judged.
- * Include after test.h. */
+ * Studies of made-up runs, whose errors and functionals fall with the spacing by known orders. A
+ * test may change them before they are judged. Include after test.h. */
 #pragma once
 
 #include "problem_list.h"

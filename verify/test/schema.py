@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""schema.py SPHPROOF SCHEMA: result documents against the committed JSON Schema.
+"""schema.py SPHPROOF SCHEMA: tests result documents against the committed JSON Schema.
 
 A validator of the part of JSON Schema (2020-12) that the schema uses; a word that it does not know
-is an error, so that nothing in the schema goes unchecked. For `diff`, too, each is of a known kind: it differs in nothing
-from itself as another tool writes it."""
+is an error, so that nothing in the schema goes unchecked. `diff`, too, must know each kind of document: it finds no
+difference between a document and the same one as another tool writes it."""
 import json
 import os
 import re

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""verify/mutants/score on a tree of one page, where it is known what a test notices.
+"""Tests verify/mutants/score on a tree of one page, whose mutants that survive are known.
 
   score.py SCORE WORK
 

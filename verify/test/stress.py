@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stress.py SPHPROOF [GROUP ...]: results of the stress test of these groups (or of round-off, blasts, and random
+"""stress.py SPHPROOF [GROUP ...]: tests results of the stress test of these groups (or of round-off, blasts, and random
 tubes).
 
 Every cell has an outcome, and a reason unless it is ok; the default scheme survives everything that the seed

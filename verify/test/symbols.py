@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whose is an exported name? It says so itself.
+"""Tests that exported names begin with the name of their file or folder.
 
   symbols.py SOURCE NM CC LIBRARY...    every symbol that a static library exports begins with the first word
                                         of its source file's name (cases.c: case_load, cases_of), or with the
                                         name of the file's folder (problem/riemann.c: problem_riemann)
 
-Who calls whom? No files may take names from each other in a circle: of two that do, one holds a piece that
+Files of a library must not use names of each other in a circle: of two that do, one holds a piece that
 belongs below both.
 
 Static functions that are compiled for several instruction sets (CLONES) have different names throughout the

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What every test in C includes first: cmocka, with what it asks for, the standard library's usual
- * headers, comparisons of numbers, and TEST. A file of tests needs neither a list of them nor
- * main. */
+ * The first header of every test in C: cmocka and what it needs, usual headers of the standard
+ * library, comparisons of numbers, and TEST, which makes lists of tests and main superfluous. */
 #pragma once
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The macros of near.h: what they must accept and, above all, what they must refuse. */
+ * Tests which numbers the macros of near.h accept and, above all, which they refuse. */
 #include <stdbool.h>
 
 static int refused;

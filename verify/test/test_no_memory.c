@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What is said where there is no memory: places of particles, checks, jobs. */
+ * Tests initial states, files, checks and pools of which one allocation fails. */
 #include "test.h"
 
 #include <gsl/gsl_qrng.h>
@@ -8,11 +8,11 @@
 
 #include "cases.h"
 #include "checkpoint.h"
+#include "failing_memory.h"
 #include "findings.h"
 #include "gas.h"
 #include "initial.h"
 #include "line/line.h"
-#include "failing_memory.h"
 #include "map.h"
 #include "particle_file.h"
 #include "pool.h"

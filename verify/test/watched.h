@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Memory that is watched: the linker's --wrap brings every call of the project here (meson.build).
- * New memory is filled with NaN, and memory is overwritten before it is freed. Both ends of every
- * block are fenced; a fence that was overwritten is counted when the block is freed. Calls can be
- * refused, and are counted. For one test file; memory that a library has allocated must not be
- * freed here. */
+ * An allocator that finds faults: the linker's --wrap redirects all allocations of the project to
+ * it (meson.build). It fills new memory with NaN, overwrites memory before freeing it, fences both
+ * ends of every block, and counts damaged fences when blocks are freed. It counts calls and can
+ * refuse them. For one test file; memory that a library has allocated must not be freed here. */
 #pragma once
 
 #include <stdatomic.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The benchmark's own arithmetic on made-up data (but the first, no test looks at a real clock),
- * and its plain C baseline against the solver. */
+ * Tests the arithmetic of `bench` on made-up data and clocks (only the first test reads a real
+ * clock), and compares its baseline in plain C with the solver. */
 #include "test.h"
 
 #include <gsl/gsl_rng.h>

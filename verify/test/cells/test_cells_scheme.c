@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a scheme's numbers do in 2D and 3D: beta where there is no alpha. */
+ * Tests the viscosity's beta in 2D and 3D, also for schemes without alpha. */
 #include "test.h"
 
 #include "sample_lattice.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What stands between a simulation and its sums in 2D and 3D: how far a root is searched, states
- * that come back, what cannot be searched, said as a refusal or a breakdown; room, in bytes, by the
- * scheme. */
+ * Tests the workspace of the sums in 2D and 3D: the search for roots, saved and restored states,
+ * the messages about widths and positions for which neighbours cannot be found, and the memory that
+ * each scheme needs. */
 #include "test.h"
 
 #include "byte_buffer.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Neighbour lists of the grid against all pairs, on setups drawn at random: dimension, number,
- * boundaries, radii from equal to very different, clumps and points in one place. */
+ * Compares the grid's neighbour lists with a search over all pairs, on random setups: any
+ * dimension, number and boundary, equal and very different radii, clumps, coincident points. */
 #include "test.h"
 
 #include <gsl/gsl_rng.h>

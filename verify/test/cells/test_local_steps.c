@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * steps=local: what each particle's own step must not change (momentum, total energy, the order in
- * time, the bits for any number of threads and after a resume), the steps of global where all
- * particles are on one level, and that neighbours are never further apart than two levels. */
+ * Tests steps=local: momentum and total energy are conserved, the order in time is 2, and bits
+ * depend neither on threads nor on a resume. If all particles are on one level, steps are those of
+ * steps=global. Neighbours are at most two levels apart. */
 #include "test.h"
 
-#include "keyed.h"
 #include "byte_buffer.h"
+#include "keyed.h"
 #include "sample_lattice.h"
 #include "sample_simulation.h"
 #include "solver.h"

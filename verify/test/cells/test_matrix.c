@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Inverses and condition numbers of small matrices against quadruple precision and against matrices
- * whose singular values are known; the weights of their moments. */
+ * Compares inverses and condition numbers of small matrices with quadruple precision and with
+ * matrices whose singular values are known, and tests the weights of moment matrices. */
 #include "test.h"
 
 #include <float.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What the neighbour search of clouds refuses, word for word. */
+ * Tests the messages with which the neighbour search refuses a cloud. */
 #include "test.h"
 
 #include "draw.h"

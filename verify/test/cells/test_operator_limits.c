@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Gradient operators at the limits of numbers: clouds in any units, one quantity extreme and the
- * others not, what leaves the range of double, and what is refused word for word. */
+ * Tests gradient operators at the limits of double precision: clouds in extreme units, one extreme
+ * quantity, results that overflow, and the messages about clouds that are refused. */
 #include "test.h"
 
 #include <float.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What stands in the records of the passes over pairs. What pairs exchange is compared with the
- * oracle by the checks `clouds rates` and `clouds hostile`. */
+ * Tests the layout of the records that passes over pairs read. The checks `clouds rates` and
+ * `clouds hostile` compare the sums over pairs with the oracle. */
 #include "test.h"
 
 #include "draw.h"

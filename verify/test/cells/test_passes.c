@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The pass over a small cloud that makes matrices, at the limit of what is allowed. */
+ * Tests the pass that inverts matrices, at the largest condition number that is allowed. */
 #include "test.h"
 
 #include "draw.h"

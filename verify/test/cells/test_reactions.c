@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Half loops over pairs against full ones, on scenes drawn at random that are several chunks large:
- * boxes of any shape, boundaries, widths, schemes, particles that sleep. */
+ * Compares loops that visit each pair once with loops that visit it from both sides, on random
+ * setups of several chunks: boxes of any shape, boundaries, widths, schemes, inactive particles. */
 #include "test.h"
 
 #include "draw.h"

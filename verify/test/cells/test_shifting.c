@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * shifting=fluxes and closed in 2D and 3D: what particles exchange is opposite pair by pair, so
- * that mass, momentum and total energy stay to round-off; what it must leave alone; that it spreads
- * particles; that a run goes on to the last bit; what it is refused with. The rates themselves are
- * compared with the oracle's by the check clouds/rates. */
+ * Tests shifting=fluxes and closed in 2D and 3D: mass, momentum and total energy are conserved to
+ * round-off, uniform fields stay uniform, particles spread, a restored run continues to the last
+ * bit, and schemes that exclude shifting are refused. The check clouds/rates compares the rates
+ * with the oracle's. */
 #include "test.h"
 
+#include "byte_buffer.h"
 #include "draw.h"
 #include "keyed.h"
-#include "byte_buffer.h"
 #include "sample_lattice.h"
 #include "sample_simulation.h"
 #include "solver.h"

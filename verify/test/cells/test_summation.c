@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Widths of clouds: where the search for a root begins and how far it goes, step by step. With
- * coarse tolerances the answer depends on both, so that each is told by its last digits. What has
- * no width is refused word for word. */
+ * Compares smoothing lengths of clouds with a second implementation of the search for their roots,
+ * to the last digits: with coarse tolerances the result depends on where the search starts and how
+ * its reach grows. Also tests the messages about clouds without a root. */
 #include "test.h"
 
 #include <float.h>

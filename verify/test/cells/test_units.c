@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Which numbers need other units, which units those are, and copies in them; loops of kernels by
- * the kernel they were made for. */
+ * Tests which arrays are copied into other units before sums over clouds, into which units, and the
+ * copies; and that kernel loops are only used for the kernel that they are made for. */
 #include "test.h"
 
 #include "shapes.h"

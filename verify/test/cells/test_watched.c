@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The searches and sums on clouds with memory that is watched: nothing is read before it was
- * written, no end overrun, all given back, and whatever call finds no memory, that is what is said.
- */
+ * Runs searches and sums on clouds with the checked allocator of watched.h: nothing is read before
+ * it is written, nothing is written beyond an array, everything is freed, and each allocation that
+ * fails gives the status and message of missing memory. */
 #include "test.h"
 
 #include "draw.h"

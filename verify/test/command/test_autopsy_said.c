@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof autopsy: what is printed of planted figures, and ladders that are refused. (Whole calls:
- * the transcripts.) */
+ * Tests what `sphproof autopsy` prints of given figures, and which ladders it refuses. (The
+ * transcripts test whole calls.) */
 #include "test.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof calibrate: the table of planted gates and faults, and options that are refused. (Whole
- * calls: the transcripts and other_codes.py.) */
+ * Tests the table that `sphproof calibrate` prints of given gates and faults, and the options that
+ * it refuses. (The transcripts and other_codes.py test whole calls.) */
 #include "test.h"
 
 #include <math.h>

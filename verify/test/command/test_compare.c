@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof compare: what is said of planted errors and times, which runs are drawn, and what may be
- * compared at all. (Whole calls, snapshots and pages: the transcripts.) */
+ * Tests `sphproof compare`: what it prints of given errors and times, which runs it draws, and
+ * which sides it refuses to compare. (The transcripts test whole calls, snapshots and pages.) */
 #include "test.h"
 
 #include <math.h>

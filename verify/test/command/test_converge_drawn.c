@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What sphproof converge prints of studies whose figures and verdicts are drawn at random: what it
- * was, byte for byte: data/drawn/converge.txt; kept by verify/test/keep. */
+ * Compares what `sphproof converge` prints of studies with random figures and verdicts with
+ * data/drawn/converge.txt, byte for byte. verify/test/keep renews that file. */
 #include "test.h"
 
 #include <math.h>
 
 #include "drawn_document.h"
-#include "sample_study.h"
 #include "printed.h"
+#include "sample_study.h"
 /* the command itself, because its static functions are tested */
 #include "../../command/converge.c"
 

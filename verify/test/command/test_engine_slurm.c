@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The engine slurm on a made-up cluster (fake_slurm.h): what it submits, and what becomes of a
- * study when its tasks end in every possible way. */
+ * Tests what the engine slurm submits and how it handles tasks that end badly, on the simulated
+ * cluster of fake_slurm.h. (test_engine_slurm_calls.c: interrupts and repeated calls.) */
 #define _GNU_SOURCE /* nftw */
 #include "test.h"
 

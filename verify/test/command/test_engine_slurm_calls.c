@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The engine slurm on a cluster that is made up (fake_slurm.h): a controller that does not answer,
- * interrupts, several calls for one study, what is left behind. */
+ * Tests the engine slurm on the simulated cluster of fake_slurm.h: a controller that does not
+ * answer, interrupts, several calls for one study, and the files left behind. */
 #define _GNU_SOURCE /* nftw */
 #include "test.h"
 

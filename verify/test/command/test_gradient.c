@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof gradient on files: points without a gradient, and clouds that are none. (Options, and
- * what it finds: the transcripts; files that are no tables: test_csv.) Argument: a folder to write
- * to. */
+ * Tests `sphproof gradient` on files: points without a gradient, and files that are refused. (The
+ * transcripts test options and results, test_csv.c files that are no tables.) Argument: a folder to
+ * write to. */
 #include "test.h"
 
 #include <jansson.h>

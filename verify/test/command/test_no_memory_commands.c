@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Commands whose allocations fail, one after the other: such a command ends with exit status 4 and
- * says "no memory", or it does without that memory and prints the same as ever, or "nan" for a
- * figure, or a check that fails for want of memory. It never crashes, prints less, or calls its
- * input bad. Argument, optional: how many of the allocations of each
- * command fail. */
+ * Runs commands in which one allocation after the other fails. Each ends with exit status 4 and "no
+ * memory", or does without that memory: then it prints the same as ever, except for "nan" in place
+ * of figures or a check that fails for want of memory. It never crashes, prints less, or calls its
+ * input bad. Argument, optional: how many allocations of each command fail. */
 #include "test.h"
 
 #include <ctype.h>

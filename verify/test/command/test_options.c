@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Options that several commands share: every kernel by its name, and what is none. */
+ * Tests options that several commands share: kernels by name, and names that are refused. */
 #include "test.h"
 
 #include <string.h>

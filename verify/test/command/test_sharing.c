@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Shares of a computation: the result of a share for every outcome of its computations, in whatever
- * order shares are computed and joined; the final plain call, which computes what is missing; and
- * every wrong option. */
+ * Tests `--shard`, `--list`, `--cache` and `--engine`: the exit status of a share for each outcome
+ * of its computations, shares computed and joined in any order, the final plain call, which
+ * computes what is missing, and wrong options. */
 #define _GNU_SOURCE /* nftw */
 #include "test.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What commands print and write, and how they end, is what data/transcripts says: word for word,
- * numbers to seven digits; round-off counts as 0, and what depends on the build and the machine is
- * left out. Arguments: the folder, and names of transcripts.
+ * Compares what commands print and write, and their exit statuses, with data/transcripts: word for
+ * word, and numbers to seven digits. Round-off counts as 0, and what depends on the build or the
+ * machine is left out. Arguments: the folder, and names of transcripts.
  *
  * A transcript: "$ WORDS" runs a command, its output follows, and "exit N" unless N is 0; of a long
  * output the number of its lines and a digest. "< FILE" writes what follows up to a line "." into

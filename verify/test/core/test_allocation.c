@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * No memory is asked for or given back while a simulation steps. The linker's --wrap brings every
- * such call of the project, and every simulation_run, here first: calls inside of it are counted.
- */
+ * Tests that no memory is allocated or freed while a simulation steps. The linker's --wrap
+ * redirects all such calls of the project, and simulation_run, to this file, which counts those
+ * inside of simulation_run. */
 #include "test.h"
 
 #include <stdatomic.h>

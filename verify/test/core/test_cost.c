@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a run says that it has done, on lattices whose neighbours can be counted on paper. */
+ * Compares the counts of pairs and updates of a run with counts by hand, on lattices. */
 #include "test.h"
 
 #include "keyed.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What is said of matrices: the sums over particles, of matrices that are those of the state; in
- * words and in a document, where there are some and where none. */
+ * Tests the summary of matrices after a run: sums over particles, matrices that belong to the final
+ * state, and the text and JSON, with and without matrices. */
 #include "test.h"
 
 #include "run_output.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * An evaluation with sums that are known: gravity, and the limit of the time step. */
+ * Tests one evaluation of the rates with given sums: gravity, and the limit of the time step. */
 #include "test.h"
 
 #include "draw.h"

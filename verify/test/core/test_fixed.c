@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Layers of particles that are kept, in a simulation that nobody steps and whose particles are in
- * another order than the setup's. */
+ * Tests fixed layers of particles at the ends of a box, in a simulation that makes no steps and
+ * whose particles are in another order than the setup's. */
 #include "test.h"
 
 #include "fixed.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Descriptors of integrators are true: exactly those that say so write to the arrays that keep the
- * start of a step, and every scheme writes to the arrays that an estimate of memory counts for it.
- * None writes beyond the particles. A particle that is left without internal energy is named. */
+ * Tests the descriptors of integrators: exactly those that declare it write to the arrays of a
+ * step's start, and each scheme writes to exactly the arrays that the estimate of memory counts,
+ * never beyond the particles. A particle that loses its internal energy is named. */
 #include "test.h"
 
 #include "hydro_setup.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Kernels by name; what their descriptors say; the sinc family; plug-ins. Their shapes: the group
- * `kernels` of checks. */
+ * Tests kernels by name, their descriptors, the sinc family and plug-ins. (The checks `kernels`
+ * test their shapes.) */
 #include "test.h"
 
 #include <float.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a plan says before a run: it lists every pass once, runs those that the scheme needs, gives
- * reasons that are true of the scheme, and warns where it should. */
+ * Tests the plan of a run: it lists each pass once, runs those that the scheme needs, gives reasons
+ * that are true of the scheme, and warns where it should. */
 #include "test.h"
 
 #include "integrator.h"

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Runs in 1D, 2D and 3D against each other: what must be the same for any number of threads, in a
- * walled box and in the periodic one that its mirror image completes, in an open box and in one
- * that is much too wide, with and without a constant acceleration; and fixed layers stay. Gases and
- * schemes are drawn at random. */
+ * Compares random runs in 1D, 2D and 3D with each other: with different numbers of threads, in a
+ * walled box and in the periodic box that its mirror image completes, in an open box and in one
+ * that is much too wide, with and without gravity. Fixed layers must stay. */
 #include "test.h"
 
 #include "draw.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What surrounds the steps of a simulation: which setups it takes, the state it begins with, sums
- * over its particles, the length of a step, and how a breakdown is told. */
+ * Tests a simulation apart from its integrator: which setups it accepts, its initial state, sums
+ * over its particles, the length of a step, and the message of a breakdown. */
 #include "test.h"
 
 #include "draw.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The sort of positions: right, stable, and n log n in comparisons whatever the order given; so is
- * the start of a simulation, whose particles may come in any order. */
+ * Tests the sort of positions: it is stable and takes n log n comparisons for any initial order. A
+ * simulation starts from particles in any order. */
 #include "test.h"
 
 #include "hydro_setup.h"

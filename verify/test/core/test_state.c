@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The equation of state and what goes with it, particle by particle, against CONVENTIONS in
- * extended precision, on sums that are drawn; what lies beside a range stays. */
+ * Compares the equation of state and the update of widths, particle by particle and for random
+ * sums, with CONVENTIONS in extended precision. Nothing outside of the given range is written. */
 #include "test.h"
 
 #include "draw.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Texts that are made fit to print: every character of Unicode in UTF-8, every pair of bytes, and
- * what no character is. */
+ * Tests how texts are made printable: every character of Unicode in UTF-8, every pair of bytes, and
+ * invalid UTF-8. */
 #include "test.h"
 
 #include <stdbool.h>

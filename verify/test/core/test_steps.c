@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a simulation does around its steps, with an integrator and sums that do nothing, so that
- * every number is known: what is called, when a run stops or has broken down, what its clocks show
- * and what is kept and restored. */
+ * Tests the loop over time steps with an integrator and sums that do nothing, so that every number
+ * is known: what it calls, when a run stops or breaks down, what its clocks show, and what is saved
+ * and restored. */
 #include "test.h"
 
 #include <time.h>
 
-#include "line/line.h"
 #include "byte_buffer.h"
+#include "line/line.h"
 #include "sample_simulation.h"
 #include "solver.h"
 

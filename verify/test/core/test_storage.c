@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The arrays of particles do not overlap, ghosts included, for any numbers. Values stay when the
- * arrays grow, are serialised and read back with their ghosts, and follow a new order of the
- * particles. Large pages are asked for where arrays are as long as one, and only there. */
+ * Tests the arrays of particles: they never overlap, ghosts included, and values stay when arrays
+ * grow, are saved and restored, or follow a new order of the particles. Large pages are requested
+ * exactly for arrays that are at least as long as one. */
 #include "test.h"
 
 #include <unistd.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The choice of how many threads work, on made-up clocks: it is as fast as the better choice
- * whenever other programs start and end. */
+ * Tests the choice of the number of threads, on simulated clocks: it is as fast as the better
+ * choice, whenever other programs start and end. */
 #include "test.h"
 
 #include "team.h"

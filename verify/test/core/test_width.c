@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Newton's method for smoothing lengths, one step at a time, against CONVENTIONS eqs. 3.4, 3.10 and
- * 3.11 in extended precision. */
+ * Compares single steps of Newton's method for smoothing lengths with CONVENTIONS eqs. 3.4, 3.10
+ * and 3.11 in extended precision. */
 #include "test.h"
 
 #include "draw.h"

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What is judged as what: the case, its keys, box, window and ends, as the file or the user says
- * them; and what is refused. */
+ * Tests how `judge` finds the case, its keys, the box, the window and the ends of a tube, from the
+ * snapshot or from options, and which requests it refuses. */
 #include "test.h"
 
-#include "sample_snapshot.h"
 #include "near.h"
 #include "riemann.h"
+#include "sample_snapshot.h"
 
 #define TIMED "# time = 0.1\n# box = 2\n"
 #define KEYED "# keys = left=1 0 1; right=0.9 0 0.9\n" TIMED

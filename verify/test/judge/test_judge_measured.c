@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Snapshots of drawn gas, judged: the gas that is compared is that of the file, in order and in the
- * box, and how far it is from the solution is what a plain calculation says. */
+ * Judges random snapshots and compares the results with a plain calculation: the gas is that of the
+ * file, in order and inside the box, and so is its distance from the solution. */
 #include "test.h"
 
 #include "judge_autopsy.h"
-#include "sample_snapshot.h"
 #include "near.h"
+#include "sample_snapshot.h"
 
 static const struct {
     const char *name;

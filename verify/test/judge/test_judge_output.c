@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The document of judged snapshots says what was found, of each of them and of all. */
+ * Tests the JSON document of judged snapshots: one by one, and their orders and gates. */
 #include "test.h"
 
-#include "sample_snapshot.h"
 #include "near.h"
+#include "sample_snapshot.h"
 
 /* Uniform gas in 2D with this error of its density, at this time and with this much more mass. */
 static void judged_of(double rho, double time, double mass, struct judged *judged)

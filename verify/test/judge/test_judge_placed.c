@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Gamma and time, the place of the case in the box of a snapshot, columns that it lacks, and what
- * is asked for in vain. */
+ * Tests how `judge` finds gamma, the time and the position of the case in a snapshot's box, how it
+ * completes missing columns, and which options it refuses because they would have no effect. */
 #include "test.h"
 
-#include "sample_snapshot.h"
 #include "near.h"
+#include "sample_snapshot.h"
 
 /* ---- gamma, time ---- */
 

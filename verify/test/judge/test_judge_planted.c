@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A snapshot judged, with values planted whose answer is known: noise, sums, and what is far from
- * the solution. */
+ * Tests `judge` on snapshots with planted values: noise, conserved sums, wrong initial states, and
+ * limits beyond which a snapshot is far from the solution. */
 #include "test.h"
 
-#include "sample_snapshot.h"
 #include "near.h"
+#include "sample_snapshot.h"
 
 /* ---- noise ---- */
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What several judged snapshots say together, on results that are made here: in whatever order they
- * are given, the same ones are gated, compared and fitted, and what comes out is known. */
+ * Tests the gates, conservation and orders of several judged snapshots, on made-up results: they do
+ * not depend on the order in which the snapshots are given. */
 #include "test.h"
 
 #include <string.h>

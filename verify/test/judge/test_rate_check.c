@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * One evaluation in the order of the setup, and rates of others against it: what is said of the
- * differences, by how much, and what each of them comes from. */
+ * Tests `rates`: one evaluation in the order of the setup, and the comparison with another code's
+ * rates, which reports differences and their likely causes. */
 #include "test.h"
 
 #include <math.h>

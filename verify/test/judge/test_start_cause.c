@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Planted particles of which something is wrong: how many they are, where they stand and what their
- * values are, in words. (Whole snapshots: the transcripts.) */
+ * Tests the sentences with which `judge` describes wrong particles: their number, positions and
+ * values. The faults are planted here. (The transcripts test whole snapshots.) */
 #include "test.h"
 
 #include <math.h>

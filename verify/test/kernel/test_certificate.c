@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Certificates against what is known of the kernels: exact second moments, sign and size of the
- * transform (from an independent computation with exact rational arithmetic), class, onset of
- * pairing (Dehnen & Aly 2012 and relaxation runs). */
+ * Compares certificates of kernels with known results: exact second moments, sign and size of the
+ * Fourier transform (computed independently in exact rational arithmetic), class, and onset of
+ * pairing (Dehnen & Aly 2012, and relaxation runs). */
 #include "test.h"
 
 #include "certificate.h"

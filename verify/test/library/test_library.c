@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The public library through its own headers: right kernels, gradients and settings pass, wrong
- * ones are refused with a message that names the fault. */
+ * Tests the public library through its own headers: right kernels, gradients and settings pass, and
+ * wrong ones are refused with a message that names the fault. */
 #include "test.h"
 
 #include <math.h>

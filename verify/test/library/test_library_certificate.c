@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The library's certificate of a kernel, with planted figures, and all shapes that are refused for
- * their knots, constants, values or dimensions. */
+ * Tests the library's certificate of a kernel with planted figures, and the messages about kernels
+ * with wrong knots, constants, values or dimensions. */
 #include "test.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The library on drawn input: every number that it hands over, in its place and nowhere else, is
- * what a plain calculation or the solution itself says; and every refusal. The operator whose
- * gradients are checked is none, but each figure of it is known. */
+ * Compares every number that the library returns for random input with a plain calculation or the
+ * exact solution, and tests every refusal. In place of a gradient operator it checks a function
+ * with known results. */
 #include "test.h"
 
 #include <math.h>

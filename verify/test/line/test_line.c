@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What stands around the sums in 1D, on setups drawn at random: order, images at the ends, reach,
- * who sleeps, each against a plain count over all particles. */
+ * Tests what surrounds the sums in 1D (order, images at the ends, reach, inactive particles)
+ * against plain searches over all particles, on random setups. */
 #include "test.h"
 
 #include <float.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Which loops of 1D plan and scheme choose. The sums themselves are compared by the checks
- * hydro/rates and hydro/specialised. */
+ * Tests which loops in 1D a plan and a scheme select. The checks hydro/rates and hydro/specialised
+ * compare the sums themselves. */
 #include "test.h"
 
 #include "line/loops.h"

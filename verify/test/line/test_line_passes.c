@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Passes over the ranges of a line: every range once, by as many threads as there are, and what
- * they find; widths that have a root or none; how room is made. */
+ * Tests the passes over ranges of a line: each range is computed once with any number of threads,
+ * widths with and without a root, ghosts, and the capacity of arrays. */
 #include "test.h"
 
 #include <stdatomic.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The examples of plug-in kernels (examples/): right ones are accepted in all dimensions, subtle
- * faults are rejected by the property that ought to, unusable ones are refused with a message. The
- * program's exit status follows. */
+ * Certifies the plug-in kernels of examples/: right ones are accepted in all dimensions, subtle
+ * faults are rejected by the property that they violate, and unusable ones are refused with a
+ * message. The program's exit status follows. */
 #include "test.h"
 
 #include <sys/wait.h>

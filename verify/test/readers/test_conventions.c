@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What kernel and h of a snapshot are, where its densities have been summed here: with every kernel
- * and both sums, in all dimensions, periodic or not; and what is no proof. */
+ * Tests how readers find a snapshot's kernel and the meaning of its h from its densities: for every
+ * kernel and both sums, in 1D to 3D, periodic or not, and where densities do not suffice. */
 #include "test.h"
 
 #include <math.h>
@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "conventions.h"
-#include "own_folder.h"
 #include "near.h"
+#include "own_folder.h"
 #include "snapshot_csv.h"
 
 enum { MOST = 10000 };

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Every layout in HDF5 is refused with "no memory" at each allocation that fails, with masses in a
- * column and in the header. */
+ * Tests that each HDF5 layout is refused with "no memory" at each allocation that fails, with
+ * masses in a column and in the header. */
 #include "test.h"
 
 #ifdef HAVE_HDF5
-#include "sample_layouts.h"
 #include "failing_memory.h"
+#include "sample_layouts.h"
 #include "snapshot_file.h"
 
 static enum status read_file(struct error *error)

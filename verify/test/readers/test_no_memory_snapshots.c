@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What is said where there is no memory: for snapshots of any format, for judging them, and by the
- * library. The argument is the folder of the fuzzers' examples. */
+ * Tests snapshots of any format, `judge` and the library in which one allocation after the other
+ * fails: each reports "no memory". The argument is the folder of the fuzzers' examples. */
 #include "test.h"
 
 #include "failing_memory.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Binaries of GADGET, made with random particles of all types in every form: formats 1 and 2, both
- * byte orders, words of 4 and 8 bytes, masses in the header or in a block, blocks left out. What is
- * planted must be read; what is spoilt must be refused. */
+ * Reads GADGET binaries with random particles of all types, written in every form: formats 1 and 2,
+ * both byte orders, words of 4 and 8 bytes, masses in the header or in a block, missing blocks.
+ * Every written value must be read, and damaged files must be refused. */
 #include "test.h"
 
 #include "drawn_gadget.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Readers of HDF5: each layout is written from a list of all that it may hold. Then each item of
- * the list in turn is left out, is stored in every other form, which must change nothing, and is
- * damaged in every way, which must be refused or read as absent. */
+ * Tests the readers of HDF5. Each layout is written from a list of all items that it may hold. Then
+ * each item in turn is left out, stored in every other form (which must change nothing) or damaged
+ * in every way (which must be refused or read as absent). */
 #include "test.h"
 
 #ifdef HAVE_HDF5

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Headers in HDF5: other names, boxes, dimensions, precision, comoving units, and files that no
- * reader knows. */
+ * Tests headers of HDF5 snapshots: alternative names, boxes, dimensions, precision, comoving units,
+ * and files that no reader knows. */
 #include "test.h"
 
 #ifdef HAVE_HDF5

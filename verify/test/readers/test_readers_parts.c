@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Snapshots in several files: joined in the order of their numbers, whatever lies where, and not
- * joined where their headers differ. */
+ * Tests snapshots in several files: parts are joined in the order of their numbers, wherever they
+ * are, and refused if their headers differ. */
 #include "test.h"
 
 #ifdef HAVE_HDF5

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Phantom's own dumps, made in every form: both byte orders, default numbers of 4 and 8 bytes,
- * arrays of any kind of real in any order, types that sleep, dead particles, sinks. What is planted
- * must be read; what is left out or spoilt must be refused. */
+ * Reads Phantom dumps written in every form: both byte orders, default numbers of 4 and 8 bytes,
+ * arrays of any kind of real in any order, other particle types, dead particles, sinks. Every
+ * written value must be read; files with missing or damaged items must be refused. */
 #include "test.h"
 
 #include <float.h>

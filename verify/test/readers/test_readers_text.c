@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Tables of text in every style: what is planted must be read, to the last bit. */
+ * Tests that text tables in every style are read to the last bit. */
 #include "test.h"
 
 #include "drawn_table.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Tables of text that are spoilt at one place, which the message names, columns that the user
- * names, rightly and wrongly, and legacy files of VTK that are refused. */
+ * Tests the messages about text tables with one fault, which name its position, about wrong
+ * mappings of columns, and about legacy VTK files that are refused. */
 #include "test.h"
 
 #include <fcntl.h>

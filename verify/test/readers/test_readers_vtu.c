@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * XML of VTK: documents drawn in every form that the format has (numbers as text, in base64, raw
- * and appended; both byte orders and sizes of sizes) are read to the bit, and a document that is
- * wrong at one place is refused with what was found there and what is allowed. */
+ * Reads VTK XML documents in every form of the format (numbers as text, base64, raw and appended;
+ * both byte orders and sizes of sizes) to the bit. A document with one fault must be refused with a
+ * message that says what was found and what is allowed. */
 #include "test.h"
 
 #include "drawn_table.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The mode of a layer that grows fastest: its units, and when there is none. Its equations, ends
- * and rate of growth: the check `exact layer_modes`. */
+ * Tests the fastest growing mode of a layer: its units, and layers without a growing mode. (The
+ * check `exact layer_modes` tests its equations, ends and growth rate.) */
 #include "test.h"
 
 #include <complex.h>

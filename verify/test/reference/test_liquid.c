@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Series for flows between plates against other sums and against differences in space and time;
- * waves on a liquid against the equations that they solve. */
+ * Compares series for flows between plates with other sums and with finite differences, and waves
+ * on a liquid with the equations that they solve. */
 #include "test.h"
 
 #include "draw.h"

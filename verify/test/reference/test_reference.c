@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Exact solutions at single places, on their boundaries and at their limits: vortices, the spinning
- * disc, Noh's collision, Sedov's blast, the layers of McNally, Lyra & Passy, and the base states of
- * layers. Their equations: the group `exact` of checks. */
+ * Tests exact solutions at single positions, on their boundaries and at their limits: vortices, the
+ * spinning disc, Noh's collision, Sedov's blast, the layers of McNally, Lyra & Passy, and base
+ * states of layers. (The checks `exact` test their equations.) */
 #include "test.h"
 
 #include <float.h>

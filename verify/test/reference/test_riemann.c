@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The exact Riemann solver on any input at all, at single points and at its limits. A table of star
- * states and its laws on random problems: the group `riemann` of checks. */
+ * Tests the exact Riemann solver on arbitrary input, at single points and at its limits. (The
+ * checks `riemann` test a table of star states, and its laws on random problems.) */
 #include "test.h"
 
 #include <float.h>

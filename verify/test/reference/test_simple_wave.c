@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The simple wave at its limits: when it breaks, input that has no wave, numbers beyond the range
- * of double. Its start and its equations: the check `exact simple_wave`. */
+ * Tests the simple wave at its limits: when it breaks, refused input, numbers beyond the range of
+ * double. (The check `exact simple_wave` tests its start and its equations.) */
 #include "test.h"
 
 #include <float.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Which settings make two runs two problems, absent, odd or unlike, on either side. */
+ * Tests which settings must agree before `diff` compares two runs. */
 #include "test.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Result documents drawn from data/drawn/figures.json: their figures, what diff and history say of
- * two or many of them, and where series of figures move, are what they were, byte for byte:
- * data/drawn/diffs.txt; kept by verify/test/keep. */
+ * Compares what diff and history print of random result documents, drawn from
+ * data/drawn/figures.json, and where series of figures change, with data/drawn/diffs.txt, byte for
+ * byte. verify/test/keep renews that file. */
 #include "test.h"
 
 #include <math.h>
@@ -12,8 +12,8 @@
 
 #include "buffer.h"
 #include "diff.h"
-#include "history.h"
 #include "drawn_document.h"
+#include "history.h"
 #include "own_folder.h"
 #include "report_piece.h"
 

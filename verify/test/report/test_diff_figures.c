@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a diff says of figures of every kind, both ways round. (Wholes and their parts, and in which
- * order all is told: test_diff_drawn.) */
+ * Tests the verdict of diff on figures of every kind, in both directions. (test_diff_drawn.c tests
+ * totals and parts, and the order of figures.) */
 #include "test.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Histories of a report that are generated: of no night, of as many as are kept and of more, and
- * of nights that lack a figure; and which way a change is better. (Damaged lines, and what a night
- * adds: test_diff_drawn.) */
+ * Tests the history of a report with generated nights: none, as many as are kept and more, and
+ * nights that lack a figure; and in which direction a change is better. (test_diff_drawn.c tests
+ * damaged lines and the line that a night adds.) */
 #include "test.h"
 
 #include <math.h>
@@ -11,8 +11,8 @@
 #include <unistd.h>
 
 #include "history.h"
-#include "own_folder.h"
 #include "near.h"
+#include "own_folder.h"
 #include "result.h"
 #include "value.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a report plans by day and by night, and what it makes of its computations, of which each is
- * a document drawn from data/drawn/pieces.json here: what it was, byte for byte:
- * data/drawn/reports.txt; kept by verify/test/keep. And some of its pieces are computed. */
+ * Compares what a report plans by day and by night, and what it makes of random results drawn from
+ * data/drawn/pieces.json, with data/drawn/reports.txt, byte for byte. verify/test/keep renews that
+ * file. Also computes some cheap pieces. */
 #include "test.h"
 
 #include <math.h>

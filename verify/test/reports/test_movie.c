@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Pictures of a movie share a range: that of all pictures so far, unless theirs is given or all
- * values are equal. (Movies themselves: movie.py.) */
+ * Tests that pictures of a movie share a range: that of all pictures so far, unless a range is
+ * given or all values are equal. (movie.py makes movies.) */
 #include "test.h"
 
 /* the source itself, because its static functions are tested */

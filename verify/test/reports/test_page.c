@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A part of the report's page that drawn results (test_page_drawn) do not have. */
+ * Tests the report's list of failing figures. (test_page_drawn.c tests the rest.) */
 #include "test.h"
 
 #include "markup.h"

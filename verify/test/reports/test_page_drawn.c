@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Pages of documents drawn from data/drawn/report.json, with what lies beside them, are those that
- * were made before, byte for byte: data/drawn/pages.txt. Of gnuplot only the scripts and the data,
- * so that it needs none. A change that is meant is kept by verify/test/keep. */
+ * Compares pages of random results, drawn from data/drawn/report.json, and the files beside them
+ * with data/drawn/pages.txt, byte for byte. Instead of gnuplot's pictures its scripts and data are
+ * compared, so that gnuplot is not needed. verify/test/keep renews that file. */
 #include "test.h"
 
-#include "findings.h"
 #include "drawn_document.h"
+#include "findings.h"
 #include "markup.h"
 #include "page.h"
 #include "verdict.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Plots: what is put into a page is well-formed, has prefixed ids and needs no other file; every
- * fault of gnuplot ends in a status. */
+ * Tests plots: SVG for a page is well-formed, has prefixed ids and needs no other file; each
+ * failure of gnuplot gives a status. */
 #include "test.h"
 
 #include <fcntl.h>

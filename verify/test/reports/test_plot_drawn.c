@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Scripts and data of plots that are drawn at random, and the adaptation of gnuplot's SVG and of
- * malformed SVG, must be byte for byte those in data/drawn/plots.txt; test_page_drawn.c says how
- * that file is renewed. */
+ * Compares scripts and data of random plots, and adapted SVG of gnuplot (some of it malformed),
+ * with data/drawn/plots.txt, byte for byte. verify/test/keep renews that file. */
 #include "test.h"
 
 #include "buffer.h"
-#include "layout.h"
 #include "drawn_document.h"
+#include "layout.h"
 #include "script.h"
 
 enum { PLOTS = 250, PICTURES = 200, PANELS = 3, SERIES = 4, POINTS = 12, KEPT_TOGETHER = 10 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Verdicts of results with nothing checked, or one thing alone, and how headlines are cut. (Whole
- * verdicts, JUnit files and summaries: test_page_drawn.) */
+ * Tests verdicts on results with nothing checked or with a single figure, and truncated headlines.
+ * (test_page_drawn.c tests whole verdicts, JUnit files and summaries.) */
 #include "test.h"
 
 #include "verdict.h"

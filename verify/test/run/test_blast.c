@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Problems of a ball that falls onto its centre and of a disc that flies apart: windows, samples,
- * particles, up to when they hold, and what is measured of them, on states made by hand. Their
- * solutions: the checks `exact blast` and `exact flow`. */
+ * Tests Noh's collision and the spinning disc as problems: windows, samples, particles, how long
+ * the solutions hold, and what is measured on states made by hand. (The checks `exact blast` and
+ * `exact flow` test the solutions.) */
 #include "test.h"
 
 #include "disc.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Case files: what every line of a good one becomes, and of bad ones the whole message: file, line,
- * key, value and what is allowed. */
+ * Tests the reader of case files: what each line of a good file sets, and the whole message about a
+ * bad one with file, line, key, value and what is allowed. */
 #include "test.h"
 
 #include "cases.h"

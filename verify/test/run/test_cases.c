@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How cases are found: built-in ones by name and files by path; and files that are no case
- * files. */
+ * Tests how cases are found: built-in ones by name, files by path; and refuses files that are not
+ * case files. */
 #include "test.h"
 
 #include <sys/stat.h>

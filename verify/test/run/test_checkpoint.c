@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The state of a run in a file: it is written at the right moments, and is read back to the last
- * bit or refused with the reason. */
+ * Tests checkpoints: when they are written, and that a state is restored to the last bit or refused
+ * with the reason. */
 #include "test.h"
 
 #include <sys/stat.h>

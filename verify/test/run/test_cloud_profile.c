@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Profiles of a run in 2D and 3D, with a made-up gas and made-up particles: maps, the particles of
- * the window over the coordinate that the solution depends on, the exact curve, and cases without
- * one. */
+ * Tests profiles of runs in 2D and 3D on a made-up gas: maps, the particles of the window over the
+ * coordinate that the solution depends on, the exact curve, and cases without one. */
 #include "test.h"
 
 #include "map.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What `auto` stands for: eta of every kernel and cfl of every integrator as the tables of
- * CONVENTIONS section 9 have them, and what the rest depends on as the keys' meanings say it, for
- * every scheme of these choices in 1D and 2D; and which schemes are refused, at each limit.
- * Argument: CONVENTIONS.md. */
+ * Tests the values of `auto`: eta of every kernel and cfl of every integrator are those in the
+ * tables of CONVENTIONS section 9, and other keys follow from their documented rules, for all such
+ * schemes in 1D and 2D. Also tests which schemes are refused, at each limit. Argument:
+ * CONVENTIONS.md. */
 #include "test.h"
 
 #include "integrator.h"

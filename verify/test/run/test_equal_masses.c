@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Particles of equal masses, compared with an independent construction. */
+ * Compares particles of equal masses with an independent construction. */
 #include "test.h"
 
 #include <gsl/gsl_qrng.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a run is thought to take, worked out a second time; the limit of what is allowed. */
+ * Compares the estimate of a run's memory and steps with an independent one. */
 #include "test.h"
 
 #include "allowance.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Problems of gas that stays where it is or turns in circles: which boxes and gases they take, what
- * they sample, how they lay their particles, and what is measured of them, on states made by hand.
- * That their solutions are exact: the check `exact flow`. */
+ * Tests problems of gas at rest, sheared or rotating: which boxes and gases they accept, their
+ * samples and particles, and what is measured on states made by hand. (The check `exact flow` tests
+ * that the solutions are exact.) */
 #include "test.h"
 
 #include "kelvin_helmholtz.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Where particles start: arrays, lattices, balls, pairs and jitter, each compared with an
- * independent construction. */
+ * Compares initial positions (lattices, balls, pairs, jitter) and their arrays with an independent
+ * construction. */
 #include "test.h"
 
 #include <gsl/gsl_rng.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a case is judged by, in which order, and the one error of a run with the signal it is
- * compared with, on results that are made here. */
+ * Tests which figures a case is judged by, in which order, and the error of a run relative to its
+ * signal, on made-up results. */
 #include "test.h"
 
 #include "judged.h"

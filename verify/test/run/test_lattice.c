@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How many cells of a lattice fit into a box, and that quasi-random points stay inside it. */
+ * Tests the number of lattice cells that fit into a box, and that Sobol points are inside. */
 #include "test.h"
 
 #include "lattice.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a run says of itself, computed again from its particles: spacing, mean h, budgets (also of
- * the mirrored problem), and errors at the centre of a blast. */
+ * Compares the error budgets that a run reports, also of the mirrored problem, and errors at the
+ * centre of a blast with sums over its particles. */
 #include "test.h"
 
 #include "keyed.h"

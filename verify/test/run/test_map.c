@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Maps of a state, counted by hand: cells and their edges, slices, means, and what stands in cells
- * that hold nobody. */
+ * Compares maps of a state with counts by hand: cells and their edges, slices, means, empty cells.
+ */
 #include "test.h"
 
 #include "map.h"

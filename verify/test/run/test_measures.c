@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What runs are measured by, on hand-made particles and by hand: windows and shells. (Growth, means
- * and error budgets: whole runs, test_mode and the transcripts.) */
+ * Tests windows and shells on particles made by hand. (Whole runs, test_mode.c and the transcripts
+ * test growth, means and error budgets.) */
 #include "test.h"
 
 #include "run_part.h"

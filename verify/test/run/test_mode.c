@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Problems that start from a growing mode: the base state and the perturbation in the problem's own
- * units, and what is measured of the mode, on made-up states and by independent sums. */
+ * Tests problems that start from a growing mode: the base state and the perturbation in the
+ * problem's units, and measured amplitudes of made-up states against independent sums. */
 #include "test.h"
 
 #include <complex.h>

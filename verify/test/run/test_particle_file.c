@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Particles from files: what is read from which columns, and the complete message for each bad
- * file. */
+ * Tests the reader of particle files: which columns it reads, and the complete message about each
+ * bad file. */
 #include "test.h"
 
 #include <unistd.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * From keys to a prepared problem: what is refused, with a message that helps, what the problem
- * makes of the rest, and up to which times it holds. */
+ * Tests how keys become a prepared problem: which are refused with which message, which values the
+ * problem chooses, and how long its solution holds. */
 #include "test.h"
 
 #include "functional.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Every problem of the list, with every case that has it, keeps what problem.h promises: one walk
- * over its descriptor, its particles and its exact solution. The same walk rejects copies of
+ * Tests that every problem keeps the promises of problem.h with each of its cases: one walk over
+ * its descriptor, its particles and its exact solution. The same walk must reject copies of
  * descriptors with one planted fault. */
 #include "test.h"
 

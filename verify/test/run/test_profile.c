@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Profiles of a run in 1D, with a made-up gas and made-up particles: the exact curve has points
- * where one of its fields bends, and nowhere else; the particles are those of the window. */
+ * Tests profiles of runs in 1D on a made-up gas: the exact curve has points exactly where one of
+ * its fields bends, and the particles are those of the window. */
 #include "test.h"
 
 #include "keyed.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How regular points are, from all pairs of images: on a line, in a plane and in space, in boxes
- * that are periodic and open; what lies exactly on a limit. */
+ * Compares the regularity of points with its definition over all pairs of images, in 1D to 3D, in
+ * periodic and open boxes, and with points exactly at a limit. */
 #include "test.h"
 
 #include "kernel.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Glasses, pushed apart a second time, and how they are kept. */
+ * Compares glasses with a second implementation, and tests that large ones are stored. */
 #include "test.h"
 
 #include "gas.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Glasses that are kept on disk: in which folder, for how many points, and that they are read back
- * to the last bit. */
+ * Tests glasses stored on disk: the folder, which sizes are stored, and that they are read to the
+ * last bit. */
 #include "test.h"
 
 #include <fcntl.h>

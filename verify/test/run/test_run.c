@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a run is given and what it keeps: the setup, the particles at the end in the order in which
- * they have started, what conservation is of, who is told on the way; states of other codes. */
+ * Tests a run apart from its physics: its setup, final particles in their initial order, conserved
+ * quantities, progress callbacks; and states of other codes. */
 #include "test.h"
 
 #include <sys/resource.h>

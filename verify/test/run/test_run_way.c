@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Runs on their way: what they conserve, how they break down, snapshots in time, amplitudes that
- * grow. (That snapshots change nothing: snapshots.py; runs that go on: checkpoint.py.) */
+ * Tests whole runs: conservation, breakdowns, times of snapshots, growing amplitudes. (snapshots.py
+ * tests that snapshots change nothing, checkpoint.py that runs can be resumed.) */
 #include "test.h"
 
 #include <unistd.h>

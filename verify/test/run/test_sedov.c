@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The blast of a point-like explosion as a problem: where its energy starts, samples, up to when it
- * holds, and what is measured of it, on states made by hand. Its solution: the check `exact blast`.
- */
+ * Tests Sedov's blast as a problem: the initial energy, samples, how long the solution holds, and
+ * what is measured on states made by hand. (The check `exact blast` tests the solution.) */
 #include "test.h"
 
 #include "drawn_cloud.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The table of keys: every key reads what it writes, refuses what is out of range; `auto` stands
- * for what the documentation says; what keys are in words and in documents. */
+ * Tests the table of keys: each key reads what it writes and refuses values out of range; `auto`
+ * becomes the documented value; keys as text and in JSON. */
 #include "test.h"
 
 #include "certificate.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How much of a run is skipped, compared with the gas that the exact solution leaves
+ * Compares the share of a run that is skipped with the gas that the exact solution leaves
  * undisturbed. */
 #include "test.h"
 

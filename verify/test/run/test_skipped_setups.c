@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Runs of the default schemes with and without skips, on random blasts, tubes and pulses in gas at
- * rest or in motion as a whole, in 1D, 2D and 3D: the same figures, momentum and energy kept, and
- * something skipped each time. Times are short: no scheme has amplified anything yet. Argument,
- * optional: so many times as many setups. */
+ * Compares runs of the default schemes with and without skips: random blasts, tubes and pulses in
+ * gas at rest or in uniform motion, in 1D, 2D and 3D. Figures must agree, momentum and energy be
+ * conserved, and something be skipped. Times are short, so that no scheme has amplified anything
+ * yet. Argument, optional: the factor by which the number of setups grows. */
 #include "test.h"
 
 #include "draw.h"

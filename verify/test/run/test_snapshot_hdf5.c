@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Snapshots that are written in HDF5: every attribute and array of the file, and that a call of the
- * library that fails leaves neither a file nor anything open. Those of the C library come by
- * way of the linker's --wrap (meson.build). */
+ * Tests HDF5 snapshots: every attribute and array of the file. If any library call fails, neither a
+ * file nor an open handle is left. The linker's --wrap makes calls of the C library fail
+ * (meson.build). */
 #include "test.h"
 
 #include "own_folder.h"

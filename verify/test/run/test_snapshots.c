@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Snapshots on the way: how many, when, where; what a run keeps to go on from. */
+ * Tests snapshots during a run: number, times, files, and the state that is restored after each. */
 #include "test.h"
 
 #include "sample_simulation.h"

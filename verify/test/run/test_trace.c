@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A run's record through time: it ends with the figures of the run's end, and shows how jittered
- * particles come to rest. */
+ * Tests the trace of a run through time: it ends with the run's final figures, and shows how
+ * jittered particles come to rest. */
 #include "test.h"
 
 #include "keyed.h"

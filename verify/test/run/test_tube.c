@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Tubes: their gases and how their particles are laid, each worked out a second time. */
+ * Compares the gases and particles of tubes with independent constructions. */
 #include "test.h"
 
 #include "gases.h"

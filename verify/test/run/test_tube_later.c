@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Tubes in time: how long their window is free, and what is measured of them: shocks, noise,
- * regions and still gas. All of it is compared with an independent computation, on tubes that are
- * drawn at random or made by hand. */
+ * Compares what is measured of tubes (shocks, noise, regions, gas still at rest), and the time
+ * until waves reach their window, with independent computations, on random tubes and tubes made by
+ * hand. */
 #include "test.h"
 
 #include <gsl/gsl_rng.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Tables as references: on grids drawn at random they give linear fields back everywhere, smooth
- * ones to their order, and what is left out of them is told. */
+ * Tests tables as reference solutions: on random grids linear fields are exact, smooth ones
+ * converge with their order, and the error of the interpolation is estimated. */
 #include "test.h"
 
 #include "draw.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Sound waves as a problem: which wave the keys mean, how particles carry its mass, its mode, and
- * how long it is known. The wave itself is tested in test_simple_wave.c. */
+ * Tests sound waves as a problem: the wave that keys define, particles that carry its mass, its
+ * mode, and how long the solution holds. (test_simple_wave.c tests the wave itself.) */
 #include "test.h"
 
 #include "lattice.h"

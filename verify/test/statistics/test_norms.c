@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Norms, bins and the worst of many at their limits. What they are: the group `norms` of checks. */
+ * Tests norms and bins at their limits. (The checks `norms` test the definitions.) */
 #include "test.h"
 
 #include <gsl/gsl_errno.h>

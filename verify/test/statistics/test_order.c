@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Orders, their intervals, classes and gates, and what three values extrapolate to, at their
- * limits. What they are in general: the group `norms` of checks. */
+ * Tests orders, their intervals, classes and gates, and Richardson extrapolation at their limits.
+ * (The checks `norms` test them in general.) */
 #include "test.h"
 
 #include <gsl/gsl_cdf.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Errors drawn in pairs: what is better, by how much, and how often chance is taken for it. */
+ * Tests the comparison of paired errors, and its rate of false differences. */
 #include "test.h"
 
 #include "paired.h"

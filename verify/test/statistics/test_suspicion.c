@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What looks as if nothing had been compared. */
+ * Tests which errors are suspected to come from wrong comparisons. */
 #include "test.h"
 
 #include "suspicion.h"

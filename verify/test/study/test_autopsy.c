@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The autopsy names what has been planted: into schemes, into an exact solution, into figures. */
+ * Tests that an autopsy names planted errors: in schemes, in an exact solution, in figures. */
 #include "test.h"
 
 #include "autopsy_state.h"

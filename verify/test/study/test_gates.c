@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Gates of one run, on made-up documents: which bound holds at n, what compared schemes have to
- * reach, and which conserved quantities are asked of which scheme. */
+ * Tests gates of one run with made-up documents: the bound at n, the bounds of compared schemes,
+ * and which conserved quantities have gates for which scheme. */
 #include "test.h"
 
 #include "gates.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Computations side by side: the same results with any number of processes and from the cache, in
- * which order, how many at once, in whose share; what is said of those that fail. */
+ * Tests parallel computations: results do not depend on the number of processes or on the cache;
+ * order, number at once and shares; and messages about those that fail. */
 #define _GNU_SOURCE /* nftw */
 #include "test.h"
 
@@ -12,8 +12,8 @@
 #include <sys/wait.h>
 #include <time.h>
 
-#include "sample_jobs.h"
 #include "output.h"
+#include "sample_jobs.h"
 
 TEST(any_number_of_processes)
 {

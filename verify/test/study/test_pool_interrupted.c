@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Computations side by side while signals arrive a thousand times a second, in their processes and
- * in the one that waits for them: long replies come whole, and who has died is known. */
+ * Tests parallel computations while a thousand signals a second arrive in their processes and in
+ * the one that waits for them: long replies are complete, and dead processes are noticed. */
 #include "test.h"
 
 #include <signal.h>

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The gates of a case on a study: what passes, fails or is known to fail, by how much a bound is
- * raised, and what the lattice-sum floor explains. */
+ * Tests the gates of a case on a study: which pass, fail or are known to fail, how far a bound is
+ * raised, and which errors the lattice-sum floor explains. */
 #include "test.h"
 
 #include "gates.h"
-#include "sample_study.h"
 #include "measure.h"
+#include "sample_study.h"
 
 static double factor;
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a study makes of the documents of its runs: means and spreads, orders, runs that broke down
- * or are missing; still gas, errors that are too good and settings without effect. */
+ * Tests how a study evaluates the documents of its runs: means and spreads, orders, missing runs,
+ * gas that should be at rest, suspiciously small errors, and settings without effect. */
 #include "test.h"
 
-#include "sample_study.h"
 #include "measure.h"
+#include "sample_study.h"
 
 static double mean_log(int f, int m, size_t l, size_t replicates)
 {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Every line of the document that a study leaves. */
+ * Tests every member of a study's JSON document. */
 #include "test.h"
 
 #include "judged.h"
-#include "sample_study.h"
 #include "result.h"
+#include "sample_study.h"
 
 static json_t *pack_norms(const double values[NORMS])
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The runs of a study before any is made: which numbers of particles and seeds, what decides a
- * run's result and is its key, how long it will take, and what is refused. */
+ * Tests the planned runs of a study: numbers of particles and seeds, the keys of results in the
+ * cache, estimated times, and what is refused. */
 #include "test.h"
 
 #include <unistd.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Variations: every combination once, the last key fastest, in settings, labels and documents
- * alike; ladders; what is refused. */
+ * Tests the variations of `--vary`: every combination once, the last key fastest, in settings,
+ * labels and documents; ladders; and what is refused. */
 #include "test.h"
 
 #include "keyed.h"

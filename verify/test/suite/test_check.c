@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What one run of a check collects: figures with the time each took, and whether a mutant is found
- * out already. */
+ * Tests what one run of a check collects: figures with their times, and whether a mutant is already
+ * detected. */
 #include "test.h"
 
 #include "check_run.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Which of many failing figures is told first, in which words, and of whom. */
+ * Tests the headlines of failing figures: order, words, and member. */
 #include "test.h"
 
 #include "suite_output.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The harness that runs checks: what fails, what is vacuous, what counts; and that the registry is
- * in order. Arguments: the groups that meson runs, one test each. */
+ * Tests the harness that runs checks: what fails, what is vacuous, what is counted; and that the
+ * registry is in order. Arguments: the groups that meson runs, one test each. */
 #include "test.h"
 
 #include <unistd.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What is left of checks that fail: the numbers that gnuplot is given to draw (by a program of that
- * name that writes them down), and files that come and go. */
+ * Tests the plots of failed checks: the numbers that gnuplot gets (a program of that name stores
+ * them), and files that are created and removed. */
 #include "test.h"
 
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Suites that are put together from checks that ran elsewhere. */
+ * Tests that checks which ran separately can be joined into one suite. */
 #include "test.h"
 
 #include "sample_checks.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What `verify` says of figures: table, JSON, JUnit file and headlines of a suite in which every
- * count is another one, word for word as written down in data/suite. */
+ * Compares what `verify` prints (table, JSON, JUnit file and headlines) of a suite in which all
+ * counts differ with data/suite, word for word. */
 #include "test.h"
 
 #include <unistd.h>

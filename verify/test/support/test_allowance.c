@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What control groups allow, read from folders that look like theirs. */
+ * Tests the memory limit that is read from folders like those of Linux control groups. */
 #include "test.h"
 
 #include "allowance.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What is kept of computations: damaged entries, old ones, kill -9 and two processes at once. */
+ * Tests the cache with damaged and old entries, kill -9, and two processes at once. */
 #define _GNU_SOURCE /* nftw */
 #include "test.h"
 

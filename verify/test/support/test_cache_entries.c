@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Results that are kept: under which names, what an entry must be to be believed, what goes when.
- */
+ * Tests the cache's entries: their names and folders, which files are valid entries, and which are
+ * removed. */
 #include "test.h"
 
 #include <fcntl.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Tables of numbers, made at random in every style that is allowed: what is planted must be read,
- * with the line it stood on. What is spoilt at one place must be refused with that place. */
+ * Reads random tables of numbers in every allowed style: each value must be found, with its line.
+ * Tables with one fault must be refused with its position. */
 #include "test.h"
 
 #include <stdbool.h>

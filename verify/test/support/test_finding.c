@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a figure comes to, how far it is beyond its bound, and whether that is its value or its
- * floor. */
+ * Tests the status of a figure, its ratio to the bound, and whether its value or its floor fails.
+ */
 #include "test.h"
 
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Words and numbers as people type them, and files that appear whole. */
+ * Tests the parsing of words and numbers, temporary and whole files, and SHA-256. */
 #include "test.h"
 
 #include <locale.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Reading JSON: numbers and words, lenient and needed; and numbers that were written. */
+ * Tests the reading of JSON with missing or wrong members, and its writing. */
 #include "test.h"
 
 #include <float.h>
