@@ -485,6 +485,14 @@ enum status bench_skips_measure(const struct run_settings *cases, size_t count,
     return status;
 }
 
+bool bench_skips_pass(const struct bench_skips *result)
+{
+    bool passes = true;
+    for (size_t s = 0; s < result->count; s++)
+        passes = passes && result->skips[s].kept && result->skips[s].enough;
+    return passes;
+}
+
 void bench_skips_free(struct bench_skips *result)
 {
     for (size_t s = 0; s < result->count; s++) free(result->skips[s].shares);

@@ -58,12 +58,15 @@ struct bench_skips {
 enum bench_part { BENCH_WORK, BENCH_SLEEP, BENCH_STEPS };
 
 /* cases: count prepared settings, copied; a case without such work has no entry. Returns STATUS_OK
- * even if a promise is broken or too little is skipped: see kept and enough. Call bench_skips_free
+ * even if a promise is broken or too little is skipped: see bench_skips_pass. Call bench_skips_free
  * even after a failure. */
 enum status bench_skips_measure(const struct run_settings *cases, size_t count,
                                 const struct bench_rules *rules, enum bench_part part,
                                 struct bench_skips *result, struct error *error);
 void bench_skips_free(struct bench_skips *result);
+
+/* True if all promises hold and enough of the allowed work is skipped. */
+bool bench_skips_pass(const struct bench_skips *result);
 
 /* Array "skips" of a result document; maps: includes maps of sleeping gas. */
 void bench_skips_add_json(const struct bench_skips *result, bool maps, json_t *document);

@@ -126,23 +126,28 @@ static bool masses_differ(const double *theirs, const double *ours, size_t n)
     return fabsl(difference) > 1e-5L * sum || differ(theirs, ours, n, 0, 0.5) > 0.1;
 }
 
-/* Mean displacement along x by t_end, in box lengths, with the exact velocity at that time, modulo
- * whole rounds of the box. */
-static double way_along_x(const struct snapshot_file *ic, const struct prepared *p, double t_end)
+/* Mean displacement along each direction by t_end, in box lengths, with the exact velocity at that
+ * time, modulo whole rounds of the box. */
+static void find_way(const struct snapshot_file *ic, const struct prepared *p, double t_end,
+                     double way[3])
 {
-    const double length = p->domain.hi[0] - p->domain.lo[0];
-    double sum = 0, least = (double)INFINITY;
-    for (size_t i = 0; i < ic->gas; i++) least = fmin(least, ic->column[SNAPSHOT_X][i]);
+    const struct domain *box = &p->domain;
+    double shift[3]; /* into the case's coordinates, to a spacing */
+    for (int d = 0; d < box->dim; d++) {
+        double least = (double)INFINITY;
+        for (size_t i = 0; i < ic->gas; i++) least = fmin(least, ic->column[SNAPSHOT_X + d][i]);
+        shift[d] = box->lo[d] - least, way[d] = 0;
+    }
     for (size_t i = 0; i < ic->gas; i++) {
         struct problem_state state;
         double x[3] = {0};
-        for (int d = 0; d < p->domain.dim; d++) x[d] = ic->column[SNAPSHOT_X + d][i];
-        x[0] += p->domain.lo[0] - least; /* in the case's coordinates, to a spacing */
+        for (int d = 0; d < box->dim; d++) x[d] = ic->column[SNAPSHOT_X + d][i] + shift[d];
         problem_sample(p, x, t_end, &state);
-        const double way = state.v[0] * t_end / length;
-        sum += fabs(way - round(way));
+        for (int d = 0; d < box->dim; d++) {
+            const double moved = state.v[d] * t_end / (box->hi[d] - box->lo[d]);
+            way[d] += fabs(moved - round(moved)) / (double)ic->gas;
+        }
     }
-    return sum / (double)ic->gas;
 }
 
 static enum code_reason compare_start(const struct snapshot_file *file,
@@ -156,16 +161,24 @@ static enum code_reason compare_start(const struct snapshot_file *file,
         snprintf(message, size, "%zu particles of gas; the initial state has %zu", n, ic->gas);
         return REASON_wrong_particles;
     }
+    if (file->dim < p->domain.dim) {
+        snprintf(message, size, "particles in %dD; the case is in %dD", file->dim, p->domain.dim);
+        return REASON_wrong_particles;
+    }
     if (origin->cells) return REASON_NONE;
     if (masses_differ(ic->column[SNAPSHOT_M], file->column[SNAPSHOT_M], n)) {
         snprintf(message, size,
                  "masses are not those of the initial state: the code has not read it");
         return REASON_ignored_ic;
     }
-    const double length = p->domain.hi[0] - p->domain.lo[0];
-    if (!p->problem->fieldless && way_along_x(ic, p, origin->t_end) * PER_CENT > 1 &&
-        differ(ic->column[SNAPSHOT_X], file->column[SNAPSHOT_X], n, length, 1) < 1e-7) {
-        snprintf(message, size, "all particles are where they were at the start");
+    double way[3];
+    if (p->problem->fieldless) return REASON_NONE;
+    find_way(ic, p, origin->t_end, way);
+    for (int d = 0; d < p->domain.dim; d++) {
+        const double length = p->domain.hi[d] - p->domain.lo[d];
+        const double *before = ic->column[SNAPSHOT_X + d], *after = file->column[SNAPSHOT_X + d];
+        if (!(way[d] * PER_CENT > 1 && differ(before, after, n, length, 1) < 1e-7)) continue;
+        snprintf(message, size, "all particles are where they were at the start along %c", 'x' + d);
         return REASON_ignored_ic;
     }
     return REASON_NONE;
@@ -238,6 +251,10 @@ bool code_is_start(const struct snapshot_file *file, const struct code_origin *o
         return true;
     if (file->gas != ic->gas) {
         snprintf(message, size, "%zu particles of gas, not the %zu", file->gas, ic->gas);
+        return false;
+    }
+    if (file->dim < box->dim) {
+        snprintf(message, size, "particles in %dD, not the %dD", file->dim, box->dim);
         return false;
     }
     const double spacing = pow((double)ic->gas, -1. / box->dim); /* in box lengths, about */

@@ -245,7 +245,6 @@ static enum status leave_out(struct request *request, enum bench_part part, cons
     const bool steps = part == BENCH_STEPS;
     struct bench_skips result;
     size_t count;
-    bool kept = true;
     if (refuse_option(request, option, "n", error) ||
         refuse_option(request, option, "vary", error) ||
         refuse_option(request, option, "plot", error))
@@ -261,8 +260,7 @@ static enum status leave_out(struct request *request, enum bench_part part, cons
                            "bench: --steps: %s has no local steps; allowed: cases in 2D and 3D "
                            "with a scheme that steps=local goes with",
                            request->case_name);
-    for (size_t s = 0; s < result.count; s++)
-        kept = kept && result.skips[s].kept && result.skips[s].enough;
+    const bool passes = bench_skips_pass(&result);
     if (!status) {
         json_t *document = result_new("bench");
         json_object_set_new(document, "points", json_array());
@@ -275,7 +273,7 @@ static enum status leave_out(struct request *request, enum bench_part part, cons
     }
     bench_skips_free(&result);
     free(cases);
-    return status || kept ? status : STATUS_CHECK_FAILED;
+    return status || passes ? status : STATUS_CHECK_FAILED;
 }
 
 static enum status skips(struct request *request, struct error *error)

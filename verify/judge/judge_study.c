@@ -205,7 +205,9 @@ json_t *judge_orders(const struct judged *judged, size_t n)
         return orders;
     for (int field = 0; field < FIELDS; field++) {
         for (size_t i = 0; i < count; i++) {
-            spacing[i] = pow((double)levels[i]->result.n, -1. / levels[i]->file.dim);
+            const bool slab = levels[i]->slab > 0; /* its layers may differ in number */
+            const double in_plane = slab ? levels[i]->case_n : (double)levels[i]->result.n;
+            spacing[i] = pow(in_plane, -1. / levels[i]->file.dim);
             value[i] = levels[i]->result.errors[field].l1;
         }
         json_array_append_new(orders,

@@ -13,8 +13,9 @@
 enum { N = 14, SHARES = 3 };
 
 static const struct command_option list[] = {
-    {"jobs", "J", ""},    {"n", "N", ""},  {"words", "WORDS", ""}, {"flag", NULL, ""},
-    {"plot", "FILE", ""}, SHARING_OPTIONS, {NULL, NULL, NULL},
+    {"jobs", "J", ""},    {"n", "N", ""},         {"words", "WORDS", ""},  {"flag", NULL, ""},
+    {"plot", "FILE", ""}, {"failures", NULL, ""}, {"history", "FILE", ""}, {"junit", "FILE", ""},
+    {"resume", NULL, ""}, SHARING_OPTIONS,        {NULL, NULL, NULL},
 };
 static const struct command command = {.name = "converge", .options = list};
 

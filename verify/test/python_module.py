@@ -84,6 +84,10 @@ def runs():
     for allowed, status in (True, 0), (False, 1), (None, 1):
         said = sphproof.judge(far, case="sod", time=0.2, h_is="half", allow_far=allowed)
         assert said["exit_status"] == status and said["kernel"]["candidates"][0]["ratio"] == 2, (allowed, said)
+    start = sphproof.run("sod", n=198, t_end=0)["particles"]
+    for zero in 0, 0.0, numpy.float64(0):  # a value, not a missing one
+        judged = sphproof.judge(start, case="sod", time=zero, x0=zero)
+        assert judged["time"] == 0 and any(one["evidence"] == "--x0" for one in judged["assumptions"]), judged
     refused(2, sphproof.judge, {"x": [1, 2], "rho": [1]}, case="sod")
     os.environ["SPHPROOF"] = program + "_that_is_nowhere"
     try:

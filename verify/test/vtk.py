@@ -42,6 +42,10 @@ def make(points, binary, field, grid, kind):
         text += b" %d %d\n" % (n, 2 * n) + numbers([(1, i) for i in range(n)], "i")
     if grid:
         text += b"CELL_TYPES %d\n" % n + numbers([(1,)] * n, "i")
+    if grid:  # as ParaView writes it: data of cells first, and what it knows of an array behind it
+        text += b"CELL_DATA %d\nSCALARS rho %s 1\nLOOKUP_TABLE default\n" % (n, kind) + numbers([(7.0,)] * n, kind.decode())
+        text += b"VECTORS vel %s\n" % kind + numbers([(7.0, 8.0, 9.0)] * n, kind.decode())
+        text += b"FIELD FieldData 2\n" + b"".join(b"%s 1 %d int\n" % (name, n) + numbers([(7,)] * n, "i") for name in (b"u", b"m"))
     text += b"POINT_DATA %d\n" % n
     arrays = [(name, next(WHOLE), [(i,) for i in range(n)]) for name in (b"Idp", b"Type")]
     arrays += [(b"Vel", kind, [(p[2], p[3], 0.0) for p in points]),
@@ -57,6 +61,8 @@ def make(points, binary, field, grid, kind):
         else:
             text += b"SCALARS %s %s%s\nLOOKUP_TABLE default\n" % (name, type_, draw.choice((b"", b" 1")))
         text += numbers(rows, LETTERS.get(type_, type_.decode()))
+        if field and paired and name != arrays[-1][0]:
+            text += b"METADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 1 7\n\n"
     return text[:-1]  # the last number ends the file
 
 

@@ -19,7 +19,11 @@ struct vtk {
     const char *at, *end;
     bool binary;
     struct error *error;
+    size_t cells; /* with data of their own */
 };
+
+/* What the arrays that follow belong to. */
+enum part { WHOLE, POINTS, CELLS };
 
 struct array {
     char name[WORD], type[WORD];
@@ -155,8 +159,14 @@ static bool take_points(struct vtk *vtk, const struct array *array, int column,
     return well;
 }
 
-/* Reads FIELD name count, then arrays of point data or of the whole file. */
-static bool take_field(struct vtk *vtk, bool points, struct snapshot_file *file)
+/* Skips what VTK writes behind an array about its components; it ends with an empty line. */
+static void skip_metadata(struct vtk *vtk)
+{
+    while (vtk->at + 1 < vtk->end && !(vtk->at[0] == '\n' && vtk->at[1] == '\n')) vtk->at++;
+}
+
+/* Reads FIELD name count, then arrays of the part of the file. */
+static bool take_field(struct vtk *vtk, enum part part, struct snapshot_file *file)
 {
     char word[WORD];
     size_t count;
@@ -164,28 +174,35 @@ static bool take_field(struct vtk *vtk, bool points, struct snapshot_file *file)
     if (!next_count(vtk, "FIELD", &count)) return false;
     for (size_t k = 0; k < count; k++) {
         struct array array;
-        next_word(vtk, array.name);
+        if (!strcmp(next_word(vtk, array.name), "METADATA")) {
+            skip_metadata(vtk);
+            next_word(vtk, array.name);
+        }
         if (!next_count(vtk, array.name, &array.components) ||
             !next_count(vtk, array.name, &array.tuples))
             return false;
         next_word(vtk, array.type);
         if (array.components > 9) return refuse(vtk, "more than 9 components has ", array.name);
-        const bool time = !points && array.components * array.tuples == 1 &&
+        const bool time = part == WHOLE && array.components * array.tuples == 1 &&
                           (!strcmp(array.name, "TimeValue") || !strcmp(array.name, "TIME"));
         if (time) {
             file->time.known = true;
             if (!take_numbers(vtk, &array, &file->time.value)) return false;
-        } else if (!take_points(vtk, &array, points ? snapshot_column_of(array.name) : -1, file)) {
+        } else if (!take_points(vtk, &array, part == POINTS ? snapshot_column_of(array.name) : -1,
+                                file)) {
             return false;
         }
     }
     return true;
 }
 
-/* Reads SCALARS name type [components] and a line LOOKUP_TABLE name, or VECTORS name type. */
-static bool take_attribute(struct vtk *vtk, bool vectors, struct snapshot_file *file)
+/* Reads SCALARS name type [components] and a line LOOKUP_TABLE name, or VECTORS name type; those of
+ * cells are skipped. */
+static bool take_attribute(struct vtk *vtk, bool vectors, enum part part,
+                           struct snapshot_file *file)
 {
-    struct array array = {.components = vectors ? 3 : 1, .tuples = file->n};
+    struct array array = {.components = vectors ? 3 : 1,
+                          .tuples = part == CELLS ? vtk->cells : file->n};
     char word[WORD];
     double value;
     next_word(vtk, array.name), next_word(vtk, array.type);
@@ -202,7 +219,7 @@ static bool take_attribute(struct vtk *vtk, bool vectors, struct snapshot_file *
             return refuse(vtk, "no LOOKUP_TABLE stands behind SCALARS ", array.name);
         next_word(vtk, word);
     }
-    return take_points(vtk, &array, snapshot_column_of(array.name), file);
+    return take_points(vtk, &array, part == CELLS ? -1 : snapshot_column_of(array.name), file);
 }
 
 /* Skips CELLS, VERTICES ...: count and size of one array, or, since version 5.1, of two with their
@@ -227,7 +244,7 @@ static bool skip_cells(struct vtk *vtk)
     return take_numbers(vtk, &cells[1], NULL);
 }
 
-static bool take_section(struct vtk *vtk, const char *word, bool *points,
+static bool take_section(struct vtk *vtk, const char *word, enum part *part,
                          struct snapshot_file *file)
 {
     struct array array = {.components = 3};
@@ -238,7 +255,7 @@ static bool take_section(struct vtk *vtk, const char *word, bool *points,
             return refuse(vtk, "allowed: POLYDATA or UNSTRUCTURED_GRID, not ", ignored);
         return true;
     }
-    if (!strcmp(word, "FIELD")) return take_field(vtk, *points, file);
+    if (!strcmp(word, "FIELD")) return take_field(vtk, *part, file);
     if (!strcmp(word, "POINTS")) {
         snprintf(array.name, sizeof array.name, "POINTS");
         if (file->n || !next_count(vtk, word, &file->n) || file->n < 1)
@@ -248,20 +265,24 @@ static bool take_section(struct vtk *vtk, const char *word, bool *points,
         return take_points(vtk, &array, SNAPSHOT_X, file);
     }
     if (!strcmp(word, "POINT_DATA")) {
-        *points = true;
+        *part = POINTS;
         if (!next_count(vtk, word, &count)) return false;
         return count == file->n || refuse(vtk, "another number than of points has ", word);
     }
-    if (!strcmp(word, "SCALARS") || !strcmp(word, "VECTORS"))
-        return take_attribute(vtk, *word == 'V', file);
+    if (!strcmp(word, "CELL_DATA")) {
+        *part = CELLS;
+        return next_count(vtk, word, &vtk->cells);
+    }
+    if (!strcmp(word, "SCALARS") || !strcmp(word, "VECTORS") || !strcmp(word, "NORMALS"))
+        return take_attribute(vtk, *word != 'S', *part, file);
     if (!strcmp(word, "CELLS") || !strcmp(word, "VERTICES") || !strcmp(word, "LINES"))
         return skip_cells(vtk);
     if (!strcmp(word, "CELL_TYPES")) {
         array = (struct array){.name = "cells", .components = 1, .type = "int"};
         return next_count(vtk, "cells", &array.tuples) && take_numbers(vtk, &array, NULL);
     }
-    if (!strcmp(word, "METADATA")) { /* ends with an empty line */
-        while (vtk->at + 1 < vtk->end && !(vtk->at[0] == '\n' && vtk->at[1] == '\n')) vtk->at++;
+    if (!strcmp(word, "METADATA")) {
+        skip_metadata(vtk);
         return true;
     }
     return refuse(vtk, "an unknown word: ", word);
@@ -277,10 +298,10 @@ static enum status read_vtk(const struct snapshot_source *source,
                             const struct snapshot_options *options, struct snapshot_file *file,
                             struct error *error)
 {
-    struct vtk vtk = {source, (const char *)source->bytes,
-                      (const char *)source->bytes + source->size, false, error};
+    const char *text = (const char *)source->bytes;
+    struct vtk vtk = {.source = source, .at = text, .end = text + source->size, .error = error};
     char word[WORD];
-    bool points = false;
+    enum part part = WHOLE;
     (void)options;
     error->status = STATUS_OK;
     skip_line(&vtk), skip_line(&vtk); /* version and title */
@@ -290,8 +311,9 @@ static enum status read_vtk(const struct snapshot_source *source,
         refuse(&vtk, "the third line is neither ASCII nor BINARY: ", word);
         return error->status;
     }
-    while (*next_word(&vtk, word) && strcmp(word, "CELL_DATA"))
-        if (!take_section(&vtk, word, &points, file)) return error->status;
+    /* data of cells behind those of points are not needed */
+    while (*next_word(&vtk, word) && (part != POINTS || strcmp(word, "CELL_DATA")))
+        if (!take_section(&vtk, word, &part, file)) return error->status;
     if (!file->n) {
         refuse(&vtk, "has no POINTS", "");
         return error->status;

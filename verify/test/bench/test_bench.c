@@ -393,6 +393,15 @@ TEST(test_skips_keep_their_promises)
         assert_true(skip->enough);
         assert_true(isnan(skip->difference) == (skip->promise == PROMISE_UNUSED));
     }
+    assert_true(bench_skips_pass(&skips));
+    for (size_t i = 0; i < skips.count; i++) { /* each alone fails all */
+        bool *const said[] = {&skips.skips[i].kept, &skips.skips[i].enough};
+        for (size_t k = 0; k < 2; k++) {
+            *said[k] = false;
+            assert_false(bench_skips_pass(&skips));
+            *said[k] = true;
+        }
+    }
     skips.skips[0].enough = false;
     json_t *document = json_object();
     bench_skips_add_json(&skips, false, document);

@@ -236,7 +236,8 @@ TEST(command_line_of_a_share)
     program[length] = '\0';
     set("n", "1,2,3"), set("words", "it's \"$HOME\" `x`\n2"), set("flag", "");
     set("jobs", "2"), set("plot", "p.svg"), set("cache", "a b"), set("engine", "slurm");
-    set("engine-tasks", "3"), set("list", "");
+    set("engine-tasks", "3"), set("list", ""), set("failures", ""), set("history", "h"),
+        set("junit", "j"), set("resume", "");
     call.arguments[1] = (char *)"-1'";
     call.options.count = 2;
     call.options.threads = 3;

@@ -245,6 +245,27 @@ TEST(times_of_a_simulation)
     sphproof_simulations_free(simulation);
 }
 
+/* A simulation that breaks down stays at the time of its last sound step. */
+TEST(time_of_a_breakdown)
+{
+    static const char *const own[] = {"viscosity=none", "cfl=0.9", "energy=internal", NULL};
+    struct sphproof_setup setup = setup_of_a_wave();
+    struct sphproof_simulation *simulation;
+    struct sphproof_error error;
+    const struct sphproof_state nothing = {.rho = NULL};
+    setup.keys = own;
+    for (int k = 0; k < N; k++) v[k] = 1e3 * ((k * 5) % 7 - 3);
+    assert_int_equal(sphproof_simulations_create(&setup, &simulation, &error), SPHPROOF_OK);
+    assert_int_equal(sphproof_simulations_run(simulation, 1, &error), SPHPROOF_BROKE_DOWN);
+    const double time = sphproof_simulations_state(simulation, &nothing);
+    assert_true(time < 1);
+    assert_int_equal(sphproof_simulations_run(simulation, 0.5 * (1 + time), &error),
+                     SPHPROOF_BROKE_DOWN);
+    assert_int_equal(sphproof_simulations_run(simulation, nextafter(time, -1), &error),
+                     SPHPROOF_BAD_INPUT);
+    sphproof_simulations_free(simulation);
+}
+
 /* Gas that fills a periodic box falls freely along each direction. */
 TEST(gas_falls)
 {

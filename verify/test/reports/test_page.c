@@ -2,8 +2,11 @@
  * Tests the report's list of failing figures. (test_page_drawn.c tests the rest.) */
 #include "test.h"
 
+#include <math.h>
+
 #include "markup.h"
 #include "page.h"
+#include "result.h"
 #include "verdict.h"
 
 /* For a failed check the page shows the worst figure and 20 more, then the number of figures. */
@@ -31,6 +34,49 @@ TEST(failing_figures)
         assert_int_equal(strstr(whole, more) != NULL, failing > 21);
         assert_int_equal(strstr(whole, "more failing figures") != NULL, failing > 21);
         assert_non_null(strstr(whole, ">1 of "));
+        free(whole);
+        page_free(&made);
+        json_decref(results);
+    }
+}
+
+/* Changes of one subject since the last report share a row, which shows the largest: in whichever
+ * order they are, up or down, and a change without a ratio is larger than any other. */
+TEST(changes_of_one_subject)
+{
+    static const struct {
+        const char *path;
+        double ratio;
+    } changes[] = {{"studies[sod, default].slight", 1.1},
+                   {"studies[sod, default].up", 3},
+                   {"studies[sod, default].down", 0.2},
+                   {"studies[sod, default].word", (double)NAN}};
+    static const int orders[][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1},
+                                    {2, 1, 0}, {0, 1, 0}, {1, 0, 0}, {0, 3, 2}, {2, 0, 3}};
+    for (size_t o = 0; o < sizeof orders / sizeof *orders; o++) {
+        json_t *results = json_object(), *figures = json_array();
+        struct page made;
+        size_t sealed;
+        int most = 0;
+        for (int i = 0; i < 3; i++) {
+            const int k = orders[o][i];
+            most = k > most ? k : most;
+            json_array_append_new(
+                figures, result_object("path=%s old=%g new=%g ratio=%g verdict=%s", changes[k].path,
+                                       1., 2., changes[k].ratio, "worse"));
+        }
+        json_object_set_new(results, "history",
+                            json_pack("{s:{s:s, s:s, s:o, s:i, s:i, s:i}}", "since", "git", "abc",
+                                      "date", "2026-01-31T12:00:00Z", "figures", figures, "worse",
+                                      3, "better", 0, "same", 0));
+        json_object_set_new(results, "verdict", verdict_make(results));
+        assert_true(page_make(&made, results));
+        char *whole = markup_unsealed(made.html, &sealed);
+        for (int k = 0; k < 4; k++) {
+            char row[120];
+            snprintf(row, sizeof row, "<td>%s<br/>and 2 more of the same", changes[k].path);
+            assert_int_equal(strstr(whole, row) != NULL, k == most);
+        }
         free(whole);
         page_free(&made);
         json_decref(results);
