@@ -60,7 +60,7 @@ static enum status take_terms(const struct options *options, struct request *req
 static enum status take_request(const struct options *options, struct request *request,
                                 struct error *error)
 {
-    double dim = 0, sinc_order = 5;
+    double dim, sinc_order = 5;
     *request = (struct request){.h = 1, .limit = GUARD_LIMIT, .options = options};
     if (!options_value(options, "dim"))
         return command_usage(options, error, "--dim is needed: 1, 2 or 3");

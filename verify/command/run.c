@@ -373,7 +373,7 @@ static enum status take_snapshots(struct snapshots *snapshots, const struct opti
         return error_set(error, STATUS_BAD_INPUT,
                          "run: --snapshot-every needs --snapshot FILE, after which its files are "
                          "named");
-    if (!text_real(every, &snapshots->every)) snapshots->every = 0;
+    (void)text_real(every, &snapshots->every); /* stays 0 if it is no number */
     if (snapshots_check(snapshots, settings_real(&run->settings, SETTING_t_end), &why))
         return error_set(error, STATUS_BAD_INPUT, "run: --snapshot-every '%.40s': %s", every,
                          why.message);
