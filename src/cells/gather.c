@@ -71,7 +71,7 @@ pairs_of_squares(const double *records, int size, const int32_t *slots, int coun
     }
 }
 
-#define STAMP(name, body, groups, set)                                                             \
+#define SPECIALISE(name, body, groups, set)                                                        \
     __attribute__((target(set))) static void name##_##groups(const double *records, int size,      \
                                                              const int32_t *slots, int count,      \
                                                              double *out, ptrdiff_t stride)        \
@@ -79,24 +79,24 @@ pairs_of_squares(const double *records, int size, const int32_t *slots, int coun
         (void)size;                                                                                \
         body(records, GATHER_GROUP *groups, slots, count, out, stride);                            \
     }
-#define STAMPS(name, body, set)                                                                    \
-    STAMP(name, body, 1, set)                                                                      \
-    STAMP(name, body, 2, set)                                                                      \
-    STAMP(name, body, 3, set)                                                                      \
-    STAMP(name, body, 4, set)                                                                      \
-    STAMP(name, body, 5, set)                                                                      \
-    STAMP(name, body, 6, set)                                                                      \
-    STAMP(name, body, 7, set)                                                                      \
-    STAMP(name, body, 8, set)                                                                      \
-    STAMP(name, body, 9, set)                                                                      \
-    STAMP(name, body, 10, set)                                                                     \
-    STAMP(name, body, 11, set)                                                                     \
-    STAMP(name, body, 12, set)                                                                     \
+#define SPECIALISE_ALL(name, body, set)                                                            \
+    SPECIALISE(name, body, 1, set)                                                                 \
+    SPECIALISE(name, body, 2, set)                                                                 \
+    SPECIALISE(name, body, 3, set)                                                                 \
+    SPECIALISE(name, body, 4, set)                                                                 \
+    SPECIALISE(name, body, 5, set)                                                                 \
+    SPECIALISE(name, body, 6, set)                                                                 \
+    SPECIALISE(name, body, 7, set)                                                                 \
+    SPECIALISE(name, body, 8, set)                                                                 \
+    SPECIALISE(name, body, 9, set)                                                                 \
+    SPECIALISE(name, body, 10, set)                                                                \
+    SPECIALISE(name, body, 11, set)                                                                \
+    SPECIALISE(name, body, 12, set)                                                                \
     static gather_loop *const name[GROUPS_MAX + 1] = {                                             \
         plain,    name##_1, name##_2, name##_3,  name##_4,  name##_5, name##_6,                    \
         name##_7, name##_8, name##_9, name##_10, name##_11, name##_12};
-STAMPS(avx2, squares, "avx2")
-STAMPS(avx512, pairs_of_squares, "avx512f")
+SPECIALISE_ALL(avx2, squares, "avx2")
+SPECIALISE_ALL(avx512, pairs_of_squares, "avx512f")
 
 gather_loop *gather_choose(int size)
 {

@@ -55,9 +55,9 @@ ALWAYS_INLINE void sum_pairs(const struct kernel *kernel, kernel_shape *w, kerne
 
 #ifdef KERNEL_FILE
 
-#define STAMP(terms, k) BODY(k##_##terms, k##_w, k##_dw, terms, CLONES)
+#define SPECIALISE(terms, k) BODY(k##_##terms, k##_w, k##_dw, terms, CLONES)
 #define KERNEL(name, ...)                                                                          \
-    DENSITY_LIST(STAMP, name)                                                                      \
+    DENSITY_LIST(SPECIALISE, name)                                                                 \
     density_loop *const loop_density_##name[DENSITY_TERMS] = {DENSITY_LIST(ENTRY, name)};
 #include KERNEL_FILE
 

@@ -146,8 +146,8 @@ ALWAYS_INLINE double force_body(enum formulation formulation, enum viscosity vis
         return force_body(formulation, viscosity, energy, loops, particles, first, len, D,         \
                           scratch);                                                                \
     }
-#define STAMP(f, v, e) BODY(force_##f##_##v##_##e, f, v, e, CLONES)
-ALL(STAMP)
+#define SPECIALISE(f, v, e) BODY(force_##f##_##v##_##e, f, v, e, CLONES)
+ALL(SPECIALISE)
 
 #define ENTRY(f, v, e) [f][v][e] = force_##f##_##v##_##e,
 static force_loop *const specialised[FORMULATIONS][VISCOSITIES][ENERGIES] = {ALL(ENTRY)};

@@ -70,9 +70,9 @@ ALWAYS_INLINE void gradients_of_pairs(const struct kernel *kernel, kernel_shape 
 
 #ifdef KERNEL_FILE
 
-#define STAMP(k, g, width) BODY(k##_##g##_##width, k##_w, k##_dw, g, width, CLONES)
+#define SPECIALISE(k, g, width) BODY(k##_##g##_##width, k##_w, k##_dw, g, width, CLONES)
 #define KERNEL(name, ...)                                                                          \
-    ALL(STAMP, name)                                                                               \
+    ALL(SPECIALISE, name)                                                                          \
     gradient_loop *const loop_gradient_##name[GRADIENTS][PAIR_GRADIENTS] = {ALL(ENTRY, name)};
 #include KERNEL_FILE
 

@@ -71,9 +71,9 @@ ALWAYS_INLINE void sum_moments(const struct kernel *kernel, kernel_shape *w, ker
 
 #ifdef KERNEL_FILE
 
-#define STAMP(k, g, slopes) BODY(k##_##g##_##slopes, k##_w, k##_dw, g, slopes, CLONES)
+#define SPECIALISE(k, g, slopes) BODY(k##_##g##_##slopes, k##_w, k##_dw, g, slopes, CLONES)
 #define KERNEL(name, ...)                                                                          \
-    ALL(STAMP, name)                                                                               \
+    ALL(SPECIALISE, name)                                                                          \
     matrix_loop *const loop_matrix_##name[GRADIENTS][2] = {ALL(ENTRY, name)};
 #include KERNEL_FILE
 

@@ -68,7 +68,7 @@ static bool all_finite(const struct particles *particles)
 static void sort_by_position(struct particles *particles)
 {
     for (ptrdiff_t i = 0; i < particles->n; i++) particles->order[i] = (size_t)i;
-    _Static_assert(sizeof(size_t) <= sizeof(double), "an array of numbers has room for indices");
+    _Static_assert(sizeof(size_t) <= sizeof(double), "an array of numbers can hold indices");
     sort_indices(particles->x[0], (size_t)particles->n, particles->order, (void *)particles->spare);
     particles_permute(particles);
 }

@@ -108,7 +108,7 @@ static _Noreturn void child(guard_work *work, const void *context, pid_t parent,
 struct stream {
     int file;
     char *text;
-    size_t length, room, most, seen;
+    size_t length, capacity, most, seen;
     bool failed; /* no memory */
 };
 
@@ -116,13 +116,13 @@ static void take(struct stream *stream, const char *bytes, size_t n)
 {
     stream->seen += n;
     if (n > stream->most - stream->length) n = stream->most - stream->length;
-    if (stream->length + n > stream->room) {
-        const size_t room = 2 * stream->room + n;
-        char *text = realloc(stream->text, room);
+    if (stream->length + n > stream->capacity) {
+        const size_t capacity = 2 * stream->capacity + n;
+        char *text = realloc(stream->text, capacity);
         stream->failed = stream->failed || !text;
         if (!text) return;
         stream->text = text;
-        stream->room = room;
+        stream->capacity = capacity;
     }
     if (n) memcpy(stream->text + stream->length, bytes, n);
     stream->length += n;

@@ -31,11 +31,11 @@ static void add_nodes(struct measure_spectrum *spectrum, const struct pieces *pi
 enum status measure_spectrum_make(struct measure_spectrum *spectrum, const struct pieces *pieces,
                                   struct error *error)
 {
-    const size_t room = NODES * ((size_t)pieces->n + (size_t)(1 / width) + 1);
+    const size_t capacity = NODES * ((size_t)pieces->n + (size_t)(1 / width) + 1);
     gsl_integration_glfixed_table *table = gsl_integration_glfixed_table_alloc(NODES);
     *spectrum = (struct measure_spectrum){.dim = pieces->dim};
-    spectrum->q = malloc(room * sizeof *spectrum->q);
-    spectrum->weight = malloc(room * sizeof *spectrum->weight);
+    spectrum->q = malloc(capacity * sizeof *spectrum->q);
+    spectrum->weight = malloc(capacity * sizeof *spectrum->weight);
     const bool made = table && spectrum->q && spectrum->weight;
     for (int i = 0; made && i < pieces->n; i++) {
         const double a = pieces->edge[i], b = pieces->edge[i + 1];

@@ -351,10 +351,10 @@ enum status pieces_find(struct pieces *pieces, const struct kernel *kernel, int 
     find_scale(pieces);
     find_grain(pieces);
     const int knots = kernel->knot_count > 0 ? kernel->knot_count : 0;
-    const size_t room = (size_t)LEAVES_MAX + 64 * (size_t)(knots + 2);
-    pieces->edge = calloc(room, sizeof *pieces->edge);
-    pieces->declared = calloc(room, sizeof *pieces->declared);
-    pieces->doubt = calloc(room, sizeof *pieces->doubt);
+    const size_t capacity = (size_t)LEAVES_MAX + 64 * (size_t)(knots + 2);
+    pieces->edge = calloc(capacity, sizeof *pieces->edge);
+    pieces->declared = calloc(capacity, sizeof *pieces->declared);
+    pieces->doubt = calloc(capacity, sizeof *pieces->doubt);
     if (!pieces->edge || !pieces->declared || !pieces->doubt) {
         pieces_free(pieces);
         return error_set(error, STATUS_ENVIRONMENT, "no memory for the pieces of a kernel");

@@ -47,11 +47,11 @@ static int make_centres(const struct pieces *pieces, double *centre)
 
 enum status places_find(struct pieces *pieces, struct error *error)
 {
-    const size_t room = (size_t)pieces->n + 1 + DECIMALS + DENOMINATORS * DENOMINATORS +
-                        3 * (size_t)pieces->terms.constant_count;
+    const size_t capacity = (size_t)pieces->n + 1 + DECIMALS + DENOMINATORS * DENOMINATORS +
+                            3 * (size_t)pieces->terms.constant_count;
     const size_t each = 1 + 2 * (DIGITS_TO - DIGITS_FROM + 1);
-    double *centre = malloc(room * sizeof *centre);
-    double *q = pieces->places = malloc(room * each * sizeof *q);
+    double *centre = malloc(capacity * sizeof *centre);
+    double *q = pieces->places = malloc(capacity * each * sizeof *q);
     const int centres = centre && q ? make_centres(pieces, centre) : 0;
     int n = 0;
     for (int i = 0; i < centres; i++) {

@@ -14,7 +14,7 @@
 #include "measure.h"
 #include "places.h"
 
-enum { KNOTS_ROOM = 1 << 16 };
+enum { KNOTS_CAPACITY = 1 << 16 };
 
 /* Functions of the plug-in; w and dw are required, the others may be NULL. */
 static struct functions {
@@ -131,11 +131,11 @@ static void take_name(struct user_kernel *user, const char *path, const struct f
 
 /* Adds the knots of one dimension to the list; 0 and 1 are break points anyway. */
 static enum status take_knots(struct user_kernel *user, const struct functions *f, int dim,
-                              double *room, struct error *error)
+                              double *found, struct error *error)
 {
-    for (int i = 0; i < KNOTS_ROOM; i++) room[i] = (double)NAN;
+    for (int i = 0; i < KNOTS_CAPACITY; i++) found[i] = (double)NAN;
     announce("sphproof_kernel_knots", dim);
-    const int n = f->knots(dim, room);
+    const int n = f->knots(dim, found);
     guard_back();
     double last = -1;
     if (n < 0 || n > SPHPROOF_KERNEL_KNOTS_MAX)
@@ -143,12 +143,12 @@ static enum status take_knots(struct user_kernel *user, const struct functions *
                          "kernel %s: sphproof_kernel_knots(%d) = %d; allowed: 0 to %d", user->name,
                          dim, n, SPHPROOF_KERNEL_KNOTS_MAX);
     for (int i = 0; i < n; i++) {
-        if (!(room[i] > last && room[i] >= 0 && room[i] <= 1))
+        if (!(found[i] > last && found[i] >= 0 && found[i] <= 1))
             return error_set(error, STATUS_BAD_INPUT,
                              "kernel %s: dim %d, knot %d of %d is %.17g; allowed: ascending values "
                              "between 0 and 1",
-                             user->name, dim, i + 1, n, room[i]);
-        last = room[i];
+                             user->name, dim, i + 1, n, found[i]);
+        last = found[i];
         if (last > 0 && last < 1) user->knots[user->kernel.knot_count++] = last;
     }
     return STATUS_OK;
@@ -159,12 +159,12 @@ static enum status take_all_knots(struct user_kernel *user, const struct functio
                                   const int range[2], struct error *error)
 {
     enum status status = STATUS_OK;
-    double *room = malloc(KNOTS_ROOM * sizeof *room);
+    double *found = malloc(KNOTS_CAPACITY * sizeof *found);
     user->knots = malloc((size_t)KERNEL_DIM_MAX * SPHPROOF_KERNEL_KNOTS_MAX * sizeof *user->knots);
-    if (!room || !user->knots) status = error_set(error, STATUS_ENVIRONMENT, "no memory");
+    if (!found || !user->knots) status = error_set(error, STATUS_ENVIRONMENT, "no memory");
     for (int dim = range[0]; dim <= range[1] && !status; dim++)
-        status = take_knots(user, f, dim, room, error);
-    free(room);
+        status = take_knots(user, f, dim, found, error);
+    free(found);
     if (status) return status;
     struct kernel *kernel = &user->kernel;
     list_sort(user->knots, (size_t)kernel->knot_count);

@@ -64,7 +64,7 @@ static enum status throw_points(const struct gas *gas, unsigned long seed, size_
     return STATUS_OK;
 }
 
-static double room_at(const void *context, const double x[3])
+static double volume_at(const void *context, const double x[3])
 {
     const struct gas *gas = context;
     return gas->mass / density_at(gas->p, x);
@@ -77,12 +77,12 @@ enum status equal_masses_fill(const struct prepared *p, const struct settings *s
     struct gas gas = {.p = p};
     measure(&gas);
     gas.mass /= (double)n;
-    const struct relax_region room = {p->domain, room_at, &gas};
+    const struct relax_region region = {p->domain, volume_at, &gas};
     if (initial_allocate(initial, p->domain.dim, n, error) ||
         throw_points(&gas, (unsigned long)settings_real(settings, SETTING_seed), n, initial->x,
                      error) ||
         (settings_choice(settings, SETTING_lattice) == LATTICE_GLASS &&
-         relax_points(&room, n, initial->x, error)))
+         relax_points(&region, n, initial->x, error)))
         return error->status;
     for (size_t i = 0; i < n; i++) {
         initial_sample(initial, p, i);

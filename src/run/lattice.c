@@ -136,12 +136,12 @@ enum status lattice_points(const struct lattice_plan *plan, unsigned long seed, 
                            struct error *error)
 {
     const struct crystal *crystal = crystal_of(plan->kind);
-    const struct relax_region room = {plan->box, equal_share, plan};
+    const struct relax_region region = {plan->box, equal_share, plan};
     enum status status = STATUS_OK;
     if (crystal)
         crystal_points(plan, crystal, x);
     else
         status = random_points(plan, seed, x, error);
     if (status || plan->kind != LATTICE_GLASS) return status;
-    return relax_points(&room, plan->n, x, error);
+    return relax_points(&region, plan->n, x, error);
 }

@@ -139,49 +139,49 @@ static double root(double volume, int dim)
 
 /* Hash of everything that determines the result: the box, the initial positions, and the volumes
  * there, which stand for the whole volume function. */
-static uint64_t content_of(const struct relax_region *room, size_t n, double *const x[3])
+static uint64_t content_of(const struct relax_region *region, size_t n, double *const x[3])
 {
-    const size_t dim = (size_t)room->box.dim;
-    uint64_t hash = cache_hash(CACHE_HASH, room->box.lo, dim * sizeof(double));
-    hash = cache_hash(hash, room->box.hi, dim * sizeof(double));
+    const size_t dim = (size_t)region->box.dim;
+    uint64_t hash = cache_hash(CACHE_HASH, region->box.lo, dim * sizeof(double));
+    hash = cache_hash(hash, region->box.hi, dim * sizeof(double));
     for (size_t d = 0; d < dim; d++) hash = cache_hash(hash, x[d], n * sizeof(double));
     for (size_t i = 0; i < n; i++) {
         double at[3] = {0};
         for (size_t d = 0; d < dim; d++) at[d] = x[d][i];
-        const double volume = room->volume(room->context, at);
+        const double volume = region->volume(region->context, at);
         hash = cache_hash(hash, &volume, sizeof volume);
     }
     return hash;
 }
 
-static enum status relax(const struct relax_region *room, size_t n, double *const x[3],
+static enum status relax(const struct relax_region *region, size_t n, double *const x[3],
                          struct error *error)
 {
     struct cloud cloud;
-    const int dim = room->box.dim;
+    const int dim = region->box.dim;
     double step = first_step;
-    enum status status = cloud_make(&cloud, &room->box, n, x, error);
+    enum status status = cloud_make(&cloud, &region->box, n, x, error);
     for (int sweep = 0; !status && sweep < SWEEPS; sweep++, step *= fading) {
         for (size_t i = 0; i < n; i++) {
             double at[3] = {0};
             for (int d = 0; d < dim; d++) at[d] = x[d][i];
-            cloud.width[i] = reach * root(room->volume(room->context, at), dim);
+            cloud.width[i] = reach * root(region->volume(region->context, at), dim);
         }
         if ((status = find(&cloud, error))) break;
         add_pushes(&cloud);
-        move(&cloud, &room->box, step);
+        move(&cloud, &region->box, step);
     }
     cloud_free(&cloud);
     return status;
 }
 
-enum status relax_points(const struct relax_region *room, size_t n, double *const x[3],
+enum status relax_points(const struct relax_region *region, size_t n, double *const x[3],
                          struct error *error)
 {
-    const uint64_t content = content_of(room, n, x);
-    if (relax_store_find(content, room->box.dim, n, x)) return STATUS_OK;
-    const enum status status = relax(room, n, x, error);
-    if (!status) relax_store_keep(content, room->box.dim, n, x);
+    const uint64_t content = content_of(region, n, x);
+    if (relax_store_find(content, region->box.dim, n, x)) return STATUS_OK;
+    const enum status status = relax(region, n, x, error);
+    if (!status) relax_store_keep(content, region->box.dim, n, x);
     return status;
 }
 

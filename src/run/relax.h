@@ -28,7 +28,7 @@ struct relax_quality {
 
 /* Relaxes n points in sweeps, or reads the result from the cache (relax_store_find).
  * STATUS_BAD_INPUT: too few points for a neighbourhood; or no memory. */
-enum status relax_points(const struct relax_region *room, size_t n, double *const x[3],
+enum status relax_points(const struct relax_region *region, size_t n, double *const x[3],
                          struct error *error);
 
 /* Quality of any n points with the given volumes. */

@@ -58,8 +58,8 @@ static bool listen_to(int pipes[PIPES][2], struct child_said *said)
             }
             size_t n = (size_t)got;
             if (i == 1) {
-                const size_t room = sizeof said->complaint - 1 - complained;
-                if (n > room) n = room;
+                const size_t left = sizeof said->complaint - 1 - complained;
+                if (n > left) n = left;
                 memcpy(said->complaint + complained, part, n);
                 complained += n;
                 continue;

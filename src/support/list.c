@@ -9,11 +9,11 @@
 bool list_grow(void *list, size_t count, size_t size)
 {
     void *old, *grown;
-    const size_t room = count ? 2 * count : 1;
+    const size_t capacity = count ? 2 * count : 1;
     if (count & (count - 1)) return true;
-    if (room < count || room > SIZE_MAX / size) return false;
+    if (capacity < count || capacity > SIZE_MAX / size) return false;
     memcpy(&old, list, sizeof old); /* memcpy, as the type of the caller's pointer is unknown */
-    grown = realloc(old, room * size);
+    grown = realloc(old, capacity * size);
     if (grown) memcpy(list, &grown, sizeof grown);
     return grown;
 }

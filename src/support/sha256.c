@@ -55,12 +55,12 @@ void sha256_add(struct sha256 *sum, const void *bytes, size_t n)
 {
     const unsigned char *from = bytes;
     while (n) {
-        const size_t used = sum->bytes % 64, room = 64 - used, part = n < room ? n : room;
+        const size_t used = sum->bytes % 64, left = 64 - used, part = n < left ? n : left;
         memcpy(sum->block + used, from, part);
         sum->bytes += part;
         from += part;
         n -= part;
-        if (part == room) take_block(sum);
+        if (part == left) take_block(sum);
     }
 }
 

@@ -18,7 +18,7 @@
 enum { VARIANTS = 3, LIST = 1024 };
 enum { SOLVER_ROWS_MAX = 4 }; /* rows of a kernel and a gradient, see add_solver */
 enum { CELLS_ROWS = 10 };     /* rows of a kernel in 2D or 3D, see add_cells */
-enum variant { STAMPED, UNSTAMPED, LIMIT };
+enum variant { SPECIALISED, GENERIC, LIMIT };
 
 /* A measurement, from which a column of a row is made. */
 struct job {
@@ -214,16 +214,16 @@ static enum status add_solver(struct bench *bench, const char *kernel, const cha
     struct run *run = malloc(sizeof *run);
     if (!run) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     struct job *step = new_row(bench, kernel, ia ? "step ia" : "step standard", 1, false);
-    step[STAMPED].run = run; /* owned by the first job */
+    step[SPECIALISED].run = run; /* owned by the first job */
     if (run_prepare(&asked, "sound_wave", sizeof arguments / sizeof *arguments, arguments, error) ||
         run_resolve(run, &asked, error))
         return error->status;
-    for (enum variant v = STAMPED; v <= UNSTAMPED; v++) {
+    for (enum variant v = SPECIALISED; v <= GENERIC; v++) {
         step[v].kind = JOB_STEP;
-        if (v == UNSTAMPED && !(step[v].run = malloc(sizeof *run)))
+        if (v == GENERIC && !(step[v].run = malloc(sizeof *run)))
             return error_set(error, STATUS_ENVIRONMENT, "no memory");
         *step[v].run = *run;
-        step[v].run->asked.generic = v == UNSTAMPED;
+        step[v].run->asked.generic = v == GENERIC;
     }
     const unsigned all =
         1u << PASS_STATE | 1u << PASS_DENSITY | 1u << PASS_MATRIX | 1u << PASS_FORCE;
@@ -232,8 +232,8 @@ static enum status add_solver(struct bench *bench, const char *kernel, const cha
         if (loops[l].ia != ia && !loops[l].both) continue;
         const char *name = !loops[l].both ? loops[l].name : ia ? "force ia" : "force standard";
         struct job *job = new_row(bench, kernel, name, 1, false);
-        for (enum variant v = STAMPED; v <= UNSTAMPED; v++)
-            if (prepare_loops(&job[v], &run->scheme, v == STAMPED, loops[l].passes, error))
+        for (enum variant v = SPECIALISED; v <= GENERIC; v++)
+            if (prepare_loops(&job[v], &run->scheme, v == SPECIALISED, loops[l].passes, error))
                 return error->status;
     }
     return STATUS_OK;
@@ -309,9 +309,9 @@ static enum status add_cells(struct bench *bench, const struct kernel *kernel, i
         struct job *job = new_row(bench, kernel->member.name, cells_rows[r].what, dim, false);
         if (cells_rows[r].passes == CELLS_EVALUATION) whole = bench->row_count - 1;
         bench->result->rows[bench->row_count - 1].whole = whole;
-        for (enum variant v = STAMPED; v <= UNSTAMPED; v++) {
+        for (enum variant v = SPECIALISED; v <= GENERIC; v++) {
             job[v].kind = JOB_CELLS;
-            if (bench_cells_create(&job[v].cells, &scheme, dim, side[dim], v == STAMPED,
+            if (bench_cells_create(&job[v].cells, &scheme, dim, side[dim], v == SPECIALISED,
                                    cells_rows[r].passes, error))
                 return error->status;
             job[v].pairs = job[v].cells.pairs;
@@ -341,10 +341,10 @@ static enum status add_operator(struct bench *bench, const struct kernel *kernel
                               FUNCTION_SMOOTH, &errors, error))
         return error->status;
     row->error = errors.interior_rms;
-    for (enum variant v = STAMPED; v <= LIMIT; v++) {
+    for (enum variant v = SPECIALISED; v <= LIMIT; v++) {
         job[v].kind = v == LIMIT ? JOB_LIMIT : JOB_OPERATOR;
         job[v].settings = (struct operator_settings){
-            .form = form, .kernel = kernel, .generic = v == UNSTAMPED, .threads = 1};
+            .form = form, .kernel = kernel, .generic = v == GENERIC, .threads = 1};
         job[v].cloud = cloud;
         job[v].field = bench->fields[dim - 1];
         job[v].particles = (double)cloud->cloud.points.n;

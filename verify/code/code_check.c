@@ -56,14 +56,14 @@ static bool words_known(struct ini_text *at, const char *text, const char *file,
 static bool template_known(struct ini_text *at, const char *path)
 {
     char *line = NULL;
-    size_t room = 0;
+    size_t capacity = 0;
     bool known = true;
     FILE *file = fopen(path, "r");
     if (!file) {
         ini_text_fail_value(at, "parameters", path, "files that can be read");
         return false;
     }
-    for (int number = 1; known && getline(&line, &room, file) >= 0; number++)
+    for (int number = 1; known && getline(&line, &capacity, file) >= 0; number++)
         known = words_known(at, line, path, number);
     free(line);
     fclose(file);

@@ -25,7 +25,7 @@ SWAPPED_CALLS = {"fmin": "fmax", "fmax": "fmin", "fminl": "fmaxl", "fmaxl": "fmi
 # Comparisons of strings are taken as tests of equality.
 COMMUTE = {"fmin", "fmax", "fminl", "fmaxl", "least", "largest", "hypot", "strcmp", "strncmp", "memcmp", "json_equal",
            "calloc", "fwrite", "swap"}
-ROOM = {"malloc", "calloc", "realloc"}  # a larger block changes nothing
+ALLOCATIONS = {"malloc", "calloc", "realloc"}  # a larger block changes nothing
 SAID = ("reports/", "verify/command/")  # numbers are printed with three digits, or drawn
 ARITHMETIC = {"+": "-", "-": "+", "*": "/", "/": "*"}
 COMPARE = {"<": ("<=", ">"), ">": (">=", "<"), "<=": ("<", ">="), ">=": (">", "<="), "==": ("!=",), "!=": ("==",),
@@ -125,7 +125,7 @@ class Walker:
         self.c, self.tree, self.sources, self.done = cindex, tree, sources, done
         self.kind = cindex.CursorKind
         self.returns = self.spans = None
-        self.either, self.in_room, self.compared = set(), False, False
+        self.either, self.in_allocation, self.compared = set(), False, False
         self.decimals = set().union(*(source.decimals for name, source in sources.items() if name.endswith(".h")))
 
     def file_of(self, cursor):
@@ -420,9 +420,9 @@ class Walker:
                     continue
                 self.initialised(child)
             return
-        outer = self.in_room, self.compared
+        outer = self.in_allocation, self.compared
         if cursor.kind == k.CALL_EXPR:
-            self.in_room = self.in_room or cursor.spelling in ROOM
+            self.in_allocation = self.in_allocation or cursor.spelling in ALLOCATIONS
             self.compared = self.compared and cursor.spelling in PURE
         elif cursor.kind == k.BINARY_OPERATOR:
             self.compared = self.compared or self.operator(cursor)[0] in ("<", ">", "<=", ">=")
@@ -430,7 +430,7 @@ class Walker:
         for child in children:
             if child.kind.is_expression() and not (handle and self.code(child) == "0"):
                 self.expression(child)
-        self.in_room, self.compared = outer
+        self.in_allocation, self.compared = outer
 
     def initialised(self, cursor):
         """A member of a compound literal: clang has .name = value as an expression around the value."""
@@ -448,7 +448,7 @@ class Walker:
         if not re.match(r"^[0-9.]", code) or code.startswith("0x"):
             return
         if not real:
-            if not self.in_room and not (self.compares and code == "1"):
+            if not self.in_allocation and not (self.compares and code == "1"):
                 self.add(cursor, "%s + 1" % code, pure=True)
             if code != "0":
                 self.add(cursor, "%s - 1" % code, pure=True)

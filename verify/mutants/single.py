@@ -6,7 +6,7 @@ import os
 import re
 
 # Capacities of text and paths: one byte more is not a fault.
-ROOM = re.compile(r"TEXT|PATH|BYTES|LABEL|WORD|NAME|LINE|BUFFER|_MAX$")
+CAPACITIES = re.compile(r"TEXT|PATH|BYTES|LABEL|WORD|NAME|LINE|BUFFER|_MAX$")
 NUMBER = re.compile(r"(?<![\w.\"])(\d+\.?\d*(?:e[-+]?\d+)?|\.\d+)(?![\w.])")
 TYPED = re.compile(r'"(\d+(?:\.\d+)?(?:e[-+]?\d+)?)"')
 
@@ -46,7 +46,7 @@ def regions(name, text):
     """(start, end, true for enumerators) of constant expressions in a text without comments and strings."""
     found = []
     for m in re.finditer(r"^#define (\w+)[ \t]+(\(?-?[\d.][^\n\\]*)$", text, flags=re.M):
-        if not ROOM.search(m[1]):
+        if not CAPACITIES.search(m[1]):
             found.append((m.start(2), m.end(2), False))
     code = re.sub(r"^#(?:[^\n\\]|\\\n|\\.)*", lambda m: re.sub(r"[^\n]", " ", m[0]), text, flags=re.M)
     at = 0
@@ -100,7 +100,7 @@ def find(sources):
                 if plain[m.start() - 1] == "[" or plain[:m.start()].rstrip()[-1:] == "[":
                     continue
                 named = re.findall(r"(\w+)\s*=[^=,]*$", plain[start:m.start()])
-                if enumerator and named and ROOM.search(named[-1]):
+                if enumerator and named and CAPACITIES.search(named[-1]):
                     continue
                 for new in alternatives(m[1], enumerator):
                     constants.append(Constant(source, m.start(), m.end(), new, "%s -> %s" % (m[1], new)))

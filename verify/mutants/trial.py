@@ -61,8 +61,8 @@ def units_of(build, source, tree, wanted):
     """The quick suite's tests from meson; groups of checks are split into checks, and transcripts likewise. tree: the
     rewritten copy of source. wanted: a regular expression for their names."""
     checked, tested = os.path.join(source, "verify", "check"), os.path.join(source, "verify", "test")
-    rooms = [os.path.join(source, r) for r in ("src", "reference", "reports", "cases", "verify")]
-    common = hash_of([f for r in rooms for f in files_below(r) if f.endswith((".c", ".h", ".def", ".in", ".case"))
+    folders = [os.path.join(source, r) for r in ("src", "reference", "reports", "cases", "verify")]
+    common = hash_of([f for r in folders for f in files_below(r) if f.endswith((".c", ".h", ".def", ".in", ".case"))
                       and not f.startswith((checked, tested))], source)
     checks = checks_of(checked)
     checks_key = hash_of(files_below(checked), source)

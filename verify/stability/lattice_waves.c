@@ -112,10 +112,11 @@ static enum status solve(const struct lattice_waves *lattice, double D[3][3],
         for (size_t b = 0; b < dim; b++) entries[a * dim + b] = D[b][a] / (unit * unit);
     gsl_matrix_view matrix = gsl_matrix_view_array(entries, dim, dim);
     gsl_vector_complex *values = gsl_vector_complex_alloc(dim);
-    gsl_eigen_nonsymm_workspace *room = gsl_eigen_nonsymm_alloc(dim);
-    enum status status = values && room && !gsl_eigen_nonsymm(&matrix.matrix, values, room)
-                             ? STATUS_OK
-                             : error_set(error, STATUS_ENVIRONMENT, "no eigenvalues of a wave");
+    gsl_eigen_nonsymm_workspace *workspace = gsl_eigen_nonsymm_alloc(dim);
+    enum status status =
+        values && workspace && !gsl_eigen_nonsymm(&matrix.matrix, values, workspace)
+            ? STATUS_OK
+            : error_set(error, STATUS_ENVIRONMENT, "no eigenvalues of a wave");
     *wave = (struct lattice_wave){0};
     for (size_t k = 0; k < dim && !status; k++) {
         const gsl_complex omega = gsl_complex_sqrt(gsl_vector_complex_get(values, k));
@@ -123,7 +124,7 @@ static enum status solve(const struct lattice_waves *lattice, double D[3][3],
         wave->frequency = fmax(wave->frequency, fabs(GSL_REAL(omega)));
     }
     if (values) gsl_vector_complex_free(values);
-    if (room) gsl_eigen_nonsymm_free(room);
+    if (workspace) gsl_eigen_nonsymm_free(workspace);
     return status;
 }
 

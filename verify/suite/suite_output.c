@@ -254,8 +254,8 @@ static bool plot_failure(const struct suite *suite, const struct tally *t, const
 {
     const size_t n = t->end - t->begin;
     struct plot_series data[SERIES_SHOWN], figures[SERIES_SHOWN];
-    double *room = calloc(3 * n + 1, sizeof *room);
-    if (!room) return false;
+    double *values = calloc(3 * n + 1, sizeof *values);
+    if (!values) return false;
     const size_t curves = curves_of(suite, t->check, data);
     const struct plot_mark bound = {.at = 1, .horizontal = true, .label = "bound"};
     const struct plot_panel panels[] = {
@@ -268,7 +268,7 @@ static bool plot_failure(const struct suite *suite, const struct tally *t, const
          .y_label = "value / bound",
          .y_log = true,
          .series = figures,
-         .series_count = figures_of(suite, t, figures, room, room + n, room + 2 * n),
+         .series_count = figures_of(suite, t, figures, values, values + n, values + 2 * n),
          .marks = &bound,
          .mark_count = 1,
          .own_x = true}};
@@ -287,7 +287,7 @@ static bool plot_failure(const struct suite *suite, const struct tally *t, const
         drawn = output_close(&output, NULL) == STATUS_OK;
     }
     free(bytes);
-    free(room);
+    free(values);
     return drawn;
 }
 

@@ -51,7 +51,7 @@ def main():
         os.makedirs(folder)
         with open(os.path.join(source, "verify/examples/ci", name), encoding="utf-8") as file:
             run(file.read(), source, folder)
-        print("%s: installed, a gate that holds passes and one that fails is told" % name)
+        print("%s: installed, a gate that holds passes and one that fails is reported" % name)
 
 
 main()

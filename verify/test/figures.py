@@ -61,7 +61,7 @@ def on_the_tree():
     # texts with a fault
     if not free_figures("", "The error is 0.017 here.") or not free_figures("", "It gains 5 %.") or \
             free_figures("", "`eta=3.6` around 48^2, see CONVENTIONS eq. 4.8."):
-        troubles.append("figures in sentences are not told from keys")
+        troubles.append("figures in sentences are not distinguished from keys")
     return troubles
 
 
@@ -217,4 +217,4 @@ for trouble in ALL:
     print(trouble)
 if ALL:
     sys.exit("%d troubles" % len(ALL))
-print("%d faults are told; the documents show what is kept" % len(FAULTS))
+print("%d faults are reported; the documents show what is kept" % len(FAULTS))

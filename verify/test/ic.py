@@ -157,9 +157,9 @@ def test_slab(draw):
 
 
 def test_refused():
-    for words, told in BAD:
+    for words, reported in BAD:
         said = answer(*words.split(), status=2)
-        assert told in said, (words, said)
+        assert reported in said, (words, said)
         assert not os.path.exists("a.csv") and not os.path.exists("a"), words
 
 

@@ -265,20 +265,20 @@ def one_list_of_findings(folder):
         got = judge(*ladder, *words, "--junit", xml, "--html", page, status=status)
         assert [g["status"] for g in got["gates"]] == said, (words, got["gates"])
         # a requested gate that cannot be decided fails in all of them
-        told = ["fail" if s == "undetermined" and g["source"] == "--gate" else s for s, g in zip(said, got["gates"])]
-        assert [f["status"] for f in got["findings"]] == ["pass"] * 4 + told, (words, got["findings"])
-        assert got["status"] == ("fail" if "fail" in told else "pass"), (words, got["status"])
+        reported = ["fail" if s == "undetermined" and g["source"] == "--gate" else s for s, g in zip(said, got["gates"])]
+        assert [f["status"] for f in got["findings"]] == ["pass"] * 4 + reported, (words, got["findings"])
+        assert got["status"] == ("fail" if "fail" in reported else "pass"), (words, got["status"])
         tests = ElementTree.parse(xml).findall(".//testcase")
         assert [t.get("name") for t in tests] == [f["name"] for f in got["findings"]], words
         assert [{"failure": "fail", "skipped": "undetermined"}[t[0].tag] if len(t) else "pass" for t in tests] == \
             [f["status"] for f in got["findings"]], words
-        told = subprocess.run([PROGRAM, "judge", *ladder, *words], capture_output=True, text=True, timeout=120).stdout
+        reported = subprocess.run([PROGRAM, "judge", *ladder, *words], capture_output=True, text=True, timeout=120).stdout
         with open(page, encoding="utf-8") as file:
             html = file.read()
         for gate in got["gates"]:
-            assert ": %s" % gate["status"] in next(line for line in told.split("\n") if line.startswith("gate %s " % gate["name"]))
+            assert ": %s" % gate["status"] in next(line for line in reported.split("\n") if line.startswith("gate %s " % gate["name"]))
             assert "<code>%s</code>" % gate["name"] in html, gate
-        assert told.endswith(got["headline"] + "\n") and got["headline"].replace("<", "&lt;").replace(">", "&gt;") in html, told
+        assert reported.endswith(got["headline"] + "\n") and got["headline"].replace("<", "&lt;").replace(">", "&gt;") in html, reported
     bound = next(g for g in judge(ladder[1], "--gates", "case")["gates"] if g["name"] == "density_l1")
     near("the case's bound", bound["bound"], 1.5e-3 * (1584 / 200) ** 0.85, 1e-9)
     assert bound["source"] == "case sod: 0.0015 at n = 1584, raised by order 0.85 to n = 200", bound

@@ -111,14 +111,14 @@ def main():
         result = judged("ic.csv", case)
         for field in ("velocity", "pressure") if case == "hydrostatic" else ("velocity",):
             check(result["errors"][field]["l1"] < 1e-15, case, "starts otherwise:", field, result["errors"][field])
-    for words, told in ((("nu=0",), "nu=0"), (("gravity=0 -1",), "along x"), (("speed=0",), "stays at rest")):
+    for words, reported in ((("nu=0",), "nu=0"), (("gravity=0 -1",), "along x"), (("speed=0",), "stays at rest")):
         code, _, err = said("ic", "couette", *words, "--format", "csv", "--out", "no.csv")
-        check(code == 2 and told in err and not os.path.exists("no.csv"), words, code, err)
-    for case, word, told in (("hydrostatic", "gravity=0 1", "downwards"), ("standing_wave", "gravity=1 0", "downwards"),
+        check(code == 2 and reported in err and not os.path.exists("no.csv"), words, code, err)
+    for case, word, reported in (("hydrostatic", "gravity=0 1", "downwards"), ("standing_wave", "gravity=1 0", "downwards"),
                              ("taylor_green", "hi=2 1", "one length"), ("taylor_green", "speed=0", "no vortices"),
                              ("standing_wave", "amplitude=0", "no wave")):
         code, _, err = said("ic", case, word, "--format", "csv", "--out", "no.csv")
-        check(code == 2 and told in err, case, word, code, err)
+        check(code == 2 and reported in err, case, word, code, err)
 
 
 play(main)

@@ -258,11 +258,11 @@ def test_same(draw):
 
 
 def test_failures():
-    for mode, reason, told in FAILURES:
+    for mode, reason, reported in FAILURES:
         write("bad.ini", FILE % (mode + " sod", 1 if mode == "hang" else 60, "200 MB" if mode == "eat" else "none"))
         done = document("run", "sod", "n=198", "--code", "bad.ini", status=3)
         assert (done["status"], done["reason"], done["n"]) == ("failed", reason, 198), (mode, done["reason"], done["message"])
-        assert told in done["message"] and reason in done["message"], (mode, done["message"])
+        assert reported in done["message"] and reason in done["message"], (mode, done["message"])
         assert "the code says: mode " + mode in done["code"]["log"] or mode in ("exit", "hang", "eat", "killed"), done["code"]
     assert not glob.glob("tmp/*"), glob.glob("tmp/*")
 
@@ -340,15 +340,15 @@ def test_again():
 
 def test_refused():
     write("bad.in", "a = @N@\nb = @WRONG@\n")
-    for old, new, told in BAD:
+    for old, new, reported in BAD:
         assert old in GOOD, old
         write("bad.ini", GOOD.replace(old, new, 1))
         out, said = answer("run", "sod", "--code", "bad.ini", "--work", "refused", status=2)
-        assert not out and any(part in said for part in told.split("|")), (new, said)
-    for words, told in ((("run", "noh_2d"), "gresho"), (("run", "sod", "kernel=cubic_spline"), "kernel"),
+        assert not out and any(part in said for part in reported.split("|")), (new, said)
+    for words, reported in ((("run", "noh_2d"), "gresho"), (("run", "sod", "kernel=cubic_spline"), "kernel"),
                         (("run", "sod", "--snapshot", "a.csv"), "--work"), (("run", "sod", "n=2"), "n")):
         out, said = answer(*words, "--code", "good.ini", "--work", "refused", status=2)
-        assert not out and told in said, (words, said)
+        assert not out and reported in said, (words, said)
     assert "--code" in answer("run", "sod", "--work", "refused", status=2)[1]
     assert not os.path.exists("refused") and not os.path.exists("a.csv")
 
@@ -435,8 +435,8 @@ def test_ladder(draw):
     write("bad.ini", GOOD.replace("good gresho", "exit gresho"))
     done = document("converge", "gresho", "--code", "bad.ini", "--work", "runs", status=3)
     assert done["status"] == "failed" and "no such table" in done["message"] and "n = 100" in done["message"], done
-    for words, told in (("--vary", "kernel"), "kernel"), (("eta=3",), "eta"):
-        assert told in answer("converge", "gresho", *words, "--code", "good.ini", status=2)[1], words
+    for words, reported in (("--vary", "kernel"), "kernel"), (("eta=3",), "eta"):
+        assert reported in answer("converge", "gresho", *words, "--code", "good.ini", status=2)[1], words
     write("tight.ini", GOOD.replace("0.5 10", "0.5 1e-9"))
     document("converge", "gresho", "--n", ladder, "--code", "tight.ini", "--cache", "cache", status=1)
     # the old bound is that at the end of the case's own ladder, and allows a larger one at the end of a shorter
@@ -538,10 +538,10 @@ def test_calibrate():
     os.mkdir("elsewhere")
     write("none.ini", text.replace(command % "viscous", "command = ./none.py"))
     assert "command = ./none.py" in answer("calibrate", "none.ini", "gresho", status=2)[1]
-    for words, told in ((("--runs", "1"), "from 2 to 16"), (("--out", "elsewhere/a.ini"), "in the folder of mine.ini"),
+    for words, reported in ((("--runs", "1"), "from 2 to 16"), (("--out", "elsewhere/a.ini"), "in the folder of mine.ini"),
                         (("sedd",), "sedd"), (("gresho", "gresho"), "given twice"), (("--jobs", "0"), "--jobs")):
         said = answer("calibrate", "mine.ini", *words, status=2)
-        assert told in said[1] and not said[0], (words, said)
+        assert reported in said[1] and not said[0], (words, said)
     assert not os.listdir("elsewhere")
     assert "sees no fault" in answer("calibrate", "mine.ini", "gresho", "--runs", "3", *keep, status=1)[0]
 
@@ -603,8 +603,8 @@ def test_report():
         column = rows[0].index(name)
         assert [row[0] for row in rows if row[column] == "—"] == missing.split(), (name, rows)
     assert "Broken" in read("out/junit.xml")
-    for words, told in ((("--nightly",), "--nightly and --code"), (("--code", "both.ini"), "two codes are called")):
-        assert told in answer("report", "--code", "both.ini", *words, "--out", "none", status=2)[1], words
+    for words, reported in ((("--nightly",), "--nightly and --code"), (("--code", "both.ini"), "two codes are called")):
+        assert reported in answer("report", "--code", "both.ini", *words, "--out", "none", status=2)[1], words
     assert not os.path.exists("none")
 
 
@@ -637,8 +637,8 @@ def test_bench():
             same(a["error"], b["error"], "error", 1e-10)
     write("bad.ini", GOOD.replace("good gresho", "exit gresho"))
     found = document("bench", "gresho", "--code", "bad.ini", *brief)
-    told = [scheme for scheme in found["excluded"] if scheme["scheme"] == "Broken" or "no such table" in json.dumps(scheme)]
-    assert told and not [point for point in found["points"] if point["scheme"] == "Stand-in"], found["excluded"]
+    reported = [scheme for scheme in found["excluded"] if scheme["scheme"] == "Broken" or "no such table" in json.dumps(scheme)]
+    assert reported and not [point for point in found["points"] if point["scheme"] == "Stand-in"], found["excluded"]
     assert "exclude each other" in answer("bench", "--kernels", "--code", "good.ini", status=2)[1]
 
 

@@ -20,8 +20,8 @@ def document(*words, status=0):
 def gates(case, status, keys=()):
     """The ladder of the code file; each n once, without replicates."""
     found = document("converge", case, *keys, "--replicates", "1", "--jobs", "2", status=status != "pass")
-    told = [order["status"] for order in found["orders"] if order["gate"]]
-    assert told == [status], (case, told, found["orders"])
+    reported = [order["status"] for order in found["orders"] if order["gate"]]
+    assert reported == [status], (case, reported, found["orders"])
 
 
 def test_pysph():

@@ -237,7 +237,7 @@ def failing_thread(expect):
         failed = False
     except OSError:
         failed = True
-    expect("what goes wrong in a thread is told", failed)
+    expect("what goes wrong in a thread is reported", failed)
 
 
 def sound_without(expect):
@@ -269,7 +269,7 @@ def in_rounds(expect, score):
              for n in ("dear", "cheap", "middling", "new", "script")]
     expect("cheap tests, and new ones that are no scripts, come first, then what is dearer",
            [[u.name for u in r] for r in table.in_rounds(units)] == [["cheap", "new"], ["middling", "script"], ["dear"]])
-    asked, told, admitted = [], [], []
+    asked, reported, admitted = [], [], []
 
     def judge_one(m, near, before, worker):
         asked.append((m.key, len(admitted)))
@@ -285,14 +285,14 @@ def in_rounds(expect, score):
     mutants = [Mutant(k) for k in ("a", "b", "c")]
     command = load(score)
     command.try_all(mutants, [["a"], ["b"]], judge, lambda: {"f": set()}, {},
-                    lambda m, entry: told.append((m.key, entry["outcome"])), 1, lambda: float("inf"))
+                    lambda m, entry: reported.append((m.key, entry["outcome"])), 1, lambda: float("inf"))
     expect("what the first round notices is not asked in the second: %s" % asked,
            asked == [("a", 1), ("b", 1), ("c", 1), ("b", 2), ("c", 2)])
-    expect("each is told once: %s" % told, told == [("a", "killed"), ("b", "killed"), ("c", "survived")])
-    left, told[:] = iter([9, 9, 9, -1] + [-1] * 99), []
+    expect("each is reported once: %s" % reported, reported == [("a", "killed"), ("b", "killed"), ("c", "survived")])
+    left, reported[:] = iter([9, 9, 9, -1] + [-1] * 99), []
     command.try_all(mutants, [["x"], ["y"]], judge, lambda: {"f": set()}, {},
-                    lambda m, entry: told.append((m.key, entry["outcome"])), 1, lambda: next(left))
-    expect("when the time is over, those that were asked are told: %s" % told, 1 <= len(told) < 3)
+                    lambda m, entry: reported.append((m.key, entry["outcome"])), 1, lambda: next(left))
+    expect("when the time is over, those that were asked are reported: %s" % reported, 1 <= len(reported) < 3)
 
 
 def write(path, text):

@@ -94,7 +94,7 @@ def test_trouble():
     expect("nothing half", not [name for name in os.listdir(".") if "tmp" in name], os.listdir("."))
     full = run(["sod", "n=3000", "t_end=1e-4"], "--snapshot", "large.csv", "--snapshot-every", "5e-5", "--json", "large.json",
                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100000, 100000)))
-    expect("no room", full.returncode == 4 and "large_0000.csv" in full.stderr and not glob.glob("large*csv") and
+    expect("no space", full.returncode == 4 and "large_0000.csv" in full.stderr and not glob.glob("large*csv") and
            os.path.exists("large.json"), (full.returncode, full.stderr, glob.glob("large*")))
 
 

@@ -75,7 +75,7 @@ static enum status equal(struct error *error)
     return status;
 }
 
-static double room(const void *context, const double x[3])
+static double volume(const void *context, const double x[3])
 {
     (void)context, (void)x;
     return 1;
@@ -83,7 +83,7 @@ static double room(const void *context, const double x[3])
 
 static enum status relaxed(struct error *error)
 {
-    const struct relax_region all = {{2, {0, 0}, {10, 10}}, room, NULL};
+    const struct relax_region all = {{2, {0, 0}, {10, 10}}, volume, NULL};
     make_places();
     return relax_points(&all, N, (double *const[]){places[0], places[1], places[2]}, error);
 }

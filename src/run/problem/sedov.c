@@ -76,8 +76,8 @@ static double weight_of(const struct prepared *p, const struct initial *initial,
  * box, the shocks of neighbouring images meet and the gas between them is lost. Measured: 8^3 and
  * 9^3 broke down at t = 0.055; 7^2 to 9^2 showed no shock; all of 10^3 to 20^3 and of 10^2 to 24^2
  * completed. */
-static enum status check_room(const struct prepared *p, const struct settings *settings,
-                              const struct initial *initial, struct error *error)
+static enum status check_space(const struct prepared *p, const struct settings *settings,
+                               const struct initial *initial, struct error *error)
 {
     const double smeared = 4, t_end = settings_real(settings, SETTING_t_end);
     const int dim = p->domain.dim;
@@ -86,12 +86,12 @@ static enum status check_room(const struct prepared *p, const struct settings *s
         half = fmin(half, 0.5 * domain_length(&p->domain, d));
         volume *= domain_length(&p->domain, d);
     }
-    const double room = 1.6 * half, shock = t_end > 0 ? sedov_shock(sedov_of(p), t_end) : 0;
+    const double space = 1.6 * half, shock = t_end > 0 ? sedov_shock(sedov_of(p), t_end) : 0;
     const double size = pow(volume, 1. / dim), spacing = size / pow((double)initial->n, 1. / dim);
-    if (shock + smeared * spacing <= room * (1 + 1e-6)) return STATUS_OK;
+    if (shock + smeared * spacing <= space * (1 + 1e-6)) return STATUS_OK;
     /* R grows as t^(2/(d + 2)) */
-    const double least = smeared * size / (room - shock),
-                 longest = t_end * pow(fmax(room - smeared * spacing, 0) / shock, 0.5 * dim + 1);
+    const double least = smeared * size / (space - shock),
+                 longest = t_end * pow(fmax(space - smeared * spacing, 0) / shock, 0.5 * dim + 1);
     char sooner[40] = "";
     if (longest > 1e-9 * t_end)
         snprintf(sooner, sizeof sooner, ", or t_end <= %.3g", 0.999 * longest);
@@ -105,7 +105,7 @@ static enum status fill(const struct prepared *p, const struct settings *setting
                         struct initial *initial, struct error *error)
 {
     enum status status = initial_fill(p, settings, initial, error);
-    if (!status) status = check_room(p, settings, initial, error);
+    if (!status) status = check_space(p, settings, initial, error);
     double sum = 0;
     for (size_t i = 0; !status && i < initial->n; i++)
         sum += initial->m[i] * weight_of(p, initial, i);

@@ -63,12 +63,12 @@ static double inverse_error(int dim, const double *a, const double *inverse)
     exact_inverse(dim, a, exact);
     for (int i = 0; i < dim; i++)
         for (int j = 0; j < dim; j++) {
-            real room = 0;
+            real scale = 0;
             for (int p = 0; p < dim; p++)
                 for (int q = 0; q < dim; q++)
-                    room += size_of(exact[i * dim + p] * a[p * dim + q] * exact[q * dim + j]);
+                    scale += size_of(exact[i * dim + p] * a[p * dim + q] * exact[q * dim + j]);
             const double error =
-                (double)(size_of(inverse[i * dim + j] - exact[i * dim + j]) / room / DBL_EPSILON);
+                (double)(size_of(inverse[i * dim + j] - exact[i * dim + j]) / scale / DBL_EPSILON);
             if (!(error <= worst)) worst = error;
         }
     return worst;

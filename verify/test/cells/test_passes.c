@@ -34,10 +34,10 @@ TEST(test_largest_condition_number)
         assert_int_equal(cells_arrange(cells, &fields, radius, NULL, NULL), STATUS_OK);
         size_t beyond = 0;
         matrix[0][20] = 0;
-        const size_t told = cells_matrix(cells, &fields);
+        const size_t reported = cells_matrix(cells, &fields);
         for (int i = 0; i < N; i++)
             if (!(condition[i] <= method.worst_condition)) beyond++;
-        assert_int_equal(told, beyond);
+        assert_int_equal(reported, beyond);
         assert_true(matrix[0][20] != 0);
         method.worst_condition = condition[20];
         cells_destroy(cells);

@@ -13,23 +13,23 @@
 #include "printed.h"
 
 /* the command itself, because its static functions are tested; progress is reported to this file */
-#define progress_update told_update
-#define progress_end    told_end
+#define progress_update reported_update
+#define progress_end    reported_end
 #include "compare.c"
 
-static double told;
-static int told_count, told_ends;
+static double reported;
+static int reported_count, reported_ends;
 
-void told_update(struct progress *progress, double done, double total)
+void reported_update(struct progress *progress, double done, double total)
 {
     assert_non_null(progress);
-    told = done / total, told_count++;
+    reported = done / total, reported_count++;
 }
 
-void told_end(struct progress *progress)
+void reported_end(struct progress *progress)
 {
     assert_non_null(progress);
-    told_ends++;
+    reported_ends++;
 }
 
 static const char *values[3];
@@ -402,9 +402,10 @@ TEST(numbers_of_particles_of_draws)
         c.asked = rows[k].asked;
         for (size_t r = 0; r < c.asked; r++)
             c.sides[0].cpu_s[r] = c.sides[1].cpu_s[r] = (double)NAN;
-        told_count = told_ends = 0;
+        reported_count = reported_ends = 0;
         if (serialise_out(&c, &options, &error)) fail_msg("%s", error.message);
-        assert_true(told_count == (int)(2 * rows[k].asked) && told_ends == 1 && told == 1);
+        assert_true(reported_count == (int)(2 * rows[k].asked) && reported_ends == 1 &&
+                    reported == 1);
         assert_int_equal(c.draws, rows[k].draws);
         for (int s = 0; s < 2; s++) {
             for (size_t r = 0; r < c.draws; r++) {

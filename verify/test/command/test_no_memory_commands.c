@@ -118,12 +118,12 @@ TEST(commands)
         for (int k = 0; k < all; k += 1 + all / most) {
             const int now = run(lines[c], k, printed);
             const bool same = now == status && strcmp(printed, usual) == 0,
-                       told = now == STATUS_ENVIRONMENT ? strstr(errors, "mmory") != NULL
-                              : now == STATUS_OK        ? nans(printed) > nans(usual)
-                                                        : strstr(printed, "mmory") != NULL;
+                       reported = now == STATUS_ENVIRONMENT ? strstr(errors, "mmory") != NULL
+                                  : now == STATUS_OK        ? nans(printed) > nans(usual)
+                                                            : strstr(printed, "mmory") != NULL;
             size_t at = 0;
             while (usual[at] && usual[at] == printed[at]) at++;
-            if (!same && !told)
+            if (!same && !reported)
                 fail_msg("%s: allocation %d of %d: status %d: %s; prints %.60s, not %.60s",
                          lines[c], k, all, now, errors, printed + at, usual + at);
         }

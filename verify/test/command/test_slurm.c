@@ -23,7 +23,7 @@ static void command_says(const char *name, const char *output, const char *compl
     fclose(file);
     file = fopen(path_of(name), "w");
     fprintf(file,
-            "#!/bin/sh\nprintf '[%%s]' \"$@\" >%s/%s.told\nIFS= read -r nothing && exit 99\n"
+            "#!/bin/sh\nprintf '[%%s]' \"$@\" >%s/%s.arguments\nIFS= read -r nothing && exit 99\n"
             "while IFS= read -r line; do echo \"$line\"; done <%s/%s.said\n"
             "[ -z \"%s\" ] || echo \"%s\" >&2\nexit %d\n",
             place, name, place, name, complaint, complaint, code);
@@ -32,11 +32,11 @@ static void command_says(const char *name, const char *output, const char *compl
     assert_int_equal(setenv("PATH", place, 1), 0); /* no other command is found */
 }
 
-static const char *told(const char *name)
+static const char *arguments_of(const char *name)
 {
     static char text[2000];
     char path[64];
-    snprintf(path, sizeof path, "%s.told", name);
+    snprintf(path, sizeof path, "%s.arguments", name);
     FILE *file = fopen(path_of(path), "r");
     assert_non_null(file);
     text[fread(text, 1, sizeof text - 1, file)] = '\0';
@@ -60,8 +60,8 @@ static void queue_is(const char *output, const struct expected *tasks, size_t n)
     size_t count;
     command_says("squeue", output, "", 0);
     assert_int_equal(slurm_queue("name", &found, &count, &error), STATUS_OK);
-    assert_string_equal(told("squeue"), "[--noheader][--array][--states=all][--name=name]"
-                                        "[--format=%F %K %T %r]");
+    assert_string_equal(arguments_of("squeue"), "[--noheader][--array][--states=all][--name=name]"
+                                                "[--format=%F %K %T %r]");
     assert_int_equal(count, n);
     for (size_t i = 0; i < n; i++) {
         assert_int_equal(found[i].job, tasks[i].job);
@@ -152,7 +152,7 @@ TEST(submissions)
         command_says("sbatch", rows[i].output, rows[i].complaint, rows[i].code);
         assert_int_equal(slurm_submit(words, &job, &error),
                          rows[i].job ? STATUS_OK : STATUS_ENVIRONMENT);
-        assert_string_equal(told("sbatch"), "[--parsable][--array=1-3][a b]");
+        assert_string_equal(arguments_of("sbatch"), "[--parsable][--array=1-3][a b]");
         if (rows[i].job) {
             assert_int_equal(job, rows[i].job);
         } else {

@@ -157,10 +157,10 @@ TEST(test_estimate_counts_arrays)
                 for (size_t i = 0; i < count; i++) used += is_used(arrays[i], N);
                 for (size_t i = list(a, USE_ALL & ~a->uses, arrays); i-- > 0;)
                     assert_false(is_used(arrays[i], N));
-                const double room = bare.plan.sums->bytes(&bare, N);
-                if (memory_bytes(&setup) - room != 8. * N * (double)used)
+                const double bytes = bare.plan.sums->bytes(&bare, N);
+                if (memory_bytes(&setup) - bytes != 8. * N * (double)used)
                     fail_msg("%dD %s%s: %g arrays, not %zu", dim, keys, still ? ", sleeping" : "",
-                             (memory_bytes(&setup) - room) / (8 * N), used);
+                             (memory_bytes(&setup) - bytes) / (8 * N), used);
                 simulation_destroy(simulation);
             }
 }

@@ -259,8 +259,8 @@ TEST(long_texts_are_cut)
         explained(&setup, less, size);
         for (size_t k = size; k < sizeof less; k++) assert_int_equal(less[k], 'x');
         if (size == 0) continue;
-        const size_t room_for = size <= 2 ? 0 : size <= second + 2 ? second : length;
-        assert_int_equal(strlen(less), size - 1 < room_for ? size - 1 : room_for);
+        const size_t fits = size <= 2 ? 0 : size <= second + 2 ? second : length;
+        assert_int_equal(strlen(less), size - 1 < fits ? size - 1 : fits);
         assert_int_equal(strncmp(less, text, strlen(less)), 0);
     }
     assert_string_equal(less, text);

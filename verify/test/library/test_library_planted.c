@@ -101,9 +101,9 @@ TEST(solutions)
         ends_at(n);
         draw_places(0, 1);
         assert_null(sedov_solve(1.4, dim, 2, 0.7, &sedov));
-        for (int told = 0; told < 2; told++)
+        for (int given = 0; given < 2; given++)
             assert_int_equal(sphproof_solutions_sedov(1.4, dim, 2, 0.7, t + 0.1, n, at, rho, v, P,
-                                                      told ? &shock : NULL, &error),
+                                                      given ? &shock : NULL, &error),
                              SPHPROOF_OK);
         assert_true(shock == sedov_shock(&sedov, t + 0.1));
         for (int i = 0; i < count; i++) {
@@ -507,17 +507,17 @@ static struct clouds_settings usual(enum clouds_kind kind, int dim)
     return settings;
 }
 
-static int told;
+static int reported;
 
 /* The next figure. */
 static void figure_is(const char *property, const char *formula, const char *where, double value,
                       double bound)
 {
-    assert_true(told < seen);
-    const struct sphproof_figure *figure = &figures[told];
+    assert_true(reported < seen);
+    const struct sphproof_figure *figure = &figures[reported];
     assert_string_equal(figure->property, property);
     assert_non_null(strstr(figure->formula, formula));
-    assert_string_equal(wheres[told++], where);
+    assert_string_equal(wheres[reported++], where);
     near_relative(figure->value + 1, value + 1, 1e-10);
     if (value > 0) near_relative(figure->value, value, 1e-6);
     assert_true(figure->bound == bound && figure->floor == 1e-14 && !figure->skipped);
@@ -662,7 +662,7 @@ TEST(figures_of_an_operator)
                                                               .moves = kept != 3,
                                                               .scales = kept != 4,
                                                               .linear = kept != 5};
-            calls = seen = told = 0;
+            calls = seen = reported = 0;
             assert_int_equal(
                 sphproof_gradients_check(plant, &calls, dim, &promise, see, &seen, &error),
                 SPHPROOF_CHECK_FAILED);
@@ -670,7 +670,7 @@ TEST(figures_of_an_operator)
             exactness_is(dim, promise.exact);
             moves_are(dim, &promise);
             order_is(dim, promise.order);
-            assert_int_equal(told, seen);
+            assert_int_equal(reported, seen);
             assert_int_equal(calls, 4 + promise.exact * CLOUDS_KINDS + 10 +
                                         2 * (promise.turns + promise.moves + promise.scales));
         }

@@ -60,7 +60,7 @@ static void write_night(FILE *file, const struct night *night)
     json_decref(line);
 }
 
-static json_t *told(const struct night *now)
+static json_t *reported(const struct night *now)
 {
     struct error error = {0};
     json_t *history, *results = results_of(now);
@@ -134,7 +134,7 @@ TEST(the_newest_are_kept)
         }
         fclose(file);
         const size_t count = (size_t)counts[c] + 1, kept = count < KEPT ? count : KEPT;
-        json_t *history = told(&made[counts[c]]);
+        json_t *history = reported(&made[counts[c]]);
         same_nights(history, expected + count - kept, kept);
         same_since(history, expected + count - kept, kept);
         near_absolute(value_member(history, "unreadable"), 0, 0);
@@ -176,7 +176,7 @@ static json_t *changed(const char *path, double before, double after, int at, in
         if (i < count - 1) write_night(file, &night);
     }
     fclose(file);
-    json_t *history = told(&night);
+    json_t *history = reported(&night);
     unlink(path_of("history"));
     return history;
 }
@@ -283,7 +283,7 @@ TEST(verdicts_since_last_night)
         last.error = rows[r].error, last.order = rows[r].order;
         write_night(file, &last);
         fclose(file);
-        json_t *history = told(&now);
+        json_t *history = reported(&now);
         const json_t *since = json_object_get(history, "since"),
                      *figures = json_object_get(since, "figures"), *figure;
         const char *of_error = "same", *of_order = "same";
@@ -335,7 +335,7 @@ TEST(nights_that_lack_a_figure)
             if (i < 14) write_night(file, &night);
         }
         fclose(file);
-        json_t *history = told(&night);
+        json_t *history = reported(&night);
         const json_t *changes = json_object_get(history, "changes"),
                      *change = json_array_get(changes, 0);
         assert_int_equal(json_array_size(changes), 1);

@@ -247,10 +247,10 @@ TEST(reports)
     refuse(pool, "league of operators"); /* the other pieces are judged */
     assert_int_equal(report_judge(report, NULL, &results, &error), STATUS_OK);
     json_t *trouble;
-    size_t k, told = 0;
+    size_t k, reported = 0;
     json_array_foreach(json_object_get(results, "trouble"), k, trouble)
-        told += strcmp(value_text(trouble, "message"), "refused") == 0;
-    assert_int_equal(told, 1);
+        reported += strcmp(value_text(trouble, "message"), "refused") == 0;
+    assert_int_equal(reported, 1);
     json_decref(results);
     refuse(pool, "sod, n = 198"); /* a run of a study, which has no order without this run */
     assert_int_equal(report_judge(report, NULL, &results, &error), STATUS_BAD_INPUT);

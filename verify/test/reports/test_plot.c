@@ -232,14 +232,14 @@ TEST(processes)
     buffer_free(&output);
     /* with descriptors for some of its pipes only */
     enum process_status status = PROCESS_FAILED;
-    for (int room = 0; status; room++) {
+    for (int spare = 0; status; spare++) {
         struct rlimit usual, limit;
         assert_int_equal(getrlimit(RLIMIT_NOFILE, &usual), 0);
-        limit = usual, limit.rlim_cur = (rlim_t)(above + room);
+        limit = usual, limit.rlim_cur = (rlim_t)(above + spare);
         assert_int_equal(setrlimit(RLIMIT_NOFILE, &limit), 0);
         status = shell("exit 0", input, size, 60, &output, message, sizeof message);
         assert_int_equal(setrlimit(RLIMIT_NOFILE, &usual), 0);
-        if (!status) assert_true(above - files + room >= 6); /* smaller descriptors may be free */
+        if (!status) assert_true(above - files + spare >= 6); /* smaller descriptors may be free */
         if (status) assert_string_equal(message, "sh cannot be run: Too many open files");
         assert_int_equal(open_files(&above), files);
     }

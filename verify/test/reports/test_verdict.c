@@ -67,7 +67,7 @@ TEST(least_results_for_a_verdict)
 TEST(long_subjects_are_cut)
 {
     static const struct {
-        const char *subject, *told;
+        const char *subject, *printed;
     } rows[] = {
         {"short", "1 failure: g: c (short)"},
         {"x broke down", "1 failure: g: c"},
@@ -85,8 +85,8 @@ TEST(long_subjects_are_cut)
                                     "group", "g", "name", "c", "subject", rows[k].subject, "status",
                                     "fail", "value", 2, "bound", 1);
         json_t *made = verdict_make(results);
-        const char *told = json_string_value(json_object_get(made, "headline"));
-        assert_string_equal(told, rows[k].told);
+        const char *printed = json_string_value(json_object_get(made, "headline"));
+        assert_string_equal(printed, rows[k].printed);
         json_decref(made);
         json_decref(results);
     }

@@ -267,10 +267,10 @@ TEST(jitter_moves_all)
             int over[3] = {0};
             for (int i = 0; i < CLOUD; i++) {
                 double x[3] = {0};
-                const double room = pow(before.m[i] / before.rho[i], 1. / dim);
+                const double spacing = pow(before.m[i] / before.rho[i], 1. / dim);
                 for (int d = 0; d < dim; d++) {
                     const double lo = low[d], hi = high[d];
-                    x[d] = before.x[d][i] + 0.4 * room * (2 * gsl_rng_uniform(random) - 1);
+                    x[d] = before.x[d][i] + 0.4 * spacing * (2 * gsl_rng_uniform(random) - 1);
                     over[d] += x[d] < lo || x[d] >= hi;
                     if (dim == 1)
                         x[d] = fmin(fmax(x[d], lo), nextafter(hi, 0));

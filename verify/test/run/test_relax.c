@@ -9,28 +9,28 @@
 
 static size_t times_asked;
 
-struct rooms {
+struct volumes {
     int dim;
     double all;
     size_t n;
 };
 
-static double room_at(const void *context, const double x[3])
+static double volume_at(const void *context, const double x[3])
 {
-    const struct rooms *rooms = context;
+    const struct volumes *volumes = context;
     times_asked++;
-    return rooms->all / (double)rooms->n * (1 + 0.2 * sin(2 * M_PI * (x[0] + x[1])));
+    return volumes->all / (double)volumes->n * (1 + 0.2 * sin(2 * M_PI * (x[0] + x[1])));
 }
 
 /* Sixty sweeps over all pairs of images. */
-static void relax_directly(const struct relax_region *room, size_t n, double *const x[3])
+static void relax_directly(const struct relax_region *region, size_t n, double *const x[3])
 {
-    const int dim = room->box.dim;
+    const int dim = region->box.dim;
     double *width = malloc(4 * n * sizeof *width), *to = width + n, step = 0.06;
     for (int sweep = 0; sweep < 60; sweep++, step *= 0.95) {
         for (size_t i = 0; i < n; i++) {
             const double at[3] = {x[0][i], x[1][i], dim > 2 ? x[2][i] : 0};
-            width[i] = 2.5 * pow(room->volume(room->context, at), 1. / dim);
+            width[i] = 2.5 * pow(region->volume(region->context, at), 1. / dim);
         }
         for (size_t i = 0; i < 3 * n; i++) to[i] = 0;
         for (size_t i = 0; i < n; i++)
@@ -38,7 +38,7 @@ static void relax_directly(const struct relax_region *room, size_t n, double *co
                 const double reach = 0.5 * (width[i] + width[j]);
                 double delta[3], square = 0;
                 for (int d = 0; d < dim; d++) {
-                    const double side = room->box.hi[d] - room->box.lo[d];
+                    const double side = region->box.hi[d] - region->box.lo[d];
                     delta[d] = x[d][i] - x[d][j];
                     if (delta[d] > side / 2) delta[d] -= side;
                     if (delta[d] < -side / 2) delta[d] += side;
@@ -58,9 +58,9 @@ static void relax_directly(const struct relax_region *room, size_t n, double *co
             const double size = sqrt(push[0] * push[0] + push[1] * push[1] + push[2] * push[2]);
             const double part = width[i] / 2.5 * (step * size < 0.3 ? step : 0.3 / size);
             for (int d = 0; d < dim; d++) {
-                const double side = room->box.hi[d] - room->box.lo[d];
+                const double side = region->box.hi[d] - region->box.lo[d];
                 x[d][i] += part * push[d];
-                x[d][i] -= side * floor((x[d][i] - room->box.lo[d]) / side);
+                x[d][i] -= side * floor((x[d][i] - region->box.lo[d]) / side);
             }
         }
     }
@@ -72,17 +72,17 @@ TEST(glasses_are_pushed_apart)
     for (int dim = 2; dim <= 3; dim++) {
         enum { MOST = 250 };
         const size_t n = dim == 2 ? 100 : 250;
-        struct rooms rooms = {dim, dim == 2 ? 1.2 : 1.32, n};
-        const struct relax_region room = {
-            {dim, {-0.3, 2.1, 0.2}, {0.7, 3.3, 1.3}}, room_at, &rooms};
+        struct volumes volumes = {dim, dim == 2 ? 1.2 : 1.32, n};
+        const struct relax_region region = {
+            {dim, {-0.3, 2.1, 0.2}, {0.7, 3.3, 1.3}}, volume_at, &volumes};
         double x[3][MOST], y[3][MOST];
         double *const moved[] = {x[0], x[1], x[2]}, *const direct[] = {y[0], y[1], y[2]};
         struct error error = {0};
         for (size_t i = 0; i < n; i++)
             for (int d = 0; d < 3; d++)
                 x[d][i] = y[d][i] =
-                    room.box.lo[d] +
-                    (room.box.hi[d] - room.box.lo[d]) *
+                    region.box.lo[d] +
+                    (region.box.hi[d] - region.box.lo[d]) *
                         fmod((0.7548776662 + 0.0629 * d * d) * (double)(i + 1) + 0.1 * d, 1);
         /* two that nearly coincide are pushed by the largest step; two that coincide are not
          * pushed */
@@ -90,15 +90,15 @@ TEST(glasses_are_pushed_apart)
             x[d][1] = y[d][1] = x[d][0] + 1e-5 * (d + 1);
             x[d][3] = y[d][3] = x[d][2];
         }
-        if (relax_points(&room, n, moved, &error)) fail_msg("%s", error.message);
-        relax_directly(&room, n, direct);
+        if (relax_points(&region, n, moved, &error)) fail_msg("%s", error.message);
+        relax_directly(&region, n, direct);
         for (size_t i = 0; i < n; i++)
             for (int d = 0; d < 3; d++) {
                 near_absolute(x[d][i] + 9, y[d][i] + 9, 1e-9);
-                if (d < dim) assert_true(x[d][i] >= room.box.lo[d] && x[d][i] < room.box.hi[d]);
+                if (d < dim) assert_true(x[d][i] >= region.box.lo[d] && x[d][i] < region.box.hi[d]);
             }
-        rooms.n = 4;
-        assert_int_equal(relax_points(&room, 4, moved, &error), STATUS_BAD_INPUT);
+        volumes.n = 4;
+        assert_int_equal(relax_points(&region, 4, moved, &error), STATUS_BAD_INPUT);
         assert_non_null(strstr(error.message, "n=4: a glass needs more particles"));
     }
 }
@@ -139,12 +139,12 @@ TEST(quality_of_a_cloud)
 
 /* A glass: random points that are pushed apart according to the volume of each; with equal masses
  * the volume follows from the density. */
-static double room_of_mass(const void *context, const double x[3])
+static double volume_of_mass(const void *context, const double x[3])
 {
     return *(const double *)context / gas_density(x);
 }
 
-static double room_of_all(const void *context, const double x[3])
+static double volume_of_all(const void *context, const double x[3])
 {
     (void)x;
     return *(const double *)context;
@@ -164,9 +164,9 @@ TEST(glasses_of_random_points)
         assert_int_equal(initial_fill(&p, &random, &one, &error), STATUS_OK);
         assert_int_equal(initial_fill(&p, &glass, &two, &error), STATUS_OK);
         const double mass = one.m[0], share = 4. / N;
-        const struct relax_region room = {p.domain, equal ? room_of_mass : room_of_all,
-                                          equal ? &mass : &share};
-        assert_int_equal(relax_points(&room, N, one.x, &error), STATUS_OK);
+        const struct relax_region region = {p.domain, equal ? volume_of_mass : volume_of_all,
+                                            equal ? &mass : &share};
+        assert_int_equal(relax_points(&region, N, one.x, &error), STATUS_OK);
         for (int i = 0; i < N; i++) {
             const double x[3] = {two.x[0][i], two.x[1][i]};
             near_absolute(one.x[0][i] + 9, x[0] + 9, 1e-11);
@@ -180,15 +180,15 @@ TEST(glasses_of_random_points)
 }
 
 /* A uniform volume, or one that rises from x = 0 or y = 0. */
-struct plain_room {
+struct plain_volume {
     double volume, rise;
 };
 
-static double plain_room_at(const void *context, const double x[3])
+static double plain_volume_at(const void *context, const double x[3])
 {
-    const struct plain_room *room = context;
+    const struct plain_volume *region = context;
     times_asked++;
-    return room->volume * (1 + room->rise * x[0] * x[1]);
+    return region->volume * (1 + region->rise * x[0] * x[1]);
 }
 
 /* Large glasses are kept, and are read again if everything is the same that determines the
@@ -218,9 +218,9 @@ TEST(large_glasses_are_kept)
         {0, 1, 0, 0, 1e-3, 0, true},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        const struct plain_room plain_room = {rows[k].volume, rows[k].rise};
-        const struct relax_region room = {
-            {2, {0, rows[k].lo}, {1, rows[k].hi}}, plain_room_at, &plain_room};
+        const struct plain_volume plain_volume = {rows[k].volume, rows[k].rise};
+        const struct relax_region region = {
+            {2, {0, rows[k].lo}, {1, rows[k].hi}}, plain_volume_at, &plain_volume};
         struct error error = {0};
         for (int i = 0; i < N; i++)
             for (int d = 0; d < 2; d++)
@@ -228,7 +228,7 @@ TEST(large_glasses_are_kept)
         x[0][0] += rows[k].first;
         x[1][N - 1] += rows[k].last;
         times_asked = 0;
-        assert_int_equal(relax_points(&room, N, places, &error), STATUS_OK);
+        assert_int_equal(relax_points(&region, N, places, &error), STATUS_OK);
         if ((times_asked == N) != rows[k].read)
             fail_msg("row %zu: asked %zu times", k, times_asked);
         for (int d = 0; d < 2; d++)

@@ -320,7 +320,7 @@ TEST(states_after_the_exact_solution)
 
 /* ---- during the run ---- */
 
-struct told {
+struct reported {
     size_t calls;
     uint64_t steps[1000], stop;
     double time[1000];
@@ -328,35 +328,35 @@ struct told {
 
 static bool tell(void *context, double time, uint64_t steps)
 {
-    struct told *told = context;
-    assert_true(told->calls < 1000);
-    told->time[told->calls] = time;
-    told->steps[told->calls++] = steps;
-    return steps < told->stop;
+    struct reported *reported = context;
+    assert_true(reported->calls < 1000);
+    reported->time[reported->calls] = time;
+    reported->steps[reported->calls++] = steps;
+    return steps < reported->stop;
 }
 
 TEST(progress_callbacks)
 {
-    static struct told told;
+    static struct reported reported;
     struct run run = keyed_run("sod", "n=400 t_end=0.2");
     run.asked.progress = tell;
-    run.asked.progress_context = &told;
+    run.asked.progress_context = &reported;
     for (int each = 0; each < 2; each++) {
-        told = (struct told){.stop = 1000};
+        reported = (struct reported){.stop = 1000};
         run.asked.each_step = each;
         struct run_result result = keyed_result(&run);
         const uint64_t stride = each ? 1 : 32;
         assert_true(result.cost.steps > 64 && result.cost.steps % 32 && result.time == 0.2);
-        assert_int_equal(told.calls, result.cost.steps / stride);
-        for (size_t k = 0; k < told.calls; k++) {
-            assert_int_equal(told.steps[k], (k + 1) * stride);
-            assert_true(k == 0 || told.time[k] > told.time[k - 1]);
+        assert_int_equal(reported.calls, result.cost.steps / stride);
+        for (size_t k = 0; k < reported.calls; k++) {
+            assert_int_equal(reported.steps[k], (k + 1) * stride);
+            assert_true(k == 0 || reported.time[k] > reported.time[k - 1]);
         }
         run_free(&result);
     }
-    told = (struct told){.stop = 5}; /* a callback that returns false stops the run */
+    reported = (struct reported){.stop = 5}; /* a callback that returns false stops the run */
     struct run_result result = keyed_result(&run);
-    assert_true(result.cost.steps == 5 && result.time < 0.2 && result.time == told.time[4]);
+    assert_true(result.cost.steps == 5 && result.time < 0.2 && result.time == reported.time[4]);
     run_free(&result);
 }
 
@@ -365,7 +365,7 @@ TEST(progress_callbacks)
 TEST(sums_and_snapshots_during_a_run)
 {
     static struct trace trace;
-    static struct told told = {.stop = 1000};
+    static struct reported reported = {.stop = 1000};
     char folder[] = "sphproof_run_XXXXXX", path[64], file[80];
     struct run run = keyed_run("sod", "n=40 t_end=0.06");
     struct run_result plain = keyed_result(&run);
@@ -373,12 +373,12 @@ TEST(sums_and_snapshots_during_a_run)
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/a.csv", folder);
     run.asked.trace = &trace;
-    run.asked.progress = tell, run.asked.progress_context = &told, run.asked.each_step = true;
+    run.asked.progress = tell, run.asked.progress_context = &reported, run.asked.each_step = true;
     run.asked.snapshots = &snapshots;
     struct run_result result = keyed_result(&run);
     assert_int_equal(snapshots.trouble.status, STATUS_OK);
     assert_int_equal(trace.count, result.cost.steps + 1);
-    assert_int_equal(told.calls, result.cost.steps);
+    assert_int_equal(reported.calls, result.cost.steps);
     assert_true(trace.time[0] == 0 && trace.time[trace.count - 1] == 0.06);
     for (size_t k = 1; k < trace.count; k++) {
         assert_true(trace.time[k] > trace.time[k - 1]);

@@ -70,14 +70,14 @@ TEST(blasts_that_meet_their_images)
             free(initial.storage);
             if (k >= 10) continue;
             const char *allowed = strstr(error.message, "allowed: n >= ");
-            const double room = 2.4 - 12. / k; /* beyond the shock; none for the fewest */
+            const double space = 2.4 - 12. / k; /* beyond the shock; none for the fewest */
             assert_non_null(allowed);
             assert_int_equal(
                 sscanf(allowed, "allowed: n >= %lf^%lf, or t_end <= %lf", &side, &power, &longest),
-                room > 1e-9 ? 3 : 2);
+                space > 1e-9 ? 3 : 2);
             assert_true(side == 10 && power == dim);
-            if (!(room > 1e-9)) continue;
-            const double last = *t * pow(room / shock, 0.5 * dim + 1);
+            if (!(space > 1e-9)) continue;
+            const double last = *t * pow(space / shock, 0.5 * dim + 1);
             near_relative(longest, last, 0.01);
             assert_true(longest < last);
         }

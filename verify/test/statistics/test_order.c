@@ -109,7 +109,7 @@ TEST(test_richardson_unequal_ratios)
 }
 
 /* The largest number of levels; pairwise orders are those between levels and no more. */
-TEST(test_order_room)
+TEST(test_order_capacity)
 {
     double spacing[ORDER_LEVELS_MAX + 1], error[ORDER_LEVELS_MAX + 1];
     struct order_fit fit;

@@ -76,7 +76,7 @@ struct board {
 };
 static struct board *board;
 
-struct told {
+struct script {
     int number;
     enum status status;
     enum { NOTHING, WITH_DOCUMENT, LEAVES, LEAVES_BADLY, FLUSHES } kind;
@@ -84,39 +84,39 @@ struct told {
     int together; /* the job first waits until this many have run at once, 20 s at most */
 };
 
-static enum status tell(const void *context, json_t **document, struct error *error)
+static enum status obey(const void *context, json_t **document, struct error *error)
 {
-    const struct told *told = context;
+    const struct script *script = context;
     const int now = __atomic_add_fetch(&board->running, 1, __ATOMIC_SEQ_CST);
     for (int most = board->most; now > most;)
         if (__atomic_compare_exchange_n(&board->most, &most, now, false, __ATOMIC_SEQ_CST,
                                         __ATOMIC_SEQ_CST))
             break;
-    board->order[__atomic_fetch_add(&board->count, 1, __ATOMIC_SEQ_CST)] = told->number;
-    const struct timespec pause = {told->ms / 1000, told->ms % 1000 * 1000000L},
+    board->order[__atomic_fetch_add(&board->count, 1, __ATOMIC_SEQ_CST)] = script->number;
+    const struct timespec pause = {script->ms / 1000, script->ms % 1000 * 1000000L},
                           tick = {0, 1000000};
-    for (int k = 0; k < 20000 && __atomic_load_n(&board->most, __ATOMIC_SEQ_CST) < told->together;
+    for (int k = 0; k < 20000 && __atomic_load_n(&board->most, __ATOMIC_SEQ_CST) < script->together;
          k++)
         nanosleep(&tick, NULL);
     nanosleep(&pause, NULL);
     __atomic_sub_fetch(&board->running, 1, __ATOMIC_SEQ_CST);
-    if (told->kind == LEAVES) _exit(0);
-    if (told->kind == FLUSHES) fflush(NULL);
-    if (told->kind == LEAVES_BADLY) _exit(1);
-    if (told->kind == WITH_DOCUMENT) *document = json_pack("{s:i}", "number", told->number);
-    error_set(error, told->status, "said by %d", told->number);
-    return told->status;
+    if (script->kind == LEAVES) _exit(0);
+    if (script->kind == FLUSHES) fflush(NULL);
+    if (script->kind == LEAVES_BADLY) _exit(1);
+    if (script->kind == WITH_DOCUMENT) *document = json_pack("{s:i}", "number", script->number);
+    error_set(error, script->status, "said by %d", script->number);
+    return script->status;
 }
 
 /* Adds n jobs with these weights. */
-static void add(struct pool *pool, struct told *told, size_t n, const double *weights)
+static void add(struct pool *pool, struct script *script, size_t n, const double *weights)
 {
     *pool = (struct pool){0};
     for (size_t i = 0; i < n; i++) {
         char name[32];
-        told[i].number = (int)i;
+        script[i].number = (int)i;
         snprintf(name, sizeof name, "job %zu", i);
-        assert_int_equal(pool_add(pool, name, name, weights ? weights[i] : 1, tell, &told[i]), i);
+        assert_int_equal(pool_add(pool, name, name, weights ? weights[i] : 1, obey, &script[i]), i);
     }
 }
 
@@ -130,8 +130,8 @@ static int begin(void **state)
     const pid_t child = fork();
     if (child == 0) {
         struct pool pool;
-        struct told told = {0};
-        add(&pool, &told, 1, NULL);
+        struct script script = {0};
+        add(&pool, &script, 1, NULL);
         run(&pool, NULL, 1);
         _exit(42);
     }
@@ -153,7 +153,7 @@ static size_t bytes_in_use(void)
 /* Names, keys and weights are as given, for any number of jobs; a key has one job. */
 TEST(many_jobs)
 {
-    static struct told told[SLOTS];
+    static struct script script[SLOTS];
     struct pool pool = {0};
     char name[32] = "none", key[32];
     const size_t before = bytes_in_use();
@@ -161,7 +161,7 @@ TEST(many_jobs)
     for (size_t i = 0; i < SLOTS; i++) {
         snprintf(name, sizeof name, "job %zu", i);
         snprintf(key, sizeof key, "key %zu", i);
-        assert_int_equal(pool_add(&pool, name, i % 5 ? key : NULL, (double)i, tell, &told[i]), i);
+        assert_int_equal(pool_add(&pool, name, i % 5 ? key : NULL, (double)i, obey, &script[i]), i);
         assert_int_equal(pool.count, i + 1);
     }
     for (size_t i = 0; i < SLOTS; i++) {
@@ -169,18 +169,18 @@ TEST(many_jobs)
         snprintf(name, sizeof name, "job %zu", i);
         snprintf(key, sizeof key, "key %zu", i);
         assert_string_equal(job->name, name);
-        assert_true(job->weight == (double)i && job->compute == tell && job->context == &told[i]);
+        assert_true(job->weight == (double)i && job->compute == obey && job->context == &script[i]);
         assert_true(!job->done && !job->cached && !job->crashed && !job->elsewhere);
         assert_true(pool_find(&pool, key) == (i % 5 ? i : (size_t)-1));
         if (i % 5) {
             assert_string_equal(job->key, key);
-            assert_int_equal(pool_add(&pool, "again", key, 7, tell, NULL), i);
+            assert_int_equal(pool_add(&pool, "again", key, 7, obey, NULL), i);
         } else {
             assert_null(job->key);
         }
     }
     /* a key that is not UTF-8 cannot be found again */
-    assert_true(pool_add(&pool, "job", "\xff", 1, tell, NULL) == (size_t)-1);
+    assert_true(pool_add(&pool, "job", "\xff", 1, obey, NULL) == (size_t)-1);
     assert_int_equal(pool.count, SLOTS);
     pool_free(&pool);
     assert_true(!pool.count && !pool.jobs && !pool.numbers);
@@ -197,10 +197,10 @@ TEST(order_of_jobs)
     static const int order[N] = {6, 1, 3, 4, 7, 0, 5, 2, 8};
     struct pool pool;
     for (int jobs = 1; jobs <= 3; jobs++) {
-        struct told told[N] = {{0}};
+        struct script script[N] = {{0}};
         *board = (struct board){0};
-        for (int i = 0; i < N; i++) told[i].ms = jobs == 1 ? 0 : 40, told[i].together = jobs;
-        add(&pool, told, N, weights);
+        for (int i = 0; i < N; i++) script[i].ms = jobs == 1 ? 0 : 40, script[i].together = jobs;
+        add(&pool, script, N, weights);
         assert_int_equal(run(&pool, NULL, jobs), STATUS_OK);
         assert_int_equal(board->count, N);
         assert_int_equal(board->most, jobs);
@@ -221,12 +221,12 @@ TEST(results_that_are_kept)
     *board = (struct board){0};
     place_make(&place);
     for (int round = 0; round < 2; round++) {
-        struct told told[N] = {{0}};
+        struct script script[N] = {{0}};
         for (int i = 0; i < N; i++) {
-            told[i].status = statuses[i];
-            told[i].kind = i % 2 ? WITH_DOCUMENT : NOTHING;
+            script[i].status = statuses[i];
+            script[i].kind = i % 2 ? WITH_DOCUMENT : NOTHING;
         }
-        add(&pool, told, N, NULL);
+        add(&pool, script, N, NULL);
         assert_int_equal(run(&pool, &place.cache, 2), STATUS_OK);
         assert_int_equal(pool.found, round ? 3 : 0);
         assert_true(pool.damaged == 0 && !pool.note[0]);
@@ -255,13 +255,13 @@ TEST(entries_that_are_missing_or_damaged)
     struct place place;
     struct pool pool;
     struct error error = {0};
-    struct told told[3] = {{.kind = WITH_DOCUMENT}, {.kind = WITH_DOCUMENT}, {.kind = NOTHING}};
+    struct script script[3] = {{.kind = WITH_DOCUMENT}, {.kind = WITH_DOCUMENT}, {.kind = NOTHING}};
     char path[CACHE_PATH_MAX];
     *board = (struct board){0};
     place_make(&place);
     for (int round = 0; round < 3; round++) {
-        add(&pool, told, 2, NULL);
-        assert_int_equal(pool_add(&pool, "no key", NULL, 9, tell, &told[2]), 2);
+        add(&pool, script, 2, NULL);
+        assert_int_equal(pool_add(&pool, "no key", NULL, 9, obey, &script[2]), 2);
         assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK);
         assert_int_equal(pool.found, round == 0 ? 0 : 1);
         assert_int_equal(pool.damaged, round == 1);
@@ -285,13 +285,13 @@ TEST(entries_that_are_missing_or_damaged)
 TEST(jobs_that_crash_or_fail)
 {
     struct pool pool;
-    struct told told[3] = {{.kind = LEAVES}, {.kind = LEAVES_BADLY}, {.kind = WITH_DOCUMENT}};
+    struct script script[3] = {{.kind = LEAVES}, {.kind = LEAVES_BADLY}, {.kind = WITH_DOCUMENT}};
     struct task task = {.kind = CRASHES};
     struct place place;
     place_make(&place);
     task.place = &place;
     for (int round = 0; round < 2; round++) {
-        add(&pool, told, 3, NULL);
+        add(&pool, script, 3, NULL);
         assert_int_equal(pool_add(&pool, "bad one", "bad one", 1, compute, &task), 3);
         assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK);
         assert_int_equal(pool.found, round);
@@ -317,14 +317,14 @@ TEST(jobs_that_crash_or_fail)
 TEST(buffered_output_is_written_once)
 {
     struct pool pool;
-    struct told told[2] = {{.kind = FLUSHES}, {.kind = FLUSHES}};
+    struct script script[2] = {{.kind = FLUSHES}, {.kind = FLUSHES}};
     char folder[] = "pool.XXXXXX", path[64], text[16];
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/text", folder);
     FILE *file = fopen(path, "w+");
     assert_non_null(file);
     fputs("once", file);
-    add(&pool, told, 2, NULL);
+    add(&pool, script, 2, NULL);
     assert_int_equal(run(&pool, NULL, 1), STATUS_OK);
     pool_free(&pool);
     rewind(file);
@@ -339,7 +339,7 @@ TEST(buffered_output_is_written_once)
 TEST(too_few_file_descriptors)
 {
     struct pool pool;
-    struct told told[4] = {{0}};
+    struct script script[4] = {{0}};
     struct rlimit usual, few;
     struct error error = {0};
     const struct pool_settings settings = {.jobs = 4};
@@ -347,19 +347,19 @@ TEST(too_few_file_descriptors)
     const int next = dup(0);
     close(next);
     assert_int_equal(getrlimit(RLIMIT_NOFILE, &usual), 0);
-    for (int room = 1; room <= 3; room++) { /* a process needs two, and keeps one */
+    for (int spare = 1; spare <= 3; spare++) { /* a process needs two, and keeps one */
         few = usual;
-        few.rlim_cur = (rlim_t)(next + room);
-        for (int i = 0; i < 4; i++) told[i].ms = 60;
-        add(&pool, told, 4, NULL);
+        few.rlim_cur = (rlim_t)(next + spare);
+        for (int i = 0; i < 4; i++) script[i].ms = 60;
+        add(&pool, script, 4, NULL);
         assert_int_equal(setrlimit(RLIMIT_NOFILE, &few), 0);
         const enum status status = pool_run(&pool, &settings, &error);
         assert_int_equal(setrlimit(RLIMIT_NOFILE, &usual), 0);
         assert_int_equal(status, STATUS_ENVIRONMENT);
         char said[80];
-        snprintf(said, sizeof said, "no pipe for job %d: Too many open files", room - 1);
+        snprintf(said, sizeof said, "no pipe for job %d: Too many open files", spare - 1);
         assert_string_equal(error.message, said);
-        for (int i = 0; i < 4; i++) assert_true(pool.jobs[i].done == (i < room - 1));
+        for (int i = 0; i < 4; i++) assert_true(pool.jobs[i].done == (i < spare - 1));
         pool_free(&pool);
         const int after = dup(0);
         close(after);
@@ -395,14 +395,14 @@ TEST(progress)
     struct place place;
     struct pool pool;
     struct error error = {0};
-    struct told told[N] = {{0}};
+    struct script script[N] = {{0}};
     place_make(&place);
-    add(&pool, told, 1, weights);
+    add(&pool, script, 1, weights);
     assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK); /* keeps job 0 */
     pool_free(&pool);
     const struct pool_settings settings = {
         .jobs = 1, .cache = &place.cache, .progress = see, .progress_context = &seen};
-    add(&pool, told, N, weights);
+    add(&pool, script, N, weights);
     seen = (struct seen){0};
     assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
     static const char *const names[] = {"job 3", "job 4", "job 1", "job 2"};
@@ -422,7 +422,7 @@ TEST(progress)
     pool_free(&pool);
     /* without weights the share is 1 */
     static const double none[2] = {0};
-    add(&pool, told, 2, none);
+    add(&pool, script, 2, none);
     pool.jobs[0].key[0] = 'J', pool.jobs[1].key[0] = 'J'; /* new keys */
     seen = (struct seen){0};
     assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
@@ -430,7 +430,7 @@ TEST(progress)
     for (size_t k = 0; k < seen.calls; k++) assert_true(seen.share[k] == 1);
     pool_free(&pool);
     /* all are kept: no report */
-    add(&pool, told, N, weights);
+    add(&pool, script, N, weights);
     seen = (struct seen){0};
     assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
     assert_true(pool.found == N && seen.calls == 0);
@@ -444,9 +444,9 @@ TEST(progress_during_a_long_job)
     static struct seen seen;
     struct pool pool;
     struct error error = {0};
-    struct told told = {.ms = 500};
+    struct script script = {.ms = 500};
     const struct pool_settings settings = {.jobs = 1, .progress = see, .progress_context = &seen};
-    add(&pool, &told, 1, NULL);
+    add(&pool, &script, 1, NULL);
     seen = (struct seen){0};
     assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
     assert_true(seen.calls >= 2 && seen.calls <= 12);
@@ -469,7 +469,7 @@ TEST(shares_by_hand)
     struct error error = {0};
     int got[N];
     for (size_t i = 0; i < N; i++)
-        assert_int_equal(pool_add(&pool, "job", rows[i].key, rows[i].weight, tell, NULL), i);
+        assert_int_equal(pool_add(&pool, "job", rows[i].key, rows[i].weight, obey, NULL), i);
     for (int of = 1; of <= 3; of++) {
         /* computed independently, in the order d c a b e f */
         static const int order[] = {0, 4, 2, 1, 5, 6};
@@ -494,13 +494,13 @@ TEST(share_computes_its_own_jobs)
     enum { N = 6 };
     struct pool pool;
     struct error error = {0};
-    struct told told[N] = {{0}};
+    struct script script[N] = {{0}};
     static const double weights[N] = {6, 5, 4, 3, 2, 1};
     for (int number = 1; number <= 2; number++) {
         int of[N + 1];
         *board = (struct board){0};
-        add(&pool, told, N, weights);
-        assert_int_equal(pool_add(&pool, "no key", NULL, 7, tell, &told[0]), N);
+        add(&pool, script, N, weights);
+        assert_int_equal(pool_add(&pool, "no key", NULL, 7, obey, &script[0]), N);
         assert_int_equal(pool_divide(&pool, 2, of, &error), STATUS_OK);
         const struct pool_settings settings = {.jobs = 1, .share = {.number = number, .of = 2}};
         assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);

@@ -19,7 +19,7 @@ struct row {
 };
 
 /* A new reference to the headlines of these figures, all of which fail. */
-static json_t *told(size_t n, const struct row *rows)
+static json_t *headlines_of(size_t n, const struct row *rows)
 {
     struct figure figures[MOST];
     const struct suite suite = {.figures = figures, .figure_count = n, .failed = n};
@@ -49,7 +49,7 @@ TEST(members_and_places)
         snprintf(member, sizeof member, "%.63s", subject);
         member[length < 63 ? length : 63] = '\0';
         snprintf(headline, sizeof headline, "%s: one off by 2", member);
-        json_t *list = told(1, &(struct row){&one, subject, 2, 1});
+        json_t *list = headlines_of(1, &(struct row){&one, subject, 2, 1});
         assert_string_equal(text_of(list, 0, "member"), member);
         assert_string_equal(text_of(list, 0, "headline"), headline);
         assert_string_equal(text_of(list, 0, "place"), "there");
@@ -61,7 +61,7 @@ TEST(members_and_places)
                 {"a:   q > 1", "a", "q > 1"}, {"a, b: c", "a", "b: c"},
                 {": nobody", "", "nobody"},   {"a,", "a", ""}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        json_t *list = told(1, &(struct row){&one, rows[k].subject, 2, 1});
+        json_t *list = headlines_of(1, &(struct row){&one, rows[k].subject, 2, 1});
         assert_int_equal(json_array_size(list), 1);
         assert_string_equal(text_of(list, 0, "member"), rows[k].member);
         assert_string_equal(text_of(list, 0, "place"), rows[k].place);
@@ -72,16 +72,16 @@ TEST(members_and_places)
 /* Of figures that are equally far off the first one is named, also if none is off its bound. */
 TEST(the_worst_figure)
 {
-    json_t *list = told(4, (const struct row[]){{&one, "a: near", 2, 1},
-                                                {&one, "a: first", 6, 2},
-                                                {&one, "a: second", 9, 3},
-                                                {&one, "a: last", 2.5, 1}});
+    json_t *list = headlines_of(4, (const struct row[]){{&one, "a: near", 2, 1},
+                                                        {&one, "a: first", 6, 2},
+                                                        {&one, "a: second", 9, 3},
+                                                        {&one, "a: last", 2.5, 1}});
     assert_string_equal(text_of(list, 0, "place"), "first");
     assert_true(value_member(json_array_get(list, 0), "ratio") == 3 &&
                 value_member(json_array_get(list, 0), "figures") == 4);
     assert_int_equal(json_array_size(json_object_get(json_array_get(list, 0), "also")), 0);
     json_decref(list);
-    list = told(1, &(struct row){&one, "a: below its floor", 0, 1e-4});
+    list = headlines_of(1, &(struct row){&one, "a: below its floor", 0, 1e-4});
     assert_string_equal(text_of(list, 0, "place"), "below its floor");
     assert_true(value_member(json_array_get(list, 0), "ratio") == 0);
     json_decref(list);
@@ -90,12 +90,12 @@ TEST(the_worst_figure)
 /* The most elementary check comes first, then the figure farthest off, then the first in order. */
 TEST(order_of_headlines)
 {
-    json_t *list = told(6, (const struct row[]){{&two, "early", 4, 2},
-                                                {&one, "near", 3, 2},
-                                                {&one, "far", 9, 2},
-                                                {&one, "late", 2, 1},
-                                                {&width, "kernel", 2, 1},
-                                                {&slope, "kernel", 2, 1}});
+    json_t *list = headlines_of(6, (const struct row[]){{&two, "early", 4, 2},
+                                                        {&one, "near", 3, 2},
+                                                        {&one, "far", 9, 2},
+                                                        {&one, "late", 2, 1},
+                                                        {&width, "kernel", 2, 1},
+                                                        {&slope, "kernel", 2, 1}});
     static const char *const members[] = {"kernel", "far", "early", "late", "near"};
     assert_int_equal(json_array_size(list), 5);
     for (size_t i = 0; i < 5; i++) assert_string_equal(text_of(list, i, "member"), members[i]);
@@ -103,14 +103,14 @@ TEST(order_of_headlines)
     assert_string_equal(text_of(list, 0, "headline"), "kernel: is too steep; width off by 2");
     json_decref(list);
     /* each member once, also if it is not the first */
-    list = told(
+    list = headlines_of(
         4, (const struct row[]){
                {&slope, "a", 2, 1}, {&one, "b", 3, 1}, {&two, "b", 2, 1}, {&width, "b", 2, 1}});
     assert_int_equal(json_array_size(list), 2);
     assert_string_equal(text_of(list, 0, "member"), "a");
     assert_string_equal(text_of(list, 1, "check"), "width");
     json_decref(list);
-    list = told(0, NULL); /* no failure */
+    list = headlines_of(0, NULL); /* no failure */
     assert_int_equal(json_array_size(list), 0);
     json_decref(list);
 }
@@ -173,7 +173,7 @@ TEST(printed_headlines)
     for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
         char text[2048] = "";
         FILE *stream = fmemopen(text, sizeof text, "w");
-        json_t *headlines = told(list[k].n, rows);
+        json_t *headlines = headlines_of(list[k].n, rows);
         assert_non_null(stream);
         headline_print(headlines, stream, list[k].color);
         fclose(stream);

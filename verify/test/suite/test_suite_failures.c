@@ -75,7 +75,7 @@ TEST(plots_of_failures)
                                 .series = series + 1,
                                 .series_count = CURVES,
                                 .failed = 3};
-    char *before = strdup(getenv("PATH") ? getenv("PATH") : ""), path[4096], told[1024];
+    char *before = strdup(getenv("PATH") ? getenv("PATH") : ""), path[4096], printed[1024];
     snprintf(path, sizeof path, "%s:%s", place, before);
     make_gnuplot();
     setenv("PATH", path, 1);
@@ -99,13 +99,13 @@ TEST(plots_of_failures)
     assert_true(stat(out, &is) == 0 && (is.st_mode & 0777) == (0777 & ~mask));
     /* of the second one, with curves */
     one.figures += 5, one.figure_count = 1;
-    FILE *stream = fopen(path_of("told"), "w");
+    FILE *stream = fopen(path_of("printed"), "w");
     assert_non_null(stream);
     assert_int_equal(suite_output_failures(&one, out, stream, NULL), STATUS_OK);
     fclose(stream);
-    snprintf(told, sizeof told,
+    snprintf(printed, sizeof printed,
              "figures and data: %s/a-second.json\nplot:             %s/a-second.svg\n", out, out);
-    assert_string_equal(text_of("told"), told);
+    assert_string_equal(text_of("printed"), printed);
     numbers_are("# x y: c0\n 1 0\n 2 1\n\n\n# x y: c1\n 1 10\n 2 11\n\n\n"
                 "# x y: c2\n 1 20\n 2 21\n\n\n# x y: c3\n 1 30\n 2 31\n\n\n"
                 "# x y: c4\n 1 40\n 2 41\n\n\n# x y: c5\n 1 50\n 2 51\n\n\n"

@@ -5,7 +5,7 @@
 #include "sample_checks.h"
 
 /* The document of a suite without times. */
-static json_t *told(const struct suite *suite)
+static json_t *reported(const struct suite *suite)
 {
     json_t *document = suite_keep(suite), *checks = json_object_get(document, "checks");
     for (size_t i = 0; i < json_array_size(checks); i++)
@@ -35,7 +35,7 @@ TEST(test_joined)
     const json_t *const *from = (const json_t *const *)documents;
     assert_int_equal(suite_run(&suite, checks, PARTS, &choice, NULL), STATUS_CHECK_FAILED);
     assert_int_equal(suite_join(&joined, checks, from, PARTS, &error), STATUS_CHECK_FAILED);
-    json_t *one = told(&suite), *other = told(&joined);
+    json_t *one = reported(&suite), *other = reported(&joined);
     assert_true(json_equal(one, other));
     assert_int_equal(joined.failed, 3);
     assert_int_equal(joined.series_count, suite.series_count);

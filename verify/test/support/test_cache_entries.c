@@ -282,17 +282,17 @@ TEST(pruning_by_age)
     /* names too long for the path are left alone, whatever file has the truncated name */
     make_entry("00/3.entry", 1, 0);
     make_entry("00/3.entryx", 1, 0);
-    for (size_t room = 11; room <= 12; room++) { /* for "/00/3.entry" and a NUL */
-        folder[CACHE_PATH_MAX - room - 1] = '\0';
+    for (size_t spare = 11; spare <= 12; spare++) { /* for "/00/3.entry" and a NUL */
+        folder[CACHE_PATH_MAX - spare - 1] = '\0';
         assert_int_equal(cache_prune(folder, 1000, &census, &error), STATUS_OK);
-        assert_int_equal(census.entries, room - 10);
-        folder[CACHE_PATH_MAX - room - 1] = '/';
+        assert_int_equal(census.entries, spare - 10);
+        folder[CACHE_PATH_MAX - spare - 1] = '/';
     }
-    for (size_t room = 3; room <= 4; room++) { /* for "/xx" and a NUL */
-        folder[CACHE_PATH_MAX - room] = '\0';
+    for (size_t spare = 3; spare <= 4; spare++) { /* for "/xx" and a NUL */
+        folder[CACHE_PATH_MAX - spare] = '\0';
         assert_int_equal(cache_prune(folder, 1, &census, &error),
-                         room == 4 ? STATUS_OK : STATUS_BAD_INPUT);
-        if (room == 3) assert_string_equal(error.message, "the path of the cache is too long");
-        folder[CACHE_PATH_MAX - room] = '/';
+                         spare == 4 ? STATUS_OK : STATUS_BAD_INPUT);
+        if (spare == 3) assert_string_equal(error.message, "the path of the cache is too long");
+        folder[CACHE_PATH_MAX - spare] = '/';
     }
 }
