@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Conservation without time stepping: rates of change of total momentum, angular momentum and
- * energy on random disordered states in 1D, 2D and 3D, for both formulations, standard and ia; and
- * what linear_exact and ia do not conserve. */
+ * Checks conservation without time stepping: rates of change of total momentum, angular momentum
+ * and energy on random disordered states in 1D, 2D and 3D, for both formulations, standard and ia;
+ * and measures what linear_exact and ia do not conserve. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,17 +3,16 @@
  * word, and numbers to seven digits. Round-off counts as 0, and what depends on the build or the
  * machine is left out. Arguments: the folder, and names of transcripts.
  *
- * A transcript: "$ WORDS" runs a command, its output follows, and "exit N" unless N is 0; of a long
- * output the number of its lines and a digest. "< FILE" writes what follows up to a line "." into
- * FILE. "$ show FILE" prints a file, of rows of numbers their sums, or the names in a folder. There
- * is a gnuplot that keeps its script as drawn.gp. "$ WORDS > FILE" sends standard output there, and
- * not into the transcript. "$ compute report FOLDER" puts results drawn at random for all that a
- * quick report computes (drawn_pieces.h) into that cache. "$ damage FROM TO vx=vy 1 2 9" exchanges
- * two columns of the snapshot FROM in every second row from the first to the ninth (all of them
- * unless that is said); "u*2" doubles one, "x+1" adds to it. "u!" gives it a name that
- * nobody reads. With SPHPROOF_KEEP=FOLDER the
- * transcripts are written there as they should be, and NAME.whole with the outputs whole, to be
- * compared with those of another build. */
+ * A transcript: "$ WORDS" runs a command; its output follows, and "exit N" unless N is 0. A long
+ * output is replaced by its number of lines and a digest. "< FILE" writes what follows, up to a
+ * line ".", into FILE. "$ show FILE" prints a file (of rows of numbers their sums) or the names in
+ * a folder. gnuplot is replaced by a program that keeps its script as drawn.gp. "$ WORDS > FILE"
+ * sends standard output there, and not into the transcript. "$ compute report FOLDER" puts random
+ * results for all that a quick report computes (drawn_pieces.h) into that cache. "$ damage FROM TO
+ * vx=vy 1 2 9" exchanges two columns of the snapshot FROM in every second row from the first to
+ * the ninth (all rows by default); "u*2" doubles one, "x+1" adds to it, "u!" gives it a name that
+ * nobody reads. With SPHPROOF_KEEP=FOLDER the correct transcripts are written there, and the whole
+ * outputs as NAME.whole, to be compared with those of another build. */
 #include "test.h"
 
 #include <ctype.h>
