@@ -518,6 +518,21 @@ static enum status check_fields(struct parser *parser, const struct problem *pro
     return STATUS_OK;
 }
 
+/* Says where the key stands that the reason begins with: "KEY=VALUE and ..." or "key KEY and ...".
+ */
+static enum status refuse(const struct parser *parser, const struct error *reason)
+{
+    const char *word = reason->message;
+    char name[32], line[16] = "";
+    if (strncmp(word, "key ", 4) == 0) word += 4;
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(word, " ="), word);
+    const int key = setting_find(name);
+    if (key >= 0 && parser->seen_settings[key])
+        snprintf(line, sizeof line, ":%d", parser->seen_settings[key]);
+    return error_set(parser->at.error, reason->status, "%.160s%s: %.330s", parser->at.path, line,
+                     reason->message);
+}
+
 enum status case_parse(struct case_file *file, const char *path, const char *text, size_t length,
                        struct error *error)
 {
@@ -535,6 +550,8 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
     if (ini_text_read(&parser.at, take_pair, &parser) || check_complete(&parser))
         return error->status;
     struct settings trial = file->settings;
+    for (int key = 0; key < SETTINGS; key++) /* refused like a user's */
+        if (parser.seen_settings[key]) trial.value[key].source = SOURCE_USER;
     /* `judge` accepts tubes with non-periodic ends, which a run refuses */
     if (file->dimension == 1 && problem_reads(problem_of(&trial), SETTING_left))
         trial.value[SETTING_boundary].automatic = true;
@@ -543,7 +560,7 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
     struct error reason;
     if (problem_prepare(&problem, &trial, file->dimension, &reason) ||
         settings_scheme(&trial, file->dimension, &scheme, &reason))
-        return error_set(error, reason.status, "%.160s: %.340s", path, reason.message);
+        return refuse(&parser, &reason);
     return check_fields(&parser, problem.problem);
 }
 

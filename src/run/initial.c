@@ -20,14 +20,6 @@ enum status initial_allocate(struct initial *initial, int dim, size_t n, struct 
     return STATUS_OK;
 }
 
-bool initial_is_shaken(const struct settings *settings)
-{
-    const enum lattice lattice = (enum lattice)settings_choice(settings, SETTING_lattice);
-    const bool jittered = lattice == LATTICE_JITTERED && settings->value[SETTING_jitter].automatic;
-    return settings_real(settings, SETTING_jitter) > 0 || jittered || lattice == LATTICE_RANDOM ||
-           lattice == LATTICE_GLASS;
-}
-
 void initial_sample(struct initial *initial, const struct prepared *p, size_t i)
 {
     struct problem_state state;

@@ -57,6 +57,3 @@ enum status initial_create(struct initial *initial, const struct prepared *p,
                            const struct settings *settings, struct error *error);
 
 void initial_free(struct initial *initial);
-
-/* True if particles are displaced at random, so that the seed matters. */
-bool initial_is_shaken(const struct settings *settings);

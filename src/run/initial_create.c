@@ -8,14 +8,16 @@
 #include "problem.h"
 
 /* Moves particles of a line pairwise together, unless a jump separates the pair. */
-static void pair_up(struct initial *initial, const struct settings *settings)
+static void pair_up(struct initial *initial, const struct prepared *p,
+                    const struct settings *settings)
 {
     const int lattice = settings_choice(settings, SETTING_lattice);
     if (lattice != LATTICE_CLUSTERED && lattice != LATTICE_COINCIDENT) return;
     const double part = lattice == LATTICE_CLUSTERED ? 0.05 : 0;
     double *x = initial->x[0];
     for (size_t i = 0; i + 1 < initial->n; i++) {
-        if (initial->rho[i] != initial->rho[i + 1] || initial->m[i] != initial->m[i + 1]) continue;
+        if (initial->m[i] != initial->m[i + 1]) continue;
+        if (!p->problem->smooth && initial->rho[i] != initial->rho[i + 1]) continue;
         const double middle = 0.5 * (x[i] + x[i + 1]), half = part * (x[i + 1] - x[i]);
         x[i] = middle - half;
         x[i + 1] = middle + half;
@@ -94,7 +96,7 @@ enum status initial_create(struct initial *initial, const struct prepared *p,
         add_boost(initial, p);
         return STATUS_OK;
     }
-    pair_up(initial, settings);
+    pair_up(initial, p, settings);
     if (shake(initial, p, settings)) {
         initial_free(initial);
         return error_set(error, STATUS_ENVIRONMENT, "no memory for random numbers");

@@ -325,11 +325,15 @@ static enum setting decides(enum setting key)
     case SETTING_alpha_min:
     case SETTING_alpha_max:
     case SETTING_noise:
+    case SETTING_balsara:
+    case SETTING_viscosity_form:
         return SETTING_viscosity;
     case SETTING_balsara_floor:
         return SETTING_balsara;
     case SETTING_grade_ratio:
         return SETTING_grade;
+    case SETTING_seed:
+        return SETTING_lattice;
     default:
         return SETTINGS;
     }
@@ -342,10 +346,21 @@ static bool is_read_with(enum setting key, int choice)
     case SETTING_kernel:
         return strcmp(kernel_family.members[choice]->name, "sinc") == 0;
     case SETTING_viscosity:
-        return has_parameter(choice, key);
+        return key == SETTING_balsara || key == SETTING_viscosity_form ? !viscosity_of[choice].none
+                                                                       : has_parameter(choice, key);
+    case SETTING_lattice:
+        return choice >= LATTICE_JITTERED;
     default:
         return choice == BALSARA_ON;
     }
+}
+
+bool settings_shaken(const struct settings *settings)
+{
+    const enum lattice lattice = (enum lattice)settings_choice(settings, SETTING_lattice);
+    const bool jittered = lattice == LATTICE_JITTERED && settings->value[SETTING_jitter].automatic;
+    return settings_real(settings, SETTING_jitter) > 0 || jittered || lattice == LATTICE_RANDOM ||
+           lattice == LATTICE_GLASS;
 }
 
 bool settings_uses(const struct settings *settings, enum setting key)
@@ -353,14 +368,25 @@ bool settings_uses(const struct settings *settings, enum setting key)
     const enum setting other = decides(key);
     if (other == SETTINGS) return true;
     if (other == SETTING_grade) return settings_real(settings, SETTING_grade) < 1;
-    return is_read_with(key, settings_choice(settings, other));
+    if (other == SETTING_lattice) return !settings->file[0] && settings_shaken(settings);
+    return settings_uses(settings, other) && is_read_with(key, settings_choice(settings, other));
+}
+
+void settings_take_used(const struct settings *settings, struct settings *left)
+{
+    for (int key = 0; key < SETTINGS; key++)
+        if (settings_uses(settings, (enum setting)key)) left->value[key].source = SOURCE_CASE;
 }
 
 enum status settings_refuse_unused(const struct settings *settings, struct error *error)
 {
     for (int i = 0; i < SETTINGS; i++) {
-        const enum setting key = (enum setting)i, other = decides(key);
+        const enum setting key = (enum setting)i;
+        enum setting idle = key; /* the key itself, or one that decides and is idle, too */
         if (settings->value[key].source != SOURCE_USER || settings_uses(settings, key)) continue;
+        while (decides(idle) != SETTINGS && !settings_uses(settings, decides(idle)))
+            idle = decides(idle);
+        const enum setting other = decides(idle);
         char given[SETTING_TEXT_MAX], excludes[SETTING_TEXT_MAX], allowed[SETTING_TEXT_MAX] = "";
         const struct family *family = setting_keys[other].family;
         size_t used = 0;
@@ -368,13 +394,14 @@ enum status settings_refuse_unused(const struct settings *settings, struct error
         settings_text(settings, other, excludes);
         if (!family) snprintf(allowed, sizeof allowed, " below 1");
         for (int k = 0; family && k < (int)family->n && used < sizeof allowed; k++)
-            if (is_read_with(key, k))
+            if (is_read_with(idle, k))
                 used += (size_t)snprintf(allowed + used, sizeof allowed - used, " %s",
                                          family->members[k]->name);
         return error_set(error, STATUS_BAD_INPUT,
-                         "%s=%.40s and %s=%.80s exclude each other: %s is of %s%s",
+                         "%s=%.40s and %s=%.80s exclude each other: %s is of %s%s%s",
                          setting_keys[key].name, given, setting_keys[other].name, excludes,
-                         setting_keys[key].name, setting_keys[other].name, allowed);
+                         setting_keys[key].name, setting_keys[other].name, allowed,
+                         key == SETTING_seed ? ", or of jitter above 0" : "");
     }
     return STATUS_OK;
 }
@@ -472,7 +499,8 @@ enum status settings_scheme(struct settings *settings, int dim, struct scheme *s
     if (read_scheme(settings, dim, scheme, &open, error)) return error->status;
     scheme_default(scheme, &open, dim);
     write_scheme(settings, scheme);
-    return scheme_check(scheme, dim, error);
+    const enum status status = scheme_check(scheme, dim, error);
+    return status || settings->shared ? status : settings_refuse_unused(settings, error);
 }
 
 void settings_text(const struct settings *settings, enum setting which, char text[SETTING_TEXT_MAX])

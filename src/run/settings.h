@@ -56,7 +56,9 @@ struct setting_value {
 };
 
 struct settings {
-    int dim; /* of the case; 0: not yet known */
+    int dim;     /* of the case; 0: not yet known */
+    bool shared; /* with other schemes or another code, so that no key is refused for having no
+                    effect here */
     struct setting_value value[SETTINGS];
     char file[SETTING_TEXT_MAX]; /* value of the SETTING_PATH; "": none */
     int reference;               /* number of a user's solution (user_solution.h); 0: none */
@@ -103,14 +105,22 @@ enum status settings_apply(struct settings *settings, int n, char *const *argume
                            struct error *error);
 
 /* The scheme for the settings, checked in dim dimensions; sets the automatic keys of the scheme.
- * problem_prepare does so for the problem, run_resolve for both. */
+ * problem_prepare does so for the problem, run_resolve for both. STATUS_BAD_INPUT as by
+ * settings_refuse_unused, unless the settings are shared. */
 enum status settings_scheme(struct settings *settings, int dim, struct scheme *scheme,
                             struct error *error);
 
+/* True if particles are displaced at random, so that the seed matters. */
+bool settings_shaken(const struct settings *settings);
+
 /* False if the value of another key leaves this one without effect: a parameter of another
- * viscosity, sinc_n of another kernel, balsara_floor without a factor, grade_ratio of equal masses.
- * Automatic keys must have their values. */
+ * viscosity, sinc_n of another kernel, balsara_floor without a factor, grade_ratio of equal masses,
+ * seed of a start that is not random. Automatic keys must have their values. */
 bool settings_uses(const struct settings *settings, enum setting key);
+
+/* Takes the keys that `settings` uses off the user's in `left`. What is left after all schemes of a
+ * sweep has an effect on none, and settings_refuse_unused refuses it. */
+void settings_take_used(const struct settings *settings, struct settings *left);
 
 /* STATUS_BAD_INPUT: the user gave a key that has no effect by settings_uses(). */
 enum status settings_refuse_unused(const struct settings *settings, struct error *error);

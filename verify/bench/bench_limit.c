@@ -12,16 +12,18 @@
 /* Offsets of the sums. */
 enum { PF = 0, P = 3, PX = 6, W = 15, WF = 16, WX = 17, USED = 20 };
 
-/* The kinds of sums that the operators need; a matrix if the pair vector is not the gradient. */
+/* The kinds of sums that the operators need; a matrix if the pair vector is not the gradient, and
+ * in one more kind, CORRECTED, which has it as well. */
+enum { CORRECTED = PAIR_VECTORS };
 #define DIMENSIONS(vector, tag, X, name)                                                           \
     X(name, tag, vector, 1) X(name, tag, vector, 2) X(name, tag, vector, 3)
-#define KINDS(X, name) VECTOR_LIST(DIMENSIONS, X, name)
+#define KINDS(X, name) VECTOR_LIST(DIMENSIONS, X, name) DIMENSIONS(CORRECTED, corrected, X, name)
 
 #ifdef KERNEL_FILE /* one kernel's, see specialise.c.in */
 
 ALWAYS_INLINE void sum_up(const struct kernel *kernel, kernel_shape *w, kernel_shape *dw,
-                          enum pair_vector vector, bool matrix, int dim,
-                          const struct bench_neighbours *list, double *restrict sums)
+                          int vector, bool matrix, int dim, const struct bench_neighbours *list,
+                          double *restrict sums)
 {
     const double *restrict x0 = list->x[0], *restrict x1 = list->x[1], *restrict x2 = list->x[2],
                            *restrict volume = list->volume, *restrict f = list->f;
@@ -62,19 +64,21 @@ ALWAYS_INLINE void sum_up(const struct kernel *kernel, kernel_shape *w, kernel_s
     CLONES static void name##_##tag##_##dim(const struct kernel *kernel,                           \
                                             const struct bench_neighbours *list, double *sums)     \
     {                                                                                              \
-        sum_up(kernel, name##_w, name##_dw, vector, vector != VECTOR_GRADIENT, dim, list, sums);   \
+        sum_up(kernel, name##_w, name##_dw, (int)vector, (int)vector != (int)VECTOR_GRADIENT, dim, \
+               list, sums);                                                                        \
     }
 
 #define ENTRY(name, tag, vector, dim) [vector][dim - 1] = name##_##tag##_##dim,
 #define KERNEL(name, ...)                                                                          \
     KINDS(BODY, name)                                                                              \
-    bench_limit_loop *const bench_limit_##name[PAIR_VECTORS][KERNEL_DIM_MAX] = {KINDS(ENTRY, name)};
+    bench_limit_loop *const bench_limit_##name[PAIR_VECTORS + 1][KERNEL_DIM_MAX] = {               \
+        KINDS(ENTRY, name)};
 #include KERNEL_FILE
 
 #else
 
 #define DECLARE(name)                                                                              \
-    extern bench_limit_loop *const bench_limit_##name[PAIR_VECTORS][KERNEL_DIM_MAX];
+    extern bench_limit_loop *const bench_limit_##name[PAIR_VECTORS + 1][KERNEL_DIM_MAX];
 KERNEL_NAMES(DECLARE)
 #define TABLE(name) bench_limit_##name,
 static bench_limit_loop *const (*const loops[])[KERNEL_DIM_MAX] = {KERNEL_NAMES(TABLE)};
@@ -83,7 +87,10 @@ bench_limit_loop *bench_limit_find(const struct kernel *kernel, const struct ope
                                    int dim)
 {
     const int specialisation = kernel_specialisation(kernel);
-    return specialisation < 0 ? NULL : loops[specialisation][form->pair_vector][dim - 1];
+    const int kind = form->corrected && form->pair_vector == VECTOR_GRADIENT
+                         ? (int)CORRECTED
+                         : (int)form->pair_vector;
+    return specialisation < 0 ? NULL : loops[specialisation][kind][dim - 1];
 }
 
 CLONES static size_t near(int dim, size_t n, const float *restrict x, const float *restrict y,

@@ -196,6 +196,7 @@ static struct run *run_with(const struct run_settings *from, const char *keys,
                             const struct scheme *own, struct error *error)
 {
     struct run_settings asked = *from;
+    asked.settings.shared |= own != NULL; /* keys that belong to the case's own scheme */
     if (apply(&asked, keys, own, error)) return NULL;
     struct run *run = malloc(sizeof *run);
     if (!run) error_set(error, STATUS_ENVIRONMENT, "no memory");

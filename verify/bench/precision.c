@@ -198,7 +198,9 @@ static enum status find_scale(const struct run_settings *settings, struct precis
     precision->error_of = "density";
     precision->mean_density = precision->signal = (double)NAN;
     if (precision->dim > 1) return STATUS_OK; /* from the runs, see collect */
-    if (run_resolve(&run, settings, error)) return error->status;
+    struct run_settings of_all = *settings;
+    of_all.settings.shared = true;
+    if (run_resolve(&run, &of_all, error)) return error->status;
     problem_means(&run.problem, FIELD_DENSITY, settings_real(&run.settings, SETTING_t_end),
                   NORM_BINS, means);
     precision->mean_density = gsl_stats_mean(means, 1, NORM_BINS);
@@ -257,7 +259,10 @@ static enum status prepare(const struct precision *precision, const struct sweep
             strcpy(scheme->brief, "as given");
         }
         if (sweep_apply(sweep, i, settings, error)) return error->status;
-    } else if (i == sweep->count + (external != NULL) && want_graded(precision->settings, sweep)) {
+        return STATUS_OK;
+    }
+    settings->settings.shared = true;
+    if (i == sweep->count + (external != NULL) && want_graded(precision->settings, sweep)) {
         scheme->reference = REFERENCE_GRADED;
         snprintf(scheme->label, sizeof scheme->label, "graded masses %s", graded_key);
         strcpy(scheme->brief, "graded masses");
@@ -389,13 +394,16 @@ static enum status lay_out(const struct run_settings *settings, const struct swe
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", most);
     if (!status) status = find_scale(settings, precision, error);
     size_t n = 0, own_schemes = 0;
+    struct settings left;
     for (size_t i = 0; i < schemes && !status; i++) {
         status = prepare(precision, sweep, i, own, error);
         for (size_t l = 0; l < count && !status && !precision->schemes[i].excluded[0]; l++) {
             struct job *job = &work->jobs[n];
             status = add_level(job, own, ladder[l], &precision->schemes[i], error);
             if (status || precision->schemes[i].excluded[0]) continue;
+            if (own_schemes == 0 && l == 0) left = job->run.settings;
             own_schemes += l == 0 && i < sweep->count;
+            if (i < sweep->count) settings_take_used(&job->run.settings, &left);
             job->point = &precision->points[n];
             precision->points[n].scheme = i;
             work->subjects[n] = (struct bench_subject){.work = execute, .context = job};
@@ -405,9 +413,10 @@ static enum status lay_out(const struct run_settings *settings, const struct swe
     precision->point_count = n;
     if (work) work->count = n, work->level_count = count, work->precision = precision;
     if (!status && !own_schemes)
-        status =
-            error_set(error, STATUS_BAD_INPUT, "bench: no combination of --vary is allowed: %s",
-                      precision->schemes[0].excluded);
+        status = error_set(error, STATUS_BAD_INPUT, "bench: %s%s",
+                           sweep->count > 1 ? "no combination of --vary is allowed: " : "",
+                           precision->schemes[0].excluded);
+    if (!status && !settings->settings.shared) status = settings_refuse_unused(&left, error);
     free(own);
     return status;
 }

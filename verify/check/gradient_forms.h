@@ -14,6 +14,7 @@
 FORM(standard, "standard", VECTOR_GRADIENT, false, false);
 FORM(difference, "standard_difference", VECTOR_GRADIENT, true, false);
 FORM(ia, "ia", VECTOR_POSITION, false, true);
+FORM(corrected, "corrected", VECTOR_GRADIENT, false, true);
 FORM(linear_exact, "linear_exact", VECTOR_POSITION, true, true);
 FORM(normalised, "normalised_corrected", VECTOR_NORMALISED, true, true);
 /* normalised_corrected without subtracting f_i: shows the effect of sum V g = 0 */
@@ -21,6 +22,8 @@ FORM(normalised_plain, "normalised_corrected", VECTOR_NORMALISED, false, true);
 /* wrong flags */
 FORM(difference_without, "standard_difference", VECTOR_GRADIENT, false, false);
 FORM(ia_without_matrix, "ia", VECTOR_POSITION, false, false);
+FORM(corrected_without_matrix, "corrected", VECTOR_GRADIENT, false, false);
+FORM(corrected_weight_of_ia, "corrected", VECTOR_POSITION, false, true);
 FORM(linear_without_difference, "linear_exact", VECTOR_POSITION, false, true);
 FORM(linear_without_matrix, "linear_exact", VECTOR_POSITION, true, false);
 FORM(normalised_without_matrix, "normalised_corrected", VECTOR_NORMALISED, false, false);

@@ -630,6 +630,7 @@ enum status code_plan(const struct code *code, const char *case_name, const char
         .work = work};
     *settings = (struct run_settings){
         .file = of->file, .settings = of->file.settings, .threads = 1, .external = &external->base};
+    settings->settings.shared = true; /* with the code, which may read @SEED@ */
     if (settings_apply(&settings->settings, n, arguments, error) ||
         (code_equal_masses(&of->way) && run_ask_equal_masses(settings, error)))
         return error->status;

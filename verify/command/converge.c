@@ -296,9 +296,11 @@ static enum status converge(const struct options *options, int n, char **argumen
     study.settings.threads = options->threads;
     json_t *document = result_new("converge");
     result_add(document, "case=%s status=%s", study.settings.file.name, "ok");
+    struct run_settings of_all = study.settings;
     struct run as_given;
     struct error trouble = {0};
-    if (!run_resolve(&as_given, &study.settings, &trouble))
+    of_all.settings.shared = true;
+    if (!run_resolve(&as_given, &of_all, &trouble))
         json_object_set_new(document, "settings", settings_json(&as_given.settings));
     if (study.settings.external) external.base.describe(&external.base, document);
     enum status status = serialise_out(&study, options, &sharing, document, &whole, error);

@@ -436,7 +436,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
 }
 
 static const struct command_option own_options[] = {
-    {"operator", "OP", "standard, standard_difference, ia, linear_exact or normalised_corrected"},
+    {"operator", "OP",
+     "standard, standard_difference, ia, corrected, linear_exact or normalised_corrected"},
     {"kernel", "K", "kernel; see `sphproof list kernels`"},
     {"dim", "D", "1, 2 or 3"},
     {"eta", "E", "support radius h = eta volume^(1/dim) at each point"},

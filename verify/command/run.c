@@ -510,8 +510,7 @@ static enum status run_case(const struct options *options, int n, char **argumen
         return error_set(error, STATUS_BAD_INPUT, "run: --work needs --code FILE");
     if (run_prepare(&settings, arguments[0], n - 1, arguments + 1, error)) return error->status;
     settings.threads = options->threads;
-    if (run_resolve(&run, &settings, error) || settings_refuse_unused(&run.settings, error))
-        return error->status;
+    if (run_resolve(&run, &settings, error)) return error->status;
     struct snapshots snapshots;
     if (take_snapshots(&snapshots, options, &run, error)) return error->status;
     if (snapshots.path) run.asked.snapshots = &snapshots;

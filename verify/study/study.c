@@ -120,15 +120,18 @@ enum status study_plan(struct study *study, struct pool *pool, struct error *err
     study->jobs = calloc(runs, sizeof *study->jobs);
     if (!study->results || !study->runs || !study->jobs)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for a study of %zu runs", runs);
-    size_t excluded = 0;
+    size_t allowed = 0;
+    struct settings left;
     for (size_t c = 0; c < study->sweep.count; c++) {
         if (plan_combination(study, c, pool, error)) return error->status;
-        excluded += study->results[c].excluded;
+        if (study->results[c].excluded) continue;
+        if (allowed++ == 0) left = study->results[c].settings;
+        settings_take_used(&study->results[c].settings, &left);
     }
-    if (excluded == study->sweep.count)
+    if (!allowed)
         return error_set(error, STATUS_BAD_INPUT, "no combination of --vary is allowed: %.400s",
                          study->results[0].message);
-    return STATUS_OK;
+    return study->settings.settings.shared ? STATUS_OK : settings_refuse_unused(&left, error);
 }
 
 void study_free(struct study *study)

@@ -227,8 +227,6 @@ static bool is_read(enum setting key, const struct settings *settings)
     switch (key) {
     case SETTING_skip:
         return false;
-    case SETTING_seed:
-        return study_is_random(settings);
     case SETTING_h_tolerance:
         return settings_choice(settings, SETTING_h_method) == H_NEWTON;
     default:

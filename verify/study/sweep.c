@@ -109,6 +109,7 @@ static const char *value_of(const struct sweep *sweep, size_t combination, size_
 enum status sweep_apply(const struct sweep *sweep, size_t i, struct run_settings *settings,
                         struct error *error)
 {
+    settings->settings.shared |= sweep->count > 1;
     for (size_t k = 0; k < sweep->key_count; k++)
         if (settings_set(&settings->settings, sweep->keys[k].key, value_of(sweep, i, k),
                          SOURCE_USER, "--vary", error))

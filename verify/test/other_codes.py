@@ -28,7 +28,7 @@ def call(*words):
     if os.spawnl(os.P_WAIT, %r, "sphproof", *words): # modules take longer to start than most runs
         sys.exit(1)
 def run(t=t_end, n=n, to=out + "_1.csv", *keys):
-    call("run", case, "n=" + n, "t_end=" + t, "seed=" + seed, *keys, "--quiet", "--snapshot", to)
+    call("run", case, "n=" + n, "t_end=" + t, *keys, "--quiet", "--snapshot", to)
 def change(path, to, keep, of_column):
     with open(path) as file:
         lines = [line for line in file.read().splitlines() if not line.startswith(("# box", "# keys", "# case"))]

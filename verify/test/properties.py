@@ -93,7 +93,9 @@ def draw(program, number):
         maybe(0.3, "waves", rng.randint(1, 5))
         maybe(0.8, "t_end", round(rng.uniform(0.01, 0.3), 3))
     keys["n"] = rng.randint(4, 30) if rng.random() < 0.2 else rng.randint(30, 200)
-    keys["seed"] = rng.randint(0, 4294967295)
+    seed = rng.randint(0, 4294967295)
+    if keys.get("jitter"):
+        keys["seed"] = seed
     return case, keys, rng.randint(1, 3)
 
 
@@ -108,7 +110,7 @@ def draw_shifting(number):
     if rng.random() < 0.3:
         keys["alpha_u"] = round(rng.uniform(0.1, 1), 2)
     keys.update(n=rng.randint(least, 2 * least), t_end=round(t_end * rng.uniform(0.3, 1), 4),
-                jitter=round(rng.uniform(0, 0.2), 2), seed=rng.randint(0, 4294967295))
+                jitter=round(rng.uniform(0.01, 0.2), 2), seed=rng.randint(0, 4294967295))
     return case, keys, rng.randint(1, 3)
 
 
@@ -131,8 +133,10 @@ def draw_local(number):
     maybe(0.3, "energy", rng.choice(["internal", "total"]))
     maybe(0.3, "jitter", round(rng.uniform(0, 0.2), 2))
     maybe(0.4, "skip", "none")
-    keys.update(n=rng.randint(least, 2 * least), t_end=round(t_end * rng.uniform(0.3, 1), 4),
-                seed=rng.randint(0, 4294967295))
+    keys.update(n=rng.randint(least, 2 * least), t_end=round(t_end * rng.uniform(0.3, 1), 4))
+    seed = rng.randint(0, 4294967295)
+    if keys.get("jitter"):
+        keys["seed"] = seed
     return case, keys, rng.randint(1, 3)
 
 

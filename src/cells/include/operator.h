@@ -5,7 +5,7 @@
  *   grad f = A sum_j V_j (f_j - [f_i]) p_j,   A = 1 or (sum_j V_j p_j (x) x)^-1,
  *
  * where the pair vector p_j is grad_i W, x W, or the gradient of the kernel normalised by
- * S = sum V W; all sums include j = i. The five operators are five such choices (operators.def);
+ * S = sum V W; all sums include j = i. The operators are such choices (operators.def);
  * the factor of W cancels where A is an inverse. For f linear with slope a, sum V (f_j - f_i) p =
  * (sum V p (x) x) a, which places the indices of A: the row belongs to x, the column to p. */
 #ifndef SPHPROOF_OPERATOR_H

@@ -82,6 +82,6 @@ const struct problem problem_channel = {
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = initial_is_shaken,
+    .random = settings_shaken,
     .functionals = {&flow},
 };

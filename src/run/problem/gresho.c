@@ -93,6 +93,6 @@ const struct problem problem_gresho = {
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = initial_is_shaken,
+    .random = settings_shaken,
     .functionals = {&disc_error, &peak},
 };

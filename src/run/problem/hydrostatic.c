@@ -55,6 +55,6 @@ const struct problem problem_hydrostatic = {
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = initial_is_shaken,
+    .random = settings_shaken,
     .functionals = {&functional_velocity_rms},
 };

@@ -85,6 +85,6 @@ const struct problem problem_kelvin_helmholtz = {
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = initial_is_shaken,
+    .random = settings_shaken,
     .functionals = {&mode_amplitude},
 };

@@ -131,6 +131,6 @@ const struct problem problem_noh = {
     .fill = fill,
     .holds = holds,
     .refuse = refuse,
-    .random = initial_is_shaken,
+    .random = settings_shaken,
     .functionals = {&shock_radius, &plateau, &centre},
 };

@@ -117,6 +117,6 @@ const struct problem problem_rotation = {
     .fill = fill,
     .holds = holds,
     .refuse = refuse,
-    .random = initial_is_shaken,
+    .random = settings_shaken,
     .functionals = {&radius, &speed},
 };

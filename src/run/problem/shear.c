@@ -122,6 +122,6 @@ const struct problem problem_shear = {
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = initial_is_shaken,
+    .random = settings_shaken,
     .functionals = {&amplitude, &viscosity},
 };

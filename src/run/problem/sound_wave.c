@@ -214,6 +214,6 @@ const struct problem problem_sound_wave = {
     .fill = fill,
     .holds = holds,
     .refuse = refuse,
-    .random = initial_is_shaken,
+    .random = settings_shaken,
     .functionals = {&functional_mean_internal_energy, &functional_mean_pressure, &mode_amplitude},
 };

@@ -141,6 +141,6 @@ const struct problem problem_square = {
     .prepare = prepare,
     .sample = sample,
     .fill = fill,
-    .random = initial_is_shaken,
+    .random = settings_shaken,
     .functionals = {&functional_velocity_rms},
 };

@@ -98,6 +98,6 @@ const struct problem problem_taylor_green = {
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = initial_is_shaken,
+    .random = settings_shaken,
     .functionals = {&amplitude, &rate},
 };

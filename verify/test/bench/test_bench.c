@@ -293,6 +293,7 @@ static void compare_plain(const char *name, int n, char *const *more)
     struct error error = {0};
     assert_int_equal(run_prepare(settings, name, sizeof keys / sizeof *keys, keys, &error), 0);
     assert_int_equal(settings_apply(&settings->settings, n, more, &error), 0);
+    settings->settings.shared = true; /* alpha is of the cases with viscosity */
     settings->threads = 1;
     assert_int_equal(run_resolve(&run, settings, &error), STATUS_OK);
     assert_int_equal(run_execute(&run, &fast, &error), STATUS_OK);

@@ -220,7 +220,7 @@ TEST(test_every_allocation_fails_once)
         size_t n;
         long least, most; /* calls; `least` where there is capacity already */
     } all[] = {{find, 1, 90, 8, 45},
-               {differentiate, 1, 60, 105, 130},
+               {differentiate, 1, 60, 105, 160},
                {differentiate_clump, 1, 200, 25, 45},
                {differentiate_all, 1, 128, 24, 26},
                {far_away, 1, 60, 130, 170},

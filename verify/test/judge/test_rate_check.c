@@ -37,6 +37,7 @@ static void set_scheme(struct setup *setup, const char *words)
     snprintf(text, sizeof text, "%s", words);
     while ((word = strtok_r(rest, " ", &rest)) && n < KEYS) keys[n++] = word;
     settings_init(&settings);
+    settings.shared = true; /* words for each of several schemes */
     if (settings_apply(&settings, n, keys, &error) ||
         settings_scheme(&settings, setup->dim, &setup->scheme, &error))
         fail_msg("%s: %s", words, error.message);

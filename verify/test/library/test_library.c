@@ -122,6 +122,7 @@ TEST(an_operator_is_held_to_its_promise)
     for (int dim = 1; dim <= 2; dim++) {
         assert_int_equal(tried("linear_exact", RIGHT, dim, linear, &error), SPHPROOF_OK);
         assert_int_equal(tried("ia", RIGHT, dim, conserving, &error), SPHPROOF_OK);
+        assert_int_equal(tried("corrected", RIGHT, dim, conserving, &error), SPHPROOF_OK);
     }
     assert_int_equal(tried("ia", RIGHT, 1, linear, &error), SPHPROOF_CHECK_FAILED);
     assert_non_null(strstr(error.message, "exactness: "));

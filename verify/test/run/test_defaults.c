@@ -193,7 +193,7 @@ TEST(nothing_chosen)
         {{"alpha=0.3", "t_end=0.1"}, 1.1},
         {{"eta=1.6", "t_end=0.1"}, 0.8},
         {{"h_method=newton", "t_end=0.1"}, 0.8},
-        {{"viscosity=none", "alpha=0.5"}, 0.8},
+        {{"viscosity=none", "t_end=0.1"}, 0.8},
         {{"volume_element=energy", "alpha=0.5"}, 0.8},
         {{"viscosity=time_dependent", "alpha_max=0.7"}, 1.1},
         {{"viscosity=time_dependent", "alpha_max=0.8"}, 0.8},

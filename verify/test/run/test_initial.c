@@ -47,7 +47,7 @@ TEST(seeds_matter_to_some)
                 {"jitter=0.01", true}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct settings settings = keyed_settings(rows[k].key);
-        assert_true(initial_is_shaken(&settings) == rows[k].shaken);
+        assert_true(settings_shaken(&settings) == rows[k].shaken);
     }
 }
 
@@ -187,7 +187,8 @@ static enum status fill_line(const struct prepared *p, const struct settings *se
     return STATUS_OK;
 }
 
-static const struct problem line = {.sample = gas_sample, .fill = fill_line, .smooth = true};
+static const struct problem line = {.sample = gas_sample, .fill = fill_line};
+static const struct problem smooth_line = {.sample = gas_sample, .fill = fill_line, .smooth = true};
 
 static struct initial created(const struct prepared *p, const struct settings *settings)
 {
@@ -197,17 +198,22 @@ static struct initial created(const struct prepared *p, const struct settings *s
     return initial;
 }
 
-/* Equal neighbours become pairs a tenth of their distance apart; the others stay. */
+/* Equal neighbours become pairs a tenth of their distance apart; the others stay. In a smooth gas
+ * those of equal masses do. */
 TEST(pairs_of_a_line)
 {
-    const struct prepared p = {.problem = &line, .domain = {1, {0}, {9}}, .boost = {100}};
     static const struct {
         const char *key;
+        const struct problem *problem;
         double x[LINE];
-    } rows[] = {{"lattice=uniform", {0, 1.5, 2.5, 3, 4, 5, 6, 6.5, 7.5, 8}},
-                {"lattice=clustered", {0.675, 0.825, 2.725, 2.775, 4, 5, 6, 6.95, 7.05, 8}},
-                {"lattice=coincident", {0.75, 0.75, 2.75, 2.75, 4, 5, 6, 7, 7, 8}}};
-    for (size_t k = 0; k < 3; k++) {
+    } rows[] = {
+        {"lattice=uniform", &line, {0, 1.5, 2.5, 3, 4, 5, 6, 6.5, 7.5, 8}},
+        {"lattice=clustered", &line, {0.675, 0.825, 2.725, 2.775, 4, 5, 6, 6.95, 7.05, 8}},
+        {"lattice=coincident", &line, {0.75, 0.75, 2.75, 2.75, 4, 5, 6, 7, 7, 8}},
+        {"lattice=coincident", &smooth_line, {0.75, 0.75, 2.75, 2.75, 4.5, 4.5, 6, 7, 7, 8}}};
+    for (size_t k = 0; k < 4; k++) {
+        const struct prepared p = {
+            .problem = rows[k].problem, .domain = {1, {0}, {9}}, .boost = {100}};
         const struct settings settings = keyed_settings(rows[k].key);
         struct initial initial = created(&p, &settings);
         assert_int_equal(initial.n, LINE);
