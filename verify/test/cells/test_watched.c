@@ -223,7 +223,7 @@ TEST(test_every_allocation_fails_once)
                {differentiate, 1, 60, 105, 160},
                {differentiate_clump, 1, 200, 25, 45},
                {differentiate_all, 1, 128, 24, 26},
-               {far_away, 1, 60, 130, 170},
+               {far_away, 1, 60, 130, 210},
                {weigh, 1, 60, 15, 25},
                {flow_of_all, 2, 0, 20, 99},
                {flow_of_little, 2, 0, 20, 99},
