@@ -88,7 +88,7 @@ def test_code():
     """Another code with a template and a program beside its file, which is named relative to this folder."""
     os.mkdir("mine")
     for name, text in (("mine/code.sh", "#!/bin/sh\nexec %s run $(cat keys) --quiet --snapshot $1_1.csv\n" % program),
-                       ("mine/keys.in", "@CASE@ n=@N@ t_end=@T_END@ seed=@SEED@\n"),
+                       ("mine/keys.in", "@CASE@ n=@N@ t_end=@T_END@\n"),
                        ("mine/code.ini", "[code]\nparameters = keys.in\ncommand = ./code.sh @OUT@\nsnapshot = @OUT@_*.csv\n"
                         "[case sod]\n")):
         with open(name, "w", encoding="ascii") as file:
