@@ -259,14 +259,15 @@ static void case_head(struct buffer *to, const char *name, const json_t *title,
     html_format(to, "<summary><h3><code>%s</code> <span>%s</span></h3>", name,
                 title ? json_string_value(title) : "");
     html_status(to, state);
-    size_t shown = 0;
+    bool shown = false;
     for (size_t k = 0; k < study_count; k++) {
         const json_t *order = page_study_main(studies[k]);
         if (!order) continue; /* the study failed */
         if (!shown) buffer_add(to, " <span class=\"note\">order of ");
         if (!shown) page_study_name(to, order);
-        html_format(to, shown++ ? ", %s " : ": %s ", value_text(studies[k], "label"));
+        html_format(to, shown ? ", %s " : ": %s ", value_text(studies[k], "label"));
         html_order(to, order);
+        shown = true;
     }
     buffer_format(to, "%s</summary>\n", shown ? "</span>" : "");
 }

@@ -101,9 +101,12 @@ static void path_cell(struct buffer *to, const char *path, size_t others)
 
 static void since_rows(struct buffer *to, const json_t *figures, const char *verdict, size_t *rows)
 {
-    for (size_t i = 0; i < json_array_size(figures) && *rows < SHOWN; i++) {
+    const json_t *entry;
+    size_t i;
+    json_array_foreach(figures, i, entry) {
         size_t others;
-        if (strcmp(value_text(json_array_get(figures, i), "verdict"), verdict)) continue;
+        if (*rows == SHOWN) return;
+        if (strcmp(value_text(entry, "verdict"), verdict)) continue;
         const json_t *figure = spokesman(figures, i, &others);
         if (!figure) continue;
         ++*rows;

@@ -182,10 +182,10 @@ static void together(struct buffer *to, const json_t *document)
         }
         html_table_end(to);
         buffer_add(to, "</section>\n");
-    }
-    if (json_object_get(document, "no_orders"))
+    } else if (json_object_get(document, "no_orders")) {
         html_format(to, "<section id=\"orders\"><h2>Orders</h2><p>None: %s.</p></section>\n",
                     value_text(document, "no_orders"));
+    }
     if (!json_is_object(drift)) return;
     buffer_add(to, "<section id=\"conservation\"><h2>Conservation</h2><p>From ");
     for (k = 0; k < 2; k++) {
