@@ -295,7 +295,7 @@ TEST(gas_falls)
     }
 }
 
-TEST(a_setup_that_is_none_is_refused)
+TEST(impossible_setups_are_refused)
 {
     static const char *const foreign[] = {"n=100", NULL}, *const unknown[] = {"kernle=ia", NULL};
     const struct sphproof_rates rates = {0};

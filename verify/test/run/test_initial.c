@@ -37,7 +37,7 @@ TEST(arrays_do_not_overlap)
     }
 }
 
-TEST(seeds_matter_to_some)
+TEST(seeds_change_random_starts_alone)
 {
     static const struct {
         const char *key;

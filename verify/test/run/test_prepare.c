@@ -6,7 +6,7 @@
 #include "functional.h"
 #include "prepared.h"
 
-TEST(what_cannot_be_is_refused)
+TEST(impossible_settings_are_refused)
 {
     static const struct {
         int dim;
@@ -153,7 +153,7 @@ TEST(problems_have_their_dimensions)
     }
 }
 
-TEST(what_is_left_open_is_chosen)
+TEST(automatic_values_are_chosen)
 {
     struct settings s;
     struct prepared p =

@@ -97,7 +97,7 @@ TEST(beyond_the_ladder)
 }
 
 /* A known weakness allows an error of any size, but the error must be a number. */
-TEST(no_number_is_not_known)
+TEST(known_weaknesses_need_a_number)
 {
     for (int compared = 0; compared < 2; compared++) {
         const struct case_file file = file_of(compared);
@@ -132,7 +132,7 @@ TEST(what_is_missing_fails)
 
 /* If a scheme's order cannot be measured because its errors are round-off, a measured error must
  * pass. */
-TEST(absence_is_known)
+TEST(round_off_excuses_a_missing_order)
 {
     const struct case_weakness absent = {(double)NAN, "no shock"}, any = {(double)INFINITY, "slow"},
                                some = {2, "slow"}, unsaid = {0, ""};

@@ -133,7 +133,7 @@ TEST(beyond_what_is_known)
 }
 
 /* An error that is suspiciously small counts only on the case's own ladder and settings. */
-TEST(small_errors_are_strange)
+TEST(errors_too_small_are_suspicious)
 {
     static const struct {
         double least; /* over the finest error */
@@ -295,7 +295,7 @@ TEST(floor_of_0_explains_nothing)
  * enough: not at the coarsest level of the case's ladder with a raised bound, nor with a bound
  * above a quarter of the exact value, nor with an interval of the order wider than its gate. A
  * bound alone asks for no order. */
-TEST(passes_that_say_little)
+TEST(coarse_passes_are_undetermined)
 {
     const double open = (double)INFINITY, none = (double)NAN;
     const struct {

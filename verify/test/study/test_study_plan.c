@@ -272,7 +272,7 @@ static void refused(const char *keys_of, const char *vary, const char *why)
     pool_free(&pool);
 }
 
-TEST(what_is_refused)
+TEST(impossible_studies_are_refused)
 {
     refused("eta=0.5", NULL, "eta = 0.5");
     refused("", "eta=0.5,0.6", "no combination of --vary is allowed: eta = 0.5");

@@ -94,7 +94,7 @@ static void refused(const char *text, const char *why)
     if (!strstr(error.message, why)) fail_msg("%s: '%s' lacks '%s'", text, error.message, why);
 }
 
-TEST(what_is_refused)
+TEST(impossible_variations_are_refused)
 {
     char text[600] = "alpha=1", longest[2 * SETTING_TEXT_MAX];
     refused("kernle", "did you mean 'kernel'?");
