@@ -258,6 +258,18 @@ TEST(nearest_cause)
     }
 }
 
+/* A sum that is a millionth of the largest values is named, too. */
+TEST(small_sum_of_large_values)
+{
+    plant(1, 1);
+    for (int i = 0; i < N; i++) {
+        exact[i].u = i % 2 ? 1 : 4096;
+        wrong[i] = 1u << START_ENERGY;
+        u[i] = exact[i].u + 0.0625;
+    }
+    cause_is("a small sum", START_ENERGY, 1, "it is 0.0625 more than the case's");
+}
+
 /* One of 20 wrong particles may be an exception, and not two; a sum is not proposed for a single
  * particle. */
 TEST(exceptions_from_a_cause)

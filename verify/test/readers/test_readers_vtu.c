@@ -216,6 +216,7 @@ static const struct {
     {TEXT, "byte_order=", "compressor=\"vtkLZ4DataCompressor\" byte_order=",
      "'vtkLZ4DataCompressor'; allowed: vtkZLibDataCompressor"},
     {TEXT, "4000 -1 4000 -1", "-1 -1 4000 -1", "'box' goes from -1 to -1"},
+    {TEXT, "4000 -1 4000 -1", "4000 5 3 -1", "'box' goes from 5 to 3"},
     {TEXT, "\"box\" NumberOfTuples=\"6\"", "\"box\" NumberOfTuples=\"0\"",
      "'box' has 0 x 1 numbers; allowed: 1 to"},
     {TEXT, "\"box\" NumberOfTuples=\"6\"", "\"box\" NumberOfTuples=\"1200\"",
