@@ -26,14 +26,15 @@ SWAPPED_CALLS = {"fmin": "fmax", "fmax": "fmin", "fminl": "fmaxl", "fmaxl": "fmi
 COMMUTE = {"fmin", "fmax", "fminl", "fmaxl", "least", "largest", "hypot", "strcmp", "strncmp", "memcmp", "json_equal",
            "calloc", "fwrite", "swap"}
 ALLOCATIONS = {"malloc", "calloc", "realloc"}  # a larger block changes nothing
+WAITS = {"poll", "nanosleep"}  # the last argument of poll is a time; how long a process waits changes no result
 SAID = ("reports/", "verify/command/")  # numbers are printed with three digits, or drawn
 ARITHMETIC = {"+": "-", "-": "+", "*": "/", "/": "*"}
 COMPARE = {"<": ("<=", ">"), ">": (">=", "<"), "<=": ("<", ">="), ">=": (">", "<="), "==": ("!=",), "!=": ("==",),
            "&&": ("||",), "||": ("&&",)}
 BITS = {"&": "|", "|": "&", "<<": ">>", ">>": "<<", "%": "*"}
 ASSIGN = {"+=": "-=", "-=": "+=", "*=": "/=", "/=": "*=", "&=": "|=", "|=": "&=", "%=": "+="}
-# A call that frees is the business of sanitizers, and one that prints that of messages.
-DROPPED_BY_NOBODY = re.compile(r"^(\w*free\w*|fclose|closedir|close_entry|close_dataset|posix_spawn\w*_destroy|json_decref|H5\w+close|h5\.\w*[cC]lose|\(void\))\b|^\(void\)")
+# A call that frees is the business of sanitizers, and one that prints that of messages; one that only waits is nobody's.
+DROPPED_BY_NOBODY = re.compile(r"^(\w*free\w*|fclose|closedir|close_entry|close_dataset|posix_spawn\w*_destroy|json_decref|H5\w+close|h5\.\w*[cC]lose|nanosleep|poll\(NULL|\(void\))\b|^\(void\)")
 
 
 def refuse(text, code=4):
@@ -234,10 +235,81 @@ class Walker:
         """False if < in place of <=, or > in place of >=, has no effect: a computed number is never exactly 0.1 or
         1e-3 of another number, which are no short binary fractions."""
         handle = left.type.spelling == "hid_t" and op in ("<", ">=")  # none is 0
+        if re.match(r'snprintf\([^"]*"[^%"]', self.code(left)) and self.code(right) == "0":
+            return False  # it has printed the letter that its format begins with
         words = WORD.findall(self.code(left) + " " + self.code(right))
         decimal = "real" in (self.scalar(left), self.scalar(right)) and any(
             is_decimal(word) or word in self.source.decimals or word in self.decimals for word in words)
         return not (self.compares or handle or decimal or self.span(cursor) in self.either)
+
+    def always(self, cursor):
+        """What is evaluated wherever a statement or expression is, without what only the address is taken of."""
+        k, children = self.kind, list(cursor.get_children())
+        if cursor.kind in (k.FOR_STMT, k.CXX_UNARY_EXPR) or cursor.kind == k.UNARY_OPERATOR and self.code(cursor)[:1] == "&":
+            return
+        if (cursor.kind in (k.COMPOUND_STMT, k.IF_STMT, k.WHILE_STMT, k.SWITCH_STMT, k.CONDITIONAL_OPERATOR)
+                or cursor.kind == k.BINARY_OPERATOR and self.operator(cursor)[0] in ("&&", "||")):
+            children = children[:1]
+        yield cursor
+        for child in children:
+            yield from self.always(child)
+
+    def bare(self, cursor):
+        """An expression without parentheses and conversions."""
+        while cursor.kind in (self.kind.UNEXPOSED_EXPR, self.kind.PAREN_EXPR) and len(list(cursor.get_children())) == 1:
+            cursor = next(cursor.get_children())
+        return cursor
+
+    def overruns(self, condition, body):
+        """Excludes <= for < where a loop goes on as long as i < N, and its next step begins with a[i] of N elements: the
+        address sanitizer, which the tests are also run with (verify/run --full), stops behind the last one."""
+        k = self.kind
+        if condition.kind == k.BINARY_OPERATOR and self.operator(condition)[0] == "&&":
+            _, condition, body = self.operator(condition)
+        op, i, bound = self.operator(condition) if condition.kind == k.BINARY_OPERATOR else ("", None, None)
+        if op != "<":
+            return
+        of, number = self.bare(bound).referenced, self.code(bound)
+        if of and of.kind == k.ENUM_CONSTANT_DECL:
+            number = str(of.enum_value)
+        for c in self.always(body):
+            array, index = c.get_children() if c.kind == k.ARRAY_SUBSCRIPT_EXPR else (c, c)
+            name, array = self.code(array), self.bare(array)
+            if (self.code(index) == self.code(i) and array.kind == k.DECL_REF_EXPR and array.referenced.kind == k.VAR_DECL
+                    and array.type.kind == self.c.TypeKind.CONSTANTARRAY != c.type.kind
+                    and (number == str(array.type.element_count)
+                         or self.code(bound) == "sizeof %s / sizeof *%s" % (name, name))):
+                self.either.add(self.span(condition))
+
+    def form(self, cursor, other):
+        """An expression as nested tuples in which operands that commute are sorted; other: names instead of names."""
+        k, cursor = self.kind, self.bare(cursor)
+        if cursor.kind == k.DECL_REF_EXPR:
+            return other.get(cursor.spelling, cursor.spelling)
+        children = list(cursor.get_children())
+        op = (self.operator(cursor)[0] if cursor.kind == k.BINARY_OPERATOR else
+              self.code(cursor)[:1] if cursor.kind == k.UNARY_OPERATOR else cursor.spelling)
+        forms = [self.form(c, other) for c in children] or [self.code(cursor)]
+        sign = op == "fabs" and self.bare(children[-1])
+        if sign and sign.kind == k.BINARY_OPERATOR and self.operator(sign)[0] == "-":
+            forms = [self.form(c, other) for c in sign.get_children()]
+        if op in ("+", "*", "==", "!=", "&&", "||", "hypot", *SWAPPED_CALLS) or sign:
+            forms.sort(key=repr)
+        return (str(cursor.kind), cursor.type.spelling, op, *forms)
+
+    def symmetric(self, declared, at):
+        """True for a function that returns an expression in which parameters number `at` and at + 1 commute."""
+        known = declared and declared.get_definition()
+        body = list(known.get_children())[-1:] if known else []
+        statements = [s for b in body if b.kind == self.kind.COMPOUND_STMT for s in b.get_children()]
+        if [s.kind for s in statements] != [self.kind.RETURN_STMT] or self.file_of(known) not in self.sources:
+            return False
+        one, two = [a.spelling for a in known.get_arguments()][at:at + 2]
+        value, text = next(statements[0].get_children()), self.text
+        self.text = self.sources[self.file_of(known)].text
+        same = self.form(value, {}) == self.form(value, {one: two, two: one})
+        self.text = text
+        return same
 
     def is_first_letter(self, cursor):
         """True for text[0] as a test for an empty text."""
@@ -326,6 +398,7 @@ class Walker:
         body = children[-1]
         if not parallel:
             for child in children[:-1]:
+                self.overruns(child, body)
                 if child.kind == self.kind.DECL_STMT:
                     self.statement(child)
                 elif child.kind.is_expression():
@@ -426,6 +499,8 @@ class Walker:
             self.compared = self.compared and cursor.spelling in PURE
         elif cursor.kind == k.BINARY_OPERATOR:
             self.compared = self.compared or self.operator(cursor)[0] in ("<", ">", "<=", ">=")
+        if cursor.kind == k.CALL_EXPR and cursor.spelling in WAITS:
+            children.pop()
         handle = self.compared and children and children[0].type.spelling == "hid_t"  # only the sign of a handle is compared
         for child in children:
             if child.kind.is_expression() and not (handle and self.code(child) == "0"):
@@ -511,16 +586,16 @@ class Walker:
                      "%s -> %s" % (code, SWAPPED_CALLS[name]), self.pure(cursor))
         declared = cursor.referenced
         fixed = len(list(declared.get_arguments())) if declared and declared.kind == self.kind.FUNCTION_DECL else 99
-        if name in COMMUTE:
+        if name in COMMUTE or name in WAITS:
             return
-        for one, two in zip(arguments[:fixed], arguments[1:fixed]):
+        for at, (one, two) in enumerate(zip(arguments[:fixed], arguments[1:fixed])):
             if not (self.here(one) and self.here(two)):
                 continue
             kinds = one.type.get_canonical(), two.type.get_canonical()
             same = kinds[0].spelling == kinds[1].spelling or (
                 self.scalar(one) == self.scalar(two) and self.scalar(one) in ("real", "integer"))
             texts = self.code(one), self.code(two)
-            if same and texts[0] != texts[1] and kinds[0].spelling != "enum status":
+            if same and texts[0] != texts[1] and kinds[0].spelling != "enum status" and not self.symmetric(declared, at):
                 (a, b), (c, d) = self.span(one), self.span(two)
                 begin, end = self.span(cursor)
                 if not begin <= a < b <= c < d <= end:

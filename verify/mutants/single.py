@@ -89,18 +89,26 @@ def typed(code):
     return ['"%d"' % (int(code) + 1)] if int(code) else []
 
 
+def is_capacity(name, texts):
+    """True if all that a number is used for is the size of texts."""
+    use = r"\bchar [^;(){}=*]*\[%s\](?!\[)|\bsnprintf\([^,;]*, %s," % (name, name)
+    words = [len(re.findall(r"\b%s\b" % name, text)) for text in texts]
+    sizes = [sum(len(re.findall(r"\b%s\b" % name, found)) for found in re.findall(use, text)) for text in texts]
+    return sum(sizes) > 0 and sum(words) == 1 + sum(sizes)
+
+
 def find(sources):
     """All constants of the judged sources (name: generate.Source) and of the lists that they include."""
-    constants = []
+    constants, texts = [], {name: blank(source.text) for name, source in sources.items()}
     for name in sorted(sources):
-        source = sources[name]
-        plain = blank(source.text)
+        source, plain = sources[name], texts[name]
+        near = [plain] if name.endswith(".c") else texts.values()  # where an enumerator is known
         for start, end, enumerator in regions(name, plain):
             for m in NUMBER.finditer(plain, start, end):
                 if plain[m.start() - 1] == "[" or plain[:m.start()].rstrip()[-1:] == "[":
                     continue
                 named = re.findall(r"(\w+)\s*=[^=,]*$", plain[start:m.start()])
-                if enumerator and named and CAPACITIES.search(named[-1]):
+                if enumerator and named and (CAPACITIES.search(named[-1]) or is_capacity(named[-1], near)):
                     continue
                 for new in alternatives(m[1], enumerator):
                     constants.append(Constant(source, m.start(), m.end(), new, "%s -> %s" % (m[1], new)))

@@ -29,6 +29,7 @@ double tiny_weight(int i);
 int tiny_first(const void *a, const void *b);
 int tiny_least(int n, int m);
 void tiny_clear(char **texts, int n);
+double tiny_rules(double a, double b);
 """,
     "src/tiny.c": """#include "tiny.h"
 static const double close = 1e-9;
@@ -76,6 +77,29 @@ void tiny_clear(char **texts, int n)
 {
     for (int i = 0; i < n; i++)
         if (texts[i]) free(texts[i]);
+}
+#include <math.h>
+#include <poll.h>
+#include <stdio.h>
+enum { WIDE = 40, COUNT = 3, MANY = 31 };
+static double mean(double p, double q)
+{
+    return fabs(p - q) * (p + q);
+}
+static double slope(double p, double q)
+{
+    return fabs(q) * (p + q);
+}
+double tiny_rules(double a, double b)
+{
+    double x[COUNT], sum = slope(a, b) + mean(b, a);
+    char word[WIDE], words[MANY][WIDE] = {"4"};
+    for (int all = 0; all < COUNT; all++) x[all] = a;
+    for (int some = 0; some < COUNT; some++)
+        if (a > b) sum += x[some];
+    poll(NULL, 0, 77);
+    if (snprintf(word, WIDE, "at %g", sum) > 0) sum += words[1][0];
+    return snprintf(word, WIDE, "%s", words[0]) > 0 ? sum : 0;
 }
 """,
     "test_tiny.c": """#include "tiny.h"
@@ -141,6 +165,10 @@ def main(score, work):
     expect("no number that was computed is a decimal limit", "a > 2 * close -> <" in said and "a > 2 * close -> >=" not in said)
     expect("what only frees is left to the sanitizers", "texts" not in said)
     expect("but not the greater of two", "n < m -> >" in survivors)
+    for change, wanted in (("mean(b, a) -> exchanged", False), ("slope(a, b) -> exchanged", True), ("all < COUNT -> <=", False),
+                           ("some < COUNT -> <=", True), ("77 -> ", False), ("NULL, 0, 77); -> ;", False),
+                           ("sum) > 0 -> >=", False), ("words[0]) > 0 -> >=", True), ("40 -> ", False), ("31 -> ", True)):
+        expect("what can change nothing is not generated, and all else is: '%s'" % change, (change in said) == wanted)
     expect("a factor of 10 the other way is noticed by nobody",
            survivors.get("close = 1e-9 -> / 10", {}).get("why") == "no test fails: 1 of 1 that come by")
     expect("a constant in an initialiser is compiled singly and noticed",
