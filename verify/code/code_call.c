@@ -278,12 +278,18 @@ enum status code_add_key(const struct run_external *base, const struct run *run,
 
 void code_program_sum(const struct code_external *external, char sum[SHA256_TEXT])
 {
+    const char *const here[CODE_WORDS] = {[CODE_WORD_HERE] = external->code->folder};
     const char *rest = external->of->way.value[CODE_command];
-    char path[CODE_PATH];
+    char path[CODE_PATH], name[CODE_PATH];
     size_t length;
     const char *word = code_next_word(&rest, &length);
     sum[0] = '\0';
     if (!word || code_shell(&external->of->way)) return;
-    word_file(external->code, word, length, true, path);
-    snprintf(sum, SHA256_TEXT, "%s", sum_of(path));
+    snprintf(name, sizeof name, "%.*s", (int)length, word);
+    char *filled = code_fill(name, here);
+    if (filled) {
+        word_file(external->code, filled, strlen(filled), true, path);
+        snprintf(sum, SHA256_TEXT, "%s", sum_of(path));
+    }
+    free(filled);
 }

@@ -43,6 +43,17 @@ if mode == "hang":
 if mode == "eat":
     eaten = bytearray(400000000)
     time.sleep(1000)
+if mode == "feast": # its processes together
+    for _ in range(2):
+        if not os.fork():
+            eaten = bytearray(120000000)
+            time.sleep(1000)
+    time.sleep(1000)
+if mode == "works": # mostly in the system, and sleeps
+    with open("/dev/zero", "rb", buffering=0) as file:
+        while os.times().system < 0.3:
+            file.read(1 << 20)
+    time.sleep(0.3)
 if mode == "exit":
     print("no such table", file=sys.stderr)
     sys.exit(7)
@@ -174,7 +185,7 @@ velocity_l1 = 0.5 10
 """
 # mode, reason, words of the message
 FAILURES = (("exit", "exit_status", "no such table"), ("killed", "exit_status", "signal 9"), ("nothing", "no_snapshot", "out_*.csv: the run"),
-            ("hang", "timeout", "1 s"), ("eat", "memory", "200 MB"), ("cut", "truncated", "out_1.csv"),
+            ("hang", "timeout", "1 s"), ("eat", "memory", "200 MB"), ("feast", "memory", "200 MB"), ("cut", "truncated", "out_1.csv"),
             ("old", "old_snapshot", "older"), ("nan", "not_a_number", "nan"), ("early", "wrong_time", "0.1996"),
             ("gas", "wrong_gamma", "1.5"), ("own", "ignored_ic", "out_0.csv: positions along x"),
             ("fast", "ignored_ic", "out_0.csv: vx differs"),
@@ -259,11 +270,12 @@ def test_same(draw):
 
 def test_failures():
     for mode, reason, reported in FAILURES:
-        write("bad.ini", FILE % (mode + " sod", 1 if mode == "hang" else 60, "200 MB" if mode == "eat" else "none"))
+        text = FILE % (mode + " sod", 1 if mode == "hang" else 60, "200 MB" if mode == "eat" else "none")
+        write("bad.ini", text.replace("[case sod]", "[case sod]\nmemory = 200 MB") if mode == "feast" else text)
         done = document("run", "sod", "n=198", "--code", "bad.ini", status=3)
         assert (done["status"], done["reason"], done["n"]) == ("failed", reason, 198), (mode, done["reason"], done["message"])
         assert reported in done["message"] and reason in done["message"], (mode, done["message"])
-        assert "the code says: mode " + mode in done["code"]["log"] or mode in ("exit", "hang", "eat", "killed"), done["code"]
+        assert "the code says: mode " + mode in done["code"]["log"] or mode in ("exit", "hang", "eat", "feast", "killed"), done["code"]
     assert not glob.glob("tmp/*"), glob.glob("tmp/*")
 
 
@@ -296,16 +308,29 @@ def test_count_from_0():
         ours, theirs = document("run", case, *words), document("run", case, *words, "--code", "bad.ini")
         for key in ("errors",) if case == "sod" else ("errors", "functionals"):  # its shock is elsewhere
             same(ours[key], theirs[key], case + "/" + key, 1e-9)
+        for key in "mass", "energy", "angular_momentum":  # of the start as of the end
+            assert abs((ours["conservation"][key] or 0) - (theirs["conservation"][key] or 0)) < 1e-9, (case, key, ours["conservation"], theirs["conservation"])
         assert "box" in json.dumps(theirs["judged"]["assumptions"]), theirs["judged"]
 
 
 def test_files_before():
-    """A file that was there before the run is no result unless the run has changed it, be it by a nanosecond."""
+    """A file that was there before the run is no result unless the run has changed it, be it by a nanosecond, and no
+    start of the run."""
+    answer("ic", "sod", "n=60", "jitter=0.02", "--format", "csv", "--out", "here.csv")
     answer("run", "sod", "n=60", "--quiet", "--snapshot", "there.csv")
     for mode, status in ("same", 3), ("touches", 0):
-        bad_file(mode, "sod", ("@OUT@_*.csv", os.path.abspath("there.csv")))
+        bad_file(mode, "sod", ("@OUT@_*.csv", os.path.abspath("*here.csv")))
         done = document("run", "sod", "n=60", "--code", "bad.ini", status=status)
         assert done.get("reason", "") == ("old_snapshot" if status else ""), done
+
+
+def test_cost():
+    """The time that a code takes is that of the user and of the system; what it sleeps counts on the clock alone."""
+    bad_file("works", "sod")
+    done = document("run", "sod", "n=60", "--code", "bad.ini")
+    code, cost = done["code"], done["cost"]
+    assert code["cpu_s"] >= 0.3 and code["wall_s"] >= 0.6 and code["wall_s"] > code["cpu_s"] + 0.2, code
+    assert (cost["cpu_s"], cost["wall_s"]) == (code["cpu_s"], code["wall_s"]), (cost, code)
 
 
 def test_threads():
@@ -372,9 +397,11 @@ def test_work():
     write("start.ini", GOOD.replace("[case sod]", "ic = ./start.sh @IC@ @N@\n[case sod]"))
     write("start.sh", "#!/bin/sh\nexec %s ic sod n=$2 --format csv --out $1 --quiet\n" % program)
     os.chmod("start.sh", 0o700)
+    write("start.ini", read("start.ini").replace("./code.py", "@HERE@/code.py"))
     # a command has to find the format of its file by itself
     done = document("run", "sod", "n=100", "--code", "start.ini")
     same(document("run", "sod", "n=100")["errors"], done["errors"])
+    assert done["code"]["sha256"] == hashlib.sha256(read("code.py").encode()).hexdigest(), done["code"]
 
 
 SLAB = """#!/bin/sh
@@ -463,6 +490,30 @@ def test_changed_program():
                 answer(*ladder)
                 kept.append(answer(*ladder, "--list")[0].count("kept"))
         assert kept == [0, 4, 0], (command, kept)
+
+
+def test_key():
+    """Whatever decides about the results of a code is in their key: each file that it reads, each key of the code
+    file."""
+    ini = ("[code]\nic = sh start.sh @IC@ @N@\nparameters = one.in two.in\ndepends = three.txt four.txt\nsnapshot = @OUT@_1.csv\n"
+           "command = sh key.sh @N@ @T_END@ @OUT@\n[case sod]\ndensity_l1 = 0 1\n")
+    files = {"start.sh": "exec %s ic sod n=$2 --format csv --out $1 --quiet\n" % program,
+             "key.sh": "exec %s run sod n=$1 t_end=$2 --quiet --snapshot $3_1.csv\n" % program,
+             "one.in": "@N@\n", "two.in": "@N@\n", "three.txt": "3\n", "four.txt": "4\n"}
+    ladder = ("converge", "sod", "--code", "key.ini", "--n", "50,52,54,56", "--replicates", "1", "--cache", "keyed")
+    for name, text in (*files.items(), ("key.ini", ini)):
+        write(name, text)
+    answer(*ladder)
+    changes = [(name, text + "# changed\n") for name, text in files.items()]
+    changes += [("key.ini", ini.replace("_1.csv\n", "_?.csv\n")), ("key.ini", ini.replace("[case", "elements = cells\n[case")),
+                ("key.ini", ini.replace("@OUT@\n", "@OUT@ more\n")), ("key.ini", ini.replace("[case", "equal_masses = yes\n[case")),
+                ("key.ini", ini.replace("[case", "shell = yes\n[case")), ("key.ini", ini.replace("sh start.sh @IC@ @N@", "csv"))]
+    for name, text in changes:
+        kept = [answer(*ladder, "--list")[0].count("kept")]
+        write(name, text)
+        kept.append(answer(*ladder, "--list")[0].count("kept"))
+        write(name, files.get(name, ini))
+        assert kept == [4, 0], (name, text, kept)
 
 
 def test_motion():
@@ -674,6 +725,6 @@ def lay():
 
 
 drawing = [lambda test=test: test(random.Random(seed)) for test in (test_same, test_starts, test_slab, test_ladder)]
-play(lay, *drawing, test_failures, test_stuck, test_count_from_0, test_files_before, test_threads, test_again, test_refused, test_work, test_no_errors, test_motion, test_changed_program,
+play(lay, *drawing, test_failures, test_stuck, test_count_from_0, test_files_before, test_cost, test_threads, test_key, test_again, test_refused, test_work, test_no_errors, test_motion, test_changed_program,
      test_calibrate, test_shares, test_report,
      test_corner, test_bench, test_nothing_left)
