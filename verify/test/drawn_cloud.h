@@ -5,9 +5,9 @@
 
 #include "prepared.h"
 
-enum { N = 300 }; /* and one more, which must not count */
+enum { N = 300 }; /* arrays have one more element, which must not count */
 
-/* Particles anywhere in a box, the first of them in its middle. */
+/* Particles at random positions in a box, the first one at its centre. */
 struct cloud {
     double x[3][N + 1], v[3][N + 1], m[N + 1], volume[N + 1];
     struct snapshot snapshot;

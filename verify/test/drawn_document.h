@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Draws random JSON documents from a template, and reduces what is made of them to hashes, so that
- * a list of hashes shows whether any byte of hundreds of pages has changed.
+ * Draws random JSON documents from a template, and hashes the pages made from them, so that a list
+ * of hashes shows whether any byte of hundreds of pages has changed.
  *
- * A template is JSON. "@NAME": the template's member NAME. "#": a number, odd ones often. "#n": an
- * integer from 1 to 12. "#t": text that HTML has to escape. ["|", a, b, ...]: one of them. ["*",
- * low, high, a]: a list of so many. A member "NAME?" is left out in one draw of four. All else
- * stands for itself. */
+ * A template is JSON. "@NAME": the template's member NAME. "#": a number, often a special one (0,
+ * 1e200, NaN). "#n": an integer from 1 to 12. "#t": text that HTML has to escape. ["|", a, b, ...]:
+ * one of them. ["*", low, high, a]: a list of low to high times a. A member "NAME?" is left out in
+ * one draw of four. All other values are copied. */
 #pragma once
 
 #include <inttypes.h>

@@ -138,7 +138,7 @@ static inline size_t put_all(const struct binary *b)
 {
     size_t at = put_header(b);
     for (int k = 0; k < BLOCKS; k++) {
-        if (k == MASS) /* a length that no block has */
+        if (k == MASS) /* records of 4 bytes, a length that no block has */
             for (size_t e = 0; e < b->extra; e++) {
                 at = put_count(put_tag(at, b, "MINE", 4), b, 4);
                 at = put_count(put_count(at, b, 77), b, 4);

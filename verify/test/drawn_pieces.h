@@ -21,7 +21,7 @@ static inline const json_t *template_of(const json_t *template, const char *job)
     return json_object_get(template, "run");
 }
 
-/* Sets the number of particles of a run to that of its name, or to that of its piece's settings. */
+/* Sets the number of particles of a result to that in the job's name or, for profiles, settings. */
 static inline void set_size(struct pool_job *job)
 {
     const char *named = strstr(job->name, ", n = ");

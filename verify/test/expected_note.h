@@ -4,8 +4,8 @@
 
 #include "snapshot_file.h"
 
-/* The file has one such note, with this value and with evidence that contains these words; value
- * NULL: it has none. */
+/* Fails unless the file has exactly one note `what`, with this value and with evidence that
+ * contains these words, or no such note if value is NULL. */
 static inline void noted(const struct snapshot_file *file, const char *what, const char *value,
                          const char *words)
 {

@@ -17,7 +17,7 @@
 
 enum { MADE_TASKS = 40, MADE_TRIES = 4, MADE_SHARES = 14 };
 
-/* How a task ends. */
+/* What happens to a task. */
 enum fate {
     COMPLETES, /* its results are in the cache */
     LATE,      /* likewise, but the folder shows them 12 s later */
@@ -203,7 +203,7 @@ static inline enum status fake_squeue(const char *const *words, struct child_sai
                       "slurm_load_jobs error: Unable to contact slurm controller (connect "
                       "failure)");
     pass_time(made_of);
-    long nameless = 0; /* the array whose pending tasks are one record that was cancelled */
+    long nameless = 0; /* the array whose cancelled pending tasks are listed, in one record */
     for (size_t i = 0; i < made.count; i++) {
         const struct made_task *task = &made.tasks[made.backwards ? made.count - 1 - i : i];
         const char *state, *reason;

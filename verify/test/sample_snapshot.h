@@ -20,7 +20,7 @@ struct planted {
     char head[200];
     bool has_u, has_P, has_h;
     double x[3][N], v[3][N], m[N], rho[N], u[N], P[N], h[N];
-    int others; /* the last rows are no gas */
+    int others; /* number of particles in the last rows that are not gas */
 };
 
 static struct planted gas;

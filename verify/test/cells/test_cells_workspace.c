@@ -21,7 +21,7 @@ static struct setup setup_of(int dim, size_t side, const struct scheme *scheme)
     return setup;
 }
 
-/* The search for a root widens its reach by 1.5 at most 63 times. */
+/* The search for a root increases its reach by a factor of 1.5 at most 63 times. */
 TEST(test_search_widens_63_times)
 {
     struct error error;
@@ -262,7 +262,7 @@ TEST(test_position_that_is_not_a_number)
 }
 
 /* Doubles per particle: the workspace's own arrays, and the record of its longest pass, rounded up
- * to whole fours; where pairs are many or expensive, also twice the reactions of pairs that other
+ * to a multiple of 4; if pairs are many or expensive, also twice the reactions of pairs that other
  * particles compute, and a flag. */
 static void expect_bytes(int dim, const struct scheme *scheme, int arrays, int record)
 {
@@ -279,8 +279,8 @@ static void expect_bytes(int dim, const struct scheme *scheme, int arrays, int r
     }
 }
 
-/* The workspace's: radius, two sums; two of U; condition, matrix, slope, switch, share, factor.
- * Records: position, v, 1/h, V, P, c; and more. */
+/* Arrays: radius, two sums; two sums of U; condition, matrix, slope, switch, share, factor.
+ * Records: position, v, 1/h, V, P, c. Comments give the fields added and the sizes in 2D and 3D. */
 TEST(test_bytes_per_particle)
 {
     for (int dim = 2; dim <= 3; dim++) {

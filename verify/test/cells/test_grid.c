@@ -64,7 +64,7 @@ static double distance2(const struct points *p, size_t i, size_t j)
     return r2;
 }
 
-/* A reader that was elsewhere before finds what a new reader does. */
+/* A reader that has read other lists before finds the same neighbours as a new reader. */
 static void read_again(const struct grid *grid, struct grid_reader *reader, size_t s)
 {
     const struct grid_list *lists = grid_lists(grid);
@@ -234,7 +234,7 @@ TEST(records_are_gathered)
     }
 }
 
-/* For densities of every magnitude that units may give. */
+/* Arguments of every magnitude, because densities have any magnitude in extreme units. */
 TEST(cube_roots)
 {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);

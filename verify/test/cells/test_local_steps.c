@@ -46,7 +46,7 @@ static struct setup setup_of(int dim, size_t side, double jitter, double heat, b
     return setup;
 }
 
-/* With so few particles, blocks of local steps save too little work; they are enforced. */
+/* Enforces blocks of local steps, which save too little work with so few particles. */
 static struct simulation *blocks_of(const struct setup *setup)
 {
     struct simulation *simulation = made_of(setup);
@@ -84,7 +84,7 @@ TEST(keeps_momentum_and_energy)
         for (int a = 0; a < dim; a++)
             near_below(fabs(after.momentum[a] - before.momentum[a]), 1e-13 * after.momentum_scale);
         near_below(fabs(after.energy - before.energy), 1e-13 * before.energy);
-        /* there were levels */
+        /* particles had different levels */
         assert_true(cost.skipped_particle_updates > cost.particle_updates / 10);
         assert_int_equal(cost.particle_updates + cost.skipped_particle_updates,
                          cost.steps * setup.n);
@@ -261,7 +261,7 @@ TEST(levels_of_neighbours_differ_by_at_most_2)
     assert_true(woken > 0);
 }
 
-/* What pairs that change levels have received, against the evaluations of all levels in turn. */
+/* A pair that changes levels lacks the time between the ends of both levels' last contributions. */
 TEST(pairs_that_change_levels_lose_nothing)
 {
     enum { FINEST = 6 };

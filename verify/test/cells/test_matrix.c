@@ -368,7 +368,7 @@ TEST(test_pivots)
 
 enum { NEIGHBOURS = 3 * GRID_LANES };
 
-/* The lanes of drawn neighbours; where flat, on a line (2D) or in a plane (3D), but for so much. */
+/* Lanes of random neighbours: if `flat` is small, close to a line (2D) or to a plane (3D). */
 struct drawn {
     double block[LANES_OWN * NEIGHBOURS], weight[NEIGHBOURS];
     struct lanes lanes;
@@ -386,7 +386,7 @@ static void draw_neighbours(int dim, double flat, struct drawn *drawn)
     }
 }
 
-/* w(q) and V w(q) of both kinds of kernel loop. */
+/* Compares w(q) and V w(q) of specialised and unspecialised kernel loops with the kernel. */
 TEST(test_weights)
 {
     for (int trial = 0; trial < 40; trial++) {

@@ -85,7 +85,7 @@ static void in_units(const struct made *from, int length, int volume, const int 
     }
 }
 
-/* The state once gradients overflow: that of the first gradient that does. */
+/* The state of point i in these units: that of the first gradient that over- or underflows. */
 static enum operator_state state_in(const struct made *made, int dim, size_t i, const int *e)
 {
     if (made->point[i].state != OPERATOR_OK) return made->point[i].state;

@@ -219,7 +219,7 @@ TEST(test_refused)
                 pair.eta);
             refused(&pair, STATUS_BROKE_DOWN, text);
         }
-        /* too many at one position, and all */
+        /* too many points at one position, and then all points */
         m[7] = 1;
         sum.eta = least * pow(3, 1. / dim) * (1 - 1e-9);
         for (size_t i = 4; i < 7; i++)

@@ -276,7 +276,7 @@ static long search_together(struct grid *grid, size_t n)
     return watched_calls - before;
 }
 
-/* The same with points in so many cells along the last axis. */
+/* Likewise, with points in `cells` cells along the last axis. */
 static long search_in_cells(struct grid *grid, int dim, int cells)
 {
     const size_t n = 200;
@@ -367,8 +367,7 @@ TEST(test_capacity_of_cells)
     }
 }
 
-/* A caller that asks for unspecialised loops gets them: they are the reference for the specialised
- * ones. */
+/* Operators use unspecialised loops on request: they are the reference for the specialised ones. */
 static bool specialised_asked;
 struct shapes __real_shapes_of(const struct kernel *of, int dim, bool specialised);
 struct shapes __wrap_shapes_of(const struct kernel *of, int dim, bool specialised);

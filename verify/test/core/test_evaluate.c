@@ -7,7 +7,7 @@
 
 enum { N = 9 };
 
-/* A letter for each call; the results of forces. */
+/* The calls, a letter for each, and what forces() returns. */
 static struct {
     char calls[16];
     double rate, F[3][N + 1], de[N + 1];

@@ -266,7 +266,7 @@ TEST(long_texts_are_cut)
     assert_string_equal(less, text);
 }
 
-/* 3 %, exactly the limit, less than the least width, and half way between two exact widths. */
+/* Widths 3 % off, exactly at the limit, below the least one, half way between two exact ones. */
 TEST(limits_of_warnings)
 {
     static const struct {

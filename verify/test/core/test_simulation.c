@@ -359,15 +359,15 @@ TEST(steps_meet_the_end)
     }
     assert_true(simulation_time_after(&s, 1.5) == 4.5 && simulation_time_after(&s, 2) == 5);
     assert_true(simulation_time_after(&s, 7) == 5);
-    for (int k = 0; k < 99; k++) { /* exactly, however the difference is rounded */
+    for (int k = 0; k < 99; k++) { /* exactly t_end, although t_end - time is rounded */
         s.time = draw(0, 1), s.t_end = draw(1, 9);
         assert_true(simulation_time_after(&s, s.t_end - s.time) == s.t_end);
     }
     gone(&s);
 }
 
-/* The first step is no longer than cfl sqrt(h/a), and than a part of the limit if the integrator
- * asks for that. */
+/* The first step is at most cfl sqrt(h/a) and, if the integrator sets first_step, at most that part
+ * of the limit. */
 TEST(the_first_step)
 {
     for (int way = 0; way < 9; way++) {

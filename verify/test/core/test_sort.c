@@ -35,7 +35,7 @@ static size_t sorted(size_t n)
     return compared;
 }
 
-/* The largest number of comparisons: each pass looks at every index at most twice and halves the
+/* The largest number of comparisons: each pass compares every index at most twice and halves the
  * number of sorted stretches. */
 static size_t most(size_t n)
 {

@@ -62,7 +62,7 @@ static void draw_sums(struct density_sums *sums, const struct gas *gas, const st
     const double off = which == MUCH_LESS   ? draw(0.01, 0.05)
                        : which == MUCH_MORE ? draw(20, 100)
                                             : draw(0.8, 1.25);
-    /* eta (m/rho)^(1/d) = h off */
+    /* so that eta (m/rho)^(1/d) = off h */
     const double s = a->h_inverse[i];
     sums->m[k] = a->m[i] * pow(gas->eta / off, a->dim) / gas->constant;
     sums->m_dh[k] = (which == STEEP ? draw(1.5, 2) : draw(-0.5, 0.5)) * a->dim * sums->m[k] * off;

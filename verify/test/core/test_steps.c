@@ -78,7 +78,7 @@ static const struct integrator still = {
     .step = still_step, .synchronise = still_synchronise, .ends_evaluated = true};
 static struct sums still_sums;
 
-/* A simulation whose particles stay: steps of an eighth of a time unit up to 1. */
+/* A simulation whose particles do not move, with steps of 1/8 until t = 1. */
 static struct simulation *standing(void)
 {
     struct simulation *s = made_simulation(40);

@@ -230,8 +230,8 @@ static void expect_pages(int dim, ptrdiff_t n, const char *array, bool asked)
 {
     struct particles a = made(dim, n, 64);
     const double *first = strcmp(array, "x") == 0 ? a.x[0] : a.signal;
-    /* in longer blocks ask one large page further on, because the first one may begin after the
-     * array */
+    /* for longer blocks test the address one large page further on, because the first large page
+     * may begin after the start of the array */
     const int found = asked_for((uintptr_t)first + (n < (1 << 17) ? 0 : 1 << 21));
     particles_destroy(&a);
     if (found != asked) fail_msg("%d-D, %td particles, %s: %d", dim, n, array, found);

@@ -111,7 +111,7 @@ TEST(lengths_of_stretches_between_trials)
             assert_int_equal(stretch(&team, &now, pace), (int)fmax(expected, least));
             assert_true(team.size == 1 && team.trying);
         }
-        /* too little is saved; enough, and the stretches start again; and back */
+        /* one thread saves < 5 %, then more: stretches are short again; then it loses 5 % */
         assert_int_equal(stretch(&team, &now, pace * 0.9500001),
                          (int)ceil(4e-3 / (pace * 0.9500001)));
         assert_true(team.size == 4 && !team.trying && team.stretch == 256);
@@ -125,7 +125,7 @@ TEST(lengths_of_stretches_between_trials)
         stretch(&team, &now, pace);
         stretch(&team, &now, 0.9 * pace);
         assert_true(team.size == 4 && !team.trying && team.stretch == 16);
-        /* slower than before by less than half; then by more, so that a trial follows at once */
+        /* steps that take up to 1.5 times as long, then longer: a trial follows at once */
         const double least = ceil(16 * 4e-3 / (1.3 * pace));
         assert_int_equal(stretch(&team, &now, 1.3 * pace), (int)fmax(16, least));
         assert_true(team.size == 1 && team.trying);

@@ -139,13 +139,13 @@ TEST(steps_stay_within_brackets)
         {0.9, 2, 1, 0, 5, 2},                      /* the middle is 3, more than twice h */
         {10, 0, 1, 0.5, INFINITY, 0.75},           /* below the bracket */
         {1.25, -2, 1, 0, INFINITY, 1 - 0.2 / 2.6}, /* 1 - (1 - 0.8)/(1 + 0.8 * 2) */
-        {0.9, 0, 1, 0, end, end},                  /* 1 or the next number: there is no middle */
+        {0.9, 0, 1, 0, end, end},                  /* no number lies between 1 and end */
     };
     enum { ROWS = sizeof rows / sizeof *rows };
     double m[ROWS], h[ROWS], h_inverse[ROWS];
     struct density_sums sums;
     struct width_bracket bracket;
-    for (int k = 0; k < ROWS; k++) { /* all of them half as wide again, side by side */
+    for (int k = 0; k < ROWS; k++) { /* all rows in one call, with 1.5 times the widths */
         m[k] = 1, h[k] = 1.5 * rows[k].h, h_inverse[k] = 1 / h[k];
         sums.m[k] = rows[k].sum * even, sums.m_dh[k] = rows[k].dh * sums.m[k];
         bracket.low[k] = 1.5 * rows[k].low;
