@@ -194,7 +194,7 @@ TEST(particles_are_divided_into_ranges)
     line_sums.free(&none); /* a line that was not created */
 }
 
-/* The largest offset within the particles' own widths. */
+/* The largest offset in the order at which a neighbour is within a particle's own h. */
 static int farthest(const struct particles *a, const struct range *range)
 {
     int most = 0;
@@ -224,7 +224,7 @@ TEST(reach_covers_the_widths)
                              (a->x[0][i] - a->x[0][i - d]) * a->h_inverse[i] < 1;
                 assert_int_equal((int)reach_inside(a, range->first, range->len, d), count);
             }
-            /* raised as far as necessary, if there are images for one more offset */
+            /* the reach is raised as far as necessary if there are images for one more offset */
             const int needed = most < 1 ? 1 : most;
             range->reach = 1;
             line->ghosts_filled = needed + 1;
@@ -241,8 +241,8 @@ TEST(reach_covers_the_widths)
     }
 }
 
-/* Pairs reach as far as the widest reach among ranges within that distance, on either side; the
- * distance is that of the shorter ranges between. */
+/* The reach of a range's pairs is the widest reach of all ranges that extend to it. To their
+ * distance, the k-th ranges on the left and right of it both add the shorter one's length. */
 TEST(pairs_reach_as_far_as_the_wider_one)
 {
     for (int setup = 0; setup < 10 * SETUPS; setup++) {
@@ -394,7 +394,7 @@ static void sleeps(const struct simulation *s, const bool *awake)
     double rate = 0;
     for (ptrdiff_t g = 0; g < groups; g++) {
         assert_int_equal(line->groups.awake[g] != 0, awake[g]);
-        double rate_of = 0; /* of gas that moves uniformly */
+        double rate_of = 0; /* the rate 2/h of inactive gas */
         for (ptrdiff_t i = g * GROUP; i < n && i < (g + 1) * GROUP; i++)
             rate_of = fmax(rate_of, 2 * s->particles.h_inverse[i]);
         if (awake[g]) rate_of = 0;
@@ -499,8 +499,7 @@ TEST(groups_become_inactive_and_active)
         for (ptrdiff_t i = n; i < n + GROUP; i++) assert_true(s.particles.F[0][i] == 77);
         assert_true(s.sleep.at_rest == (setup % 3 != 0 || !s.sleep.on));
 
-        /* of the disturbed particles in a span, the outermost two within the margin are looked
-         * for */
+        /* a span wakes groups around its first and its last disturbed particle within the margin */
         bool later[MOST];
         memcpy(later, awake, sizeof later);
         for (ptrdiff_t i = 0; i < n; i++)

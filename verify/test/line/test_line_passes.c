@@ -112,8 +112,8 @@ TEST(first_particle_without_a_root_is_named)
         }
 }
 
-/* A reach that is too large is lowered every eighth step, with Newton's method and with predicted
- * widths; one that is too small is raised at once. */
+/* A reach that is too large is lowered in every eighth step, with Newton's method and with
+ * predicted widths; a reach that is too small is raised in every step. */
 TEST(reaches_are_lowered_every_eighth_step)
 {
     for (int newton = 0; newton < 2; newton++)
@@ -136,8 +136,8 @@ TEST(reaches_are_lowered_every_eighth_step)
         }
 }
 
-/* Newton's method sets 1/h together with h; a sum at a predicted width is taken there, and the
- * pressure is corrected along the adiabat for the prediction's error. */
+/* Newton's method sets both h and 1/h. At a predicted width, density is the sum at that width, and
+ * the pressure is corrected along the adiabat for the prediction's error. */
 TEST(state_after_sums)
 {
     struct simulation *s = made_simulation(200);
@@ -151,7 +151,7 @@ TEST(state_after_sums)
         near_relative(a->h_inverse[i] * a->h[i], 1, 1e-8);
         near_relative(a->P[i], 0.4 * a->rho[i] * a->U[i] / a->m[i], 1e-14);
     }
-    s->scheme.h_tolerance = 1e-2, s->dt = 1; /* Newton's own h, whatever its error */
+    s->scheme.h_tolerance = 1e-2, s->dt = 1; /* Newton's method corrects no P, whatever its error */
     for (ptrdiff_t i = 0; i < 200; i++) a->h[i] *= 1.004;
     assert_int_equal(widths_find(s, true, 0, &error), STATUS_OK);
     for (ptrdiff_t i = 0; i < 200; i++)
@@ -173,8 +173,8 @@ TEST(state_after_sums)
     simulation_destroy(s);
 }
 
-/* In a box whose widths reach over many images there are enough ghosts, and ranges that are done
- * are not passed again; a predicted width without bound is named. */
+/* If kernels are wider than the box there are enough ghosts, and ranges with final results are not
+ * computed again; the message about a predicted width that is too large names its particle. */
 TEST(ghosts_suffice_for_wide_kernels)
 {
     struct simulation *s = made_simulation(20);
@@ -188,8 +188,8 @@ TEST(ghosts_suffice_for_wide_kernels)
     assert_in_range(line_of(s)->reach, 40, 45);
     assert_int_equal(range_of(s, 3)->done, passes + 1);
     simulation_destroy(s);
-    /* doubled until there are more than 64 and the reach is more than 2 eta + 2 boxes; the first of
-     * the widest particles is named */
+    /* ghosts double until there are more than 64 + (2 eta + 2) n; the message names the first of
+     * the widest particles */
     static const struct {
         double eta;
         ptrdiff_t at, also, filled;
@@ -211,8 +211,8 @@ TEST(ghosts_suffice_for_wide_kernels)
     }
 }
 
-/* The number of ghosts is kept or follows from the reach, at least 8; it doubles while they do not
- * suffice, and pairs may add more. */
+/* The number of ghosts is at least 8, the reach + 2 and the number before; it doubles while it is
+ * too small for the widths. */
 TEST(ghosts_are_kept_filled)
 {
     static const struct {
@@ -346,7 +346,7 @@ TEST(forces_of_every_range)
     }
 }
 
-/* The images of matrix results are filled as far as pairs reach plus one. */
+/* Images of matrix results are filled up to the largest reach plus one. */
 TEST(matrices_of_every_range)
 {
     for (int slope = 0; slope < 2; slope++) {

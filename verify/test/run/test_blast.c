@@ -76,7 +76,7 @@ TEST(balls_last_until_their_edge_comes)
 {
     struct settings s;
     struct prepared p = prepared_of(&s, 1, "kind=noh|gamma=1.6|window=-0.125 0.25");
-    lasts_until(&p, 0.25); /* the farther end counts */
+    lasts_until(&p, 0.25); /* the end farther from 0 counts */
     p = prepared_of(&s, 1, "kind=noh|gamma=1.6|window=-0.375 0.25");
     lasts_until(&p, 0.125);
     refused_late(&p, 0.25,
@@ -88,7 +88,7 @@ TEST(balls_last_until_their_edge_comes)
     p = prepared_of(&s, 2, "kind=noh|gamma=1.6|window_radius=0.25");
     lasts_until(&p, 0.25);
     for (int d = 0; d < 2; d++) p.window.lo[d] = -0.125 - 0.0625 * d, p.window.hi[d] = 0.0625;
-    p.window.radius = 0.25; /* the window's corners are nearer, 0.225 from the middle */
+    p.window.radius = 0.25; /* the window's corners are at 0.225, within the radius */
     near_relative(last_time(&p), 0.5 - hypot(0.125, 0.1875), 1e-14);
     p.window.radius = 0;
     near_relative(last_time(&p), 0.5 - hypot(0.125, 0.1875), 1e-14);

@@ -158,7 +158,7 @@ TEST(functionals)
         fail_msg("%s", error.message);
 }
 
-/* Gates of compared schemes: a bound, or how far they are known to fail. */
+/* Gates of compared schemes: a bound, and why they are known to fail. */
 TEST(compared)
 {
     struct case_file file;

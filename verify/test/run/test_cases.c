@@ -154,7 +154,7 @@ TEST(unknown_names)
     if (strncmp(error.message, said, strlen(said)) != 0) fail_msg("%s", error.message);
     assert_int_equal(case_load(&file, "sot", &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "no case 'sot'; did you mean 'sod'? allowed: "));
-    memset(name, 'a', sizeof name - 1); /* longer than any path made from it */
+    memset(name, 'a', sizeof name - 1); /* too long for a path to a case */
     name[sizeof name - 1] = '\0';
     assert_int_equal(case_load(&file, name, &error), STATUS_BAD_INPUT);
     assert_memory_equal(error.message, "no case 'aaaa", 13);

@@ -159,7 +159,7 @@ TEST(damaged)
     bytes[n] = 0;
     write_all(bytes, n + 1);
     refused(usual(), "is damaged");
-    for (size_t k = 0; k < 2; k++) { /* another first line, or none */
+    for (size_t k = 0; k < 2; k++) { /* the first line of another version, and an empty file */
         write_all(k ? "" : "sphproof-checkpoint/2 bbb\n", k ? 0 : 26);
         refused(usual(), "is no checkpoint, or of another version");
     }
@@ -296,8 +296,8 @@ TEST(long_runs)
     }
 }
 
-/* While nothing can be written, the trouble is reported; a file that cannot be opened is
- * refused. */
+/* A checkpoint that cannot be written sets `trouble`, and the next success clears it; a file that
+ * cannot be opened is refused. */
 TEST(checkpoints_that_cannot_be_written)
 {
     struct simulation *self = made_simulation(40);

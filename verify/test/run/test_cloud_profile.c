@@ -24,7 +24,7 @@ static struct run_result result; /* at time `now`, with a boost */
 
 static const double behind = 0.4921875; /* a position in the window */
 
-/* Fails for the position behind the last particle, and if more than the boost was changed. */
+/* Fails at the position stored after the last particle, and if the problem has another boundary. */
 static void sample(const struct prepared *p, const double at[3], double t, struct problem_state *s)
 {
     const double x = at[0] - centre[0], y = at[1] - centre[1],
@@ -40,7 +40,7 @@ static void sample(const struct prepared *p, const double at[3], double t, struc
             .v = {(-y * turn + x * (2 - R)) / R, (x * turn + y * (2 - R)) / R, z * (2 - R) / R},
             .P = 5 - R};
     if (around && y == 0 && z == 0 && x < 0)
-        s->rho += 1; /* along the line x only one half counts */
+        s->rho += 1; /* the curve lies on the half line with x > 0 */
     if (even) *s = (struct problem_state){.rho = 0x1p-10, .v = {around ? 0 : -1000}, .P = 1};
     if (!(fabs(at[0] - mark[0]) < 1e-6 && fabs(at[1] - mark[1]) < 1e-6)) return;
     s->rho += off[0], s->v[0] += off[1], s->v[1] += off[2], s->P += off[3];
@@ -48,7 +48,7 @@ static void sample(const struct prepared *p, const double at[3], double t, struc
 
 static double x[3][MANY + 1], v[3][MANY + 1], rho[MANY + 1], P[MANY + 1], h[MANY + 1];
 
-/* n particles at positions that include the boost, and one more at no position. */
+/* n particles at positions that include the boost, and one more element, which must not be read. */
 static void make(int dim, bool circular, size_t n)
 {
     around = circular;

@@ -392,8 +392,8 @@ TEST(numbers_that_are_refused)
     }
 }
 
-/* Lagrangian forms have no pair width. In each family, members after those with a form in 1D are
- * for 2D and 3D only. */
+/* The lagrangian formulation allows pair_width=mean only. Families list members that exist in 1D
+ * before those for 2D and 3D only. */
 TEST(choices_that_are_refused)
 {
     const struct run_settings base = keyed_case("sod", "");

@@ -10,7 +10,7 @@
 #include "initial.h"
 
 /* A coordinate of Sobol's sequence scrambled by a seed, before its shift, computed independently:
- * thirty binary digits, combined by exclusive or with those of a root times the seed less 1. */
+ * its first 30 bits XOR those of a constant times (seed - 1). */
 static double digits_added(double part, int d, uint64_t seed)
 {
     static const uint64_t roots[] = {0x9e3779b9, 0x6a09e667, 0xbb67ae85, 0x3c6ef373};

@@ -9,9 +9,9 @@
 #include "prepared.h"
 #include "vortex.h"
 
-enum { N = 60 }; /* and one more, which must not count */
+enum { N = 60 }; /* arrays have one more element, which must not count */
 
-/* Particles anywhere in a box. */
+/* Particles at random positions in a box. */
 struct cloud {
     double x[3][N + 1], v[3][N + 1], m[N + 1], rho[N + 1], volume[N + 1];
     struct snapshot snapshot;
@@ -130,7 +130,7 @@ TEST(vortex_is_measured)
     near_relative(measured(&p, "disc_error", &cloud.snapshot), sum / n, 1e-12);
     near_relative(measured(&p, "peak_velocity", &cloud.snapshot), peak, 1e-12);
     assert_true(exactly(&p, "disc_error", 1) == 0 && exactly(&p, "peak_velocity", 1) == 1);
-    /* two particles, one of them at exactly 1/2, outside of the disc; neither turns forwards */
+    /* two particles, the second on the edge, R = 1/2, which is outside; both turn backwards */
     const struct prepared still = prepared_of(&s, 2, "kind=gresho|lo=-1|hi=1");
     const double x[] = {0.25, 0.5}, y[] = {0, 0}, v[] = {0, 0}, w[] = {-0.5, -2};
     const struct snapshot two = {.n = 2, .x = {x, y}, .v = {v, w}};
@@ -168,7 +168,7 @@ TEST(layers_fill_a_square)
         assert_int_equal(prepared_try(&q, &s, 2, keys, &error),
                          abs(part) > 1 ? STATUS_BAD_INPUT : STATUS_OK);
     }
-    /* exactly 1e-12 of a side, which few doubles can be */
+    /* sides that differ by exactly 1e-12 of a side, as few doubles do */
     prepared_of(&s, 2, "kind=kelvin_helmholtz|lo=0|hi=1.000088900582341 1.000088900583341");
     prepared_refused(2, "kind=kelvin_helmholtz|lo=0|hi=2 2.5",
                      "the layers lie in a square box, and this one has sides of 2 and 2.5");
@@ -191,7 +191,7 @@ TEST(layers_fill_a_square)
     vast.n = (size_t)1 << 50; /* too large to be copied */
     assert_true(isnan(measured(&p, "mode_amplitude", &vast)));
 
-    /* the side along x sets the units */
+    /* the side along x is the unit of length */
     const struct prepared long_side = prepared_of(
         &s, 2, "kind=kelvin_helmholtz|lo=0|hi=2 2.0000000000019|gamma=1.6666666666666667");
     assert_true(exactly(&long_side, "mode_amplitude", 2.4) == kelvin_helmholtz_reference(1.2));
@@ -439,7 +439,7 @@ TEST(squares_have_equal_masses)
 
 TEST(squares_that_cannot_be_laid_are_refused)
 {
-    /* spacing, number and lattice; either gas may have too few particles for it */
+    /* fcc in 2D, too many particles for memory, too few particles of a gas for a glass */
     static const struct {
         const char *keys;
         double n;

@@ -30,7 +30,7 @@ static void sample(const struct prepared *p, const double at[3], double t, struc
 
 static struct problem problem; /* of the result; the names follow from the case file */
 
-/* A result in 2D, of particles of which three lie in the window. */
+/* A result in 2D; four of its five particles lie in the window. */
 static void make(struct run_settings *settings, struct run_result *result, const char *name)
 {
     const struct run run = keyed_run(name, "");
@@ -145,7 +145,7 @@ TEST(errors_and_signals_of_fields)
     judged_is(&settings, &result, "velocity", 0.02, signal_of(v));
     settings.file.fields[FIELD_DENSITY] = true;
     judged_is(&settings, &result, "density", 0.01, signal_of(rho));
-    /* of a uniform field its value, of a velocity the sound speed, by volume */
+    /* the signal of a uniform field is its value, of a uniform velocity the mean sound speed */
     memset(settings.file.fields, 0, sizeof settings.file.fields);
     settings.file.fields[FIELD_INTERNAL_ENERGY] = true;
     judged_is(&settings, &result, "internal_energy", 0.04, 2);
@@ -154,7 +154,7 @@ TEST(errors_and_signals_of_fields)
     still = false;
     make(&settings, &result, "gresho");
     judged_is(&settings, &result, "azimuthal", 0.77, signal_of(v));
-    /* in 1D the density, whose signal bench knows */
+    /* in 1D cases are judged by density, and the signal is left to bench */
     struct judged judged;
     result.problem.domain.dim = 1;
     judged_of(&settings.file, &result, &judged);

@@ -63,7 +63,7 @@ TEST(budget_means)
     }
 }
 
-/* A mirrored tube has the same error in each region, and its gas is as still. */
+/* A mirrored tube has the same error in each region and the same motion in undisturbed gas. */
 TEST(mirrored_budgets)
 {
     static const char *const tubes[][2] = {

@@ -91,8 +91,8 @@ TEST(samples_are_base_and_mode)
 
 enum { N = 700, BINS = 32 };
 
-/* A state of arbitrary points with arbitrary volumes, whose velocity is the mode, another flow and
- * a boost. Three points of one row are alone in their part of the height. */
+/* A state of arbitrary points with arbitrary volumes, whose velocity is the sum of the mode,
+ * another flow and a boost. One of 32 parts of the height has no point. */
 struct made_state {
     double x[2][N + 1], v[2][N + 1], volume[N + 1]; /* one more after the last */
     struct snapshot snapshot;
@@ -101,7 +101,7 @@ struct made_state {
 static void make_state(struct made_state *made, const struct prepared *p, double scatter)
 {
     const struct mode_start *start = start_of(p);
-    /* as near to the end of the layer's half as a double can be; outside of the box */
+    /* on either side of the end of the layer's half; outside of the box and at its end */
     static const double set[] = {0.5 + 1e-8, 0.5 - 1e-8, -0.1, 1, 1.1};
     for (int i = 0; i <= N; i++) {
         const double part =
@@ -173,7 +173,7 @@ TEST(measured_as_defined)
             double want[4];
             make_state(&made_state, &p, 0.05 * scattered);
             measure(&p, &made_state, want);
-            near_relative(want[0], hypot(0.3, 0.2), 0.1); /* the state contains it */
+            near_relative(want[0], hypot(0.3, 0.2), 0.1); /* the mode's amplitude */
             assert_true(want[1] > 0.01 && want[2] > 0.01);
             for (int i = 0; i < 4; i++)
                 near_relative(f[i]->measure(&p, &made_state.snapshot), want[i], 1e-10);
@@ -183,8 +183,8 @@ TEST(measured_as_defined)
 }
 
 /* On a regular grid waves are orthogonal: if the velocity is the mode alone, the measured amplitude
- * is the mode's, and a wave of another length is all noise. The other parity is distinguished from
- * the mode's own. */
+ * is that of the mode, a wave of another length counts as noise only, and the mode has nothing of
+ * the other parity. */
 TEST(grid_knows_the_mode_alone)
 {
     enum { SIDE = 64 };
@@ -207,7 +207,7 @@ TEST(grid_knows_the_mode_alone)
     near_below(mode_error.measure(&p, &s), 1e-12);
     near_below(mode_noise.measure(&p, &s), 1e-6);
     near_below(mode_other_parity.measure(&p, &s), 1e-10);
-    for (int i = 0; i < SIDE * SIDE; i++) { /* of half the mode's length */
+    for (int i = 0; i < SIDE * SIDE; i++) { /* a wave of half the mode's length */
         const double wave = cos(8 * M_PI * (i % SIDE + 0.5) / SIDE);
         v[1][i] += wave;
         noise += wave * wave;

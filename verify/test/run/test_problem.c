@@ -289,7 +289,7 @@ static void walk_all(struct walk *walk, int dim)
 
 /* ---- every problem ---- */
 
-/* The walk of a case with these keys (separated by |; keys of other problems are skipped).
+/* Walks through a case with these keys (separated by |; keys of other problems are skipped).
  * `instead`, unless NULL, replaces its problem. */
 static struct walk walk_case(const char *name, const char *keys, const struct problem *instead)
 {
@@ -300,7 +300,7 @@ static struct walk walk_case(const char *name, const char *keys, const struct pr
     if (case_load(&file, name, &error)) fail_msg("%s", error.message);
     walk.settings = file.settings;
     if (file.dimension > 1) walk.sums = 0.02; /* few points, kinks, masses of whole particles */
-    if (strcmp(name, "noh_1d") == 0) walk.sums = 0.01; /* odd n: one is at rest */
+    if (strcmp(name, "noh_1d") == 0) walk.sums = 0.01; /* with odd n one particle is at rest */
     if (strcmp(name, "leblanc") == 0) walk.sums = 0.5; /* its light gas is half a particle */
     walk.problem = instead ? instead : problem_of(&walk.settings);
     snprintf(text, sizeof text, "%s", keys);
@@ -347,7 +347,7 @@ TEST(every_problem_by_itself)
         const struct problem *problem = (const struct problem *)problem_family.members[i];
         struct walk walk = {.problem = problem, .sums = problem->least_dim > 1 ? 0.02 : 1e-12};
         struct error error;
-        /* the word in settings */
+        /* the key `kind` lists problems in the same order */
         assert_string_equal(problem->member.name,
                             setting_keys[SETTING_kind].family->members[i]->name);
         if (problem->filed) continue; /* it has no particles of its own */
@@ -355,7 +355,7 @@ TEST(every_problem_by_itself)
         assert_int_equal(settings_set(&walk.settings, SETTING_kind, problem->member.name,
                                       SOURCE_USER, NULL, &error),
                          STATUS_OK);
-        /* gas that has a reference solution */
+        /* a gamma for which the problem has a reference solution */
         const bool flat = strcmp(problem->member.name, "rotation") == 0;
         assert_int_equal(settings_set(&walk.settings, SETTING_gamma,
                                       flat ? "2" : "1.6666666666666667", SOURCE_USER, NULL, &error),

@@ -191,8 +191,7 @@ static double plain_volume_at(const void *context, const double x[3])
     return region->volume * (1 + region->rise * x[0] * x[1]);
 }
 
-/* Large glasses are kept, and are read again if everything is the same that determines the
- * points. */
+/* Large glasses are stored, and read again if everything that determines their points is equal. */
 TEST(large_glasses_are_kept)
 {
     enum { N = 1000 };

@@ -43,12 +43,12 @@ TEST(stored_points_are_found)
         assert_false(relax_store_find(7, dim, N, all));
         relax_store_keep(7, dim, N, all);
         memset(points, 0, sizeof points);
-        /* another content, number of points or dimension */
+        /* another hash, number of points or dimension */
         assert_false(relax_store_find(8, dim, N, all));
         assert_false(relax_store_find(7, dim, N + 1, all));
         assert_int_equal(relax_store_find(7, 5 - dim, N, all), dim == 3);
-        for (int i = 0; i <= N; i++) points[dim % 3][i] = -5; /* one direction too many in 2D */
-        for (int d = 0; d < 3; d++) points[d][N] = -7;        /* and one point */
+        for (int i = 0; i <= N; i++) points[dim % 3][i] = -5; /* not a direction in 2D */
+        for (int d = 0; d < 3; d++) points[d][N] = -7;        /* and not a point */
         assert_true(relax_store_find(7, dim, N, all));
         for (int d = 0; d < dim; d++) {
             assert_memory_equal(points[d], kept[d], N * sizeof(double));

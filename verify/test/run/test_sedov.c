@@ -34,7 +34,7 @@ static void check_hot_spot(int dim, const char *keys)
     near_relative(energy, 1 + volume * 1e-6 / 0.6, 1e-12);
     assert_true(hot >= 4 && hot < 100);
     free(initial.storage);
-    struct initial none = {.n = 3}; /* from before */
+    struct initial none = {.n = 3}; /* left by an earlier call */
     struct error error;
     s.value[SETTING_n].real[0] = 0x1p53;
     assert_int_equal(p.problem->fill(&p, &s, &none, &error), STATUS_ENVIRONMENT);
@@ -60,7 +60,7 @@ TEST(blasts_that_meet_their_images)
         struct error error;
         const struct prepared p = prepared_of(&s, dim, "kind=sedov|gamma=1.6|lo=-1|hi=2");
         double *t = s.value[SETTING_t_end].real, *n = s.value[SETTING_n].real, side, power, longest;
-        const double shock = 1.2; /* four spacings of 0.3 remain: ten along an axis */
+        const double shock = 1.2; /* 4 spacings of 3/10 more: the limit, 2.4 */
         *t = last_time(&p) * pow(shock / 1.35, 0.5 * dim + 1);
         for (int k = 4; k <= 12; k++) {
             struct initial initial = {0};
@@ -70,7 +70,7 @@ TEST(blasts_that_meet_their_images)
             free(initial.storage);
             if (k >= 10) continue;
             const char *allowed = strstr(error.message, "allowed: n >= ");
-            const double space = 2.4 - 12. / k; /* beyond the shock; none for the fewest */
+            const double space = 2.4 - 12. / k; /* limit of the shock; k = 4, 5: none */
             assert_non_null(allowed);
             assert_int_equal(
                 sscanf(allowed, "allowed: n >= %lf^%lf, or t_end <= %lf", &side, &power, &longest),

@@ -17,7 +17,7 @@ static struct bench_shares shares_of(const char *name, const char *words)
     return shares;
 }
 
-/* At least four fifths of the particles that may be inactive are, and no others. */
+/* Of the particles that may be inactive at least four fifths are inactive, and no others are. */
 TEST(test_shares_of_inactive_particles)
 {
     static const struct {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Compares runs of the default schemes with and without skips: random blasts, tubes and pulses in
  * gas at rest or in uniform motion, in 1D, 2D and 3D. Figures must agree, momentum and energy be
- * conserved, and something be skipped. Times are short, so that no scheme has amplified anything
+ * conserved, and something be skipped. Times are short, so that no scheme has amplified differences
  * yet. Argument, optional: the factor by which the number of setups grows. */
 #include "test.h"
 
@@ -11,7 +11,7 @@
 enum { MOST = 5000, FIELDS_SEEN = 9 };
 enum kind { BLAST, TUBE, PULSE, KINDS };
 
-/* Distance of the hot gas from its middle in the last setup drawn, in units of the box. */
+/* Half width of the hot gas in the last setup drawn, in units of the box. */
 static double width;
 static double x[3][MOST], v[3][MOST], m[MOST], u[MOST];
 
@@ -169,7 +169,8 @@ static struct run_result tube(const char *keys, const char *skip)
     return keyed_result(&run);
 }
 
-/* Tubes of which a pair stands between two widths of one step, and other schemes. */
+/* The first three tubes have a pair whose distance lies between two values of h in one step; the
+ * others have other schemes. */
 TEST(test_tubes)
 {
     static const char *const tubes[] = {
@@ -192,8 +193,8 @@ TEST(test_tubes)
     }
 }
 
-/* Where widths are solved to a hundredth, gas that sleeps has better ones, and no energy is lost.
- */
+/* With a tolerance of 1e-2 inactive particles have more accurate h than others: energy is
+ * conserved. */
 TEST(test_loose_widths)
 {
     struct run_result result =
@@ -205,9 +206,9 @@ TEST(test_loose_widths)
     run_free(&result);
 }
 
-/* Draws gas with free surfaces and a jump of u: a square in an open box, a disc in either kind of
- * box, or a periodic box with a hole. In the first setup sleeping particles lacked 380 tolerances.
- */
+/* Draws gas with free surfaces and a jump of u: a square in an open box, a disc in an open or a
+ * periodic box, or a periodic box with a hole. In the first setup a fault once left out forces of
+ * 380 times the tolerance. */
 static struct setup draw_surfaces(bool first)
 {
     enum { SQUARE, DISC, HOLE };
@@ -243,8 +244,7 @@ static struct setup draw_surfaces(bool first)
     return setup;
 }
 
-/* Free surfaces disturb forces as far as densities, matrices and their neighbours' matrices reach.
- */
+/* Free surfaces change forces as far away as densities, matrices and neighbours' matrices reach. */
 TEST(test_free_surfaces)
 {
     const int draws = 12 * (test_word(1) ? atoi(test_word(1)) : 1);

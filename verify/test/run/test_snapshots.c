@@ -29,8 +29,8 @@ TEST(intervals)
     }
 }
 
-/* There is one at the start and at each multiple before the end, no nearer to it than 1e-9 of the
- * run; the end has its own. */
+/* Snapshots are made at the start and at each multiple of the interval until 1e-9 of the run before
+ * the end, where the run's final snapshot is made. */
 TEST(number_of_snapshots)
 {
     const struct snapshots quarter = {.every = 0.25}, third = {.every = 0.3};
@@ -73,7 +73,8 @@ TEST(memory)
     assert_true(snapshot_writer_memory("a.vtu") == 90 && snapshot_writer_memory("a.") == 0);
 }
 
-/* Snapshots up to the present time are over, and so are those made before the process began. */
+/* A resumed run repeats neither snapshots due up to its time nor those that earlier processes made.
+ */
 TEST(first_snapshot_of_a_resumed_run)
 {
     static const struct {

@@ -51,7 +51,7 @@ TEST(drift_in_1d)
     struct run_result result = traced(&trace, "sod", "n=40 t_end=0.02");
     json_t *through = trace_json(&trace, 1);
     assert_true(json_is_null(json_object_get(through, "angular_momentum")));
-    /* with few steps each is sampled once */
+    /* a run of few steps samples each step once */
     assert_true(trace.looks >= 2 && trace.looks <= result.cost.steps + 1);
     for (size_t k = 1; k < trace.looks; k++) assert_true(trace.looked[k] > trace.looked[k - 1]);
     json_decref(through);
@@ -136,7 +136,7 @@ TEST(looks_at_even_times)
         trace_see(&trace, due, &any);
     }
     assert_false(trace_looks(&trace, 2, 2) || trace_looks(&trace, 100, 2));
-    trace_see(&trace, 3, &any); /* the end has an entry of its own */
+    trace_see(&trace, 3, &any); /* the end always adds an entry */
     assert_int_equal(trace.looks, TRACE_LOOKS + 2);
 }
 
@@ -151,7 +151,7 @@ TEST(drifts)
     near_relative(drift.momentum, 3 / 102., 1e-15);
     near_relative(drift.angular_momentum, 3 / 1000., 1e-15);
     near_relative(drift.energy, 0.25, 1e-15);
-    /* in 1D the difference itself, of either sign, however small */
+    /* in 1D the absolute difference, however small */
     for (int sign = -1; sign <= 1; sign += 2) {
         now.momentum[0] = start.momentum[0] + sign * 0.5;
         now.momentum[1] = start.momentum[1], now.momentum[2] = start.momentum[2];

@@ -147,7 +147,7 @@ TEST(particles_stand_on_a_line)
             for (int n = 4; n < 60; n += n < 12 ? 1 : 7) {
                 char keys[200];
                 struct settings s;
-                if (k == 3 && n % 2) continue; /* two are equally near */
+                if (k == 3 && n % 2) continue; /* two counts are equally near */
                 snprintf(keys, sizeof keys,
                          "lo=-0.5|hi=2.5|gamma=1.3|n=%d|grade=%g|grade_ratio=%g|%s", n, grades[j].g,
                          grades[j].q, gases[k]);

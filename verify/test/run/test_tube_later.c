@@ -52,8 +52,8 @@ static struct prepared drawn(gsl_rng *random, struct settings *settings)
 
 /* ---- time until waves reach the window ---- */
 
-/* The earliest time at which waves from the mirrored tube at the left end of l | r, `length` before
- * its middle, may have travelled a distance of `way`; infinite: never. */
+/* The earliest time at which waves from the left end of the tube l | r, where its mirror image
+ * begins, `length` from its middle, may have travelled a distance of `way`; infinite: never. */
 static double arrival(double gamma, const struct riemann_state *l, const struct riemann_state *r,
                       double length, double way)
 {
@@ -65,7 +65,7 @@ static double arrival(double gamma, const struct riemann_state *l, const struct 
     const double speed = mirror.right_head, other = -main.left_head;
     const double meet = speed + other > 0 ? length / (speed + other) : HUGE_VAL;
     if (way <= speed * meet) return speed > 0 ? way / speed : HUGE_VAL;
-    /* it has the same Mach number in all other gas as in l */
+    /* assume that the wave has the same Mach number in all other gas as in l */
     const double mach = fmax(1, (speed - l->v) / c);
     const struct riemann_state stars[2] = {{main.rho_star_left, main.v_star, main.p_star},
                                            {main.rho_star_right, main.v_star, main.p_star}};
@@ -134,7 +134,7 @@ TEST(shocks_are_found_from_the_right)
     assert_true(place->present(&p));
     const struct {
         size_t n;
-        double x[5], P[5]; /* over the level */
+        double x[5], P[5]; /* P in units of the level */
         double want;       /* NaN: none */
     } rows[] = {
         {5, {0, 0.25, 0.75, 1, 1.5}, {2, 2, 1.5, 0.5, 0.25}, 0.875},

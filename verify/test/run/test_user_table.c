@@ -84,7 +84,7 @@ TEST(linear_fields_are_exact)
     }
 }
 
-/* Largest error over the box; *miss is the error that the table estimates. */
+/* Returns the largest error in the box; *miss: the table's own estimate of its error. */
 static double worst(size_t n, enum boundary boundary, double *miss)
 {
     static const double c[3] = {0, 0, 1};

@@ -58,7 +58,7 @@ TEST(samples_are_the_wave)
         for (int i = 0; i < 30; i++) {
             double x[3] = {-0.7 + 0.21 * i, 0.3 * i, 1 - 0.1 * i};
             const double t = 0.01 * (i % 3);
-            for (int d = row->dim; d < 3; d++) x[d] = (double)NAN; /* there is no such direction */
+            for (int d = row->dim; d < 3; d++) x[d] = (double)NAN; /* not a direction */
             const struct simple_wave_state want = simple_wave_sample(&wave, along(row, &p, x), t);
             struct problem_state have;
             p.problem->sample(&p, x, t, &have);
@@ -224,7 +224,7 @@ TEST(modes_are_those_of_the_wave)
         const double t = 0.4 * simple_wave_breaking_time(&wave);
         double a = 0, b = 0;
         near_relative(mode->exact(&p, 0), row->amplitude, 1e-13);
-        if (row->dim == 1 && row->length < domain_length(&p.domain, 0)) continue; /* several */
+        if (row->dim == 1 && row->length < domain_length(&p.domain, 0)) continue; /* > 1 wave */
         for (int i = 0; i < POINTS; i++) {
             const double way = i * row->length / POINTS, phase = 2 * M_PI * i / POINTS;
             const double swell = simple_wave_sample(&wave, way, t).rho / 1.3 - 1;
