@@ -277,8 +277,8 @@ static void add_since(struct findings *to, const json_t *change)
         NULL, &reason);
 }
 
-/* Adds the answer of the program to a fault of its environment; a fault that could not be produced
- * is skipped. */
+/* Adds the reaction of the program to a fault of its environment; a fault that could not be
+ * produced is skipped. */
 static void add_fault(struct findings *to, const json_t *fault)
 {
     struct finding finding = figure(AREA_FAULT, status_of(to, fault, true, "faults.json"),

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Faults of the environment and the answers of the program, one line per fault. */
+ * Faults of the environment and the reactions of the program, one line per fault. */
 #include <stdlib.h>
 #include <string.h>
 

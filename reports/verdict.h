@@ -3,7 +3,7 @@
  * follows from the findings (findings.h); page, summary and JUnit file show it.
  *
  * results.json, a document of command "report" (each entry below is also what its own command
- * writes, see verify/schema; what a report has not is left out):
+ * writes, see verify/schema; members that do not apply are left out):
  *   mode            "quick" or "nightly"; "code" of other codes (--code)
  *   runs            [run documents, and "label", "reproduce", "profile": {"x", "density",
  *                   "velocity", "pressure", "exact_density", ... at the particles of the window,
@@ -11,15 +11,15 @@
  *                   "mass", "momentum", "energy"}: what has changed since the start, relative]
  *   studies         [converge documents, and "label", "reproduce"]
  *   verify          verify document
- *   trouble         [{"name", "message"}]: what gave no result, its process having crashed
+ *   trouble         [{"name", "message"}]: steps without a result: crashed or refused
  *   kernels         [kernel documents, and "reproduce"]
  *   bench           [bench documents, and "reproduce"]
  *   gradients       {"rows": [{flat: operator, ...}], "reproduce"}
  *   faults          what verify/test/faults.py wrote: "date", "git", "faults": [{"fault", "part",
  *                   "exit", "status": "pass", "fail" or "skip", "detail", "message",
  *                   "command"}]
- *   history         what verify/report/history.h tells: nights, since, trends, changes; what
- *                   survived before and breaks down since is a failure
+ *   history         see verify/report/history.h: nights, since, trends, changes; a run that
+ *                   breaks down but did not the night before is a failure
  *   verdict         what verdict_make returned */
 #pragma once
 
@@ -28,7 +28,7 @@
 /* {"status": "pass" or "fail", "headline", "figures_passed", "figures_failed", "mutants",
  * "mutants_detected", "gates_passed", "gates_failed", "gates_smoke" (too coarse to judge),
  * "gates_undetermined" (the order's interval is wider than its gate), "gates_known" (fail as their
- * case says), "gates": what became of all of them in words, "runs", "broke_down", "faults",
+ * case says), "gates": their results in words, "runs", "broke_down", "faults",
  * "faults_right", "failures": [{"area", "name", "detail", "command"}]}. New reference, NULL: no
  * memory. */
 json_t *verdict_make(const json_t *results);

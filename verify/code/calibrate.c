@@ -151,7 +151,7 @@ static void measure(const struct calibrate *calibrate, const struct calibrate_ca
     }
 }
 
-/* Sets the bounds between the floor and the smallest fault that is seen. */
+/* Sets the bounds from the floor and the smallest change by a fault that is well above it. */
 static void find_bounds(const struct calibrate *calibrate, const struct calibrate_case *one,
                         enum kind kind, struct calibrate_gate *gate)
 {
@@ -176,7 +176,7 @@ static void find_bounds(const struct calibrate *calibrate, const struct calibrat
                       : gate->value - fmin(width, gate->value / 2);
 }
 
-/* Keeps the order of the code file if all runs reach it. */
+/* Keeps the code file's gate on the order if all runs pass it. */
 static void keep_order(const struct calibrate *calibrate, const struct calibrate_case *one,
                        enum kind kind, size_t i, struct calibrate_gate *gate)
 {

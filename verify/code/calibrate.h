@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Bounds for a code's gates that are measured: each case is run several times, with starts that
- * differ by 2 units in the last place, other seeds and other numbers of threads; then with each
- * [fault] of the code file. A bound lies between the floor, which is what the former change, and
- * the smallest fault that stands out from it. What has no such fault is no gate.
+ * Measures bounds for a code's gates: runs each case several times, with starts that differ by 2
+ * units in the last place, other seeds and other numbers of threads; then with each [fault] of the
+ * code file. The largest change by the former runs is the floor. A bound lies between the floor and
+ * the smallest change by a fault that is well above it; without such a fault there is no gate.
  *
- * Of an error e0 with floor F (at least 1e-4 e0, as another compiler may change that much) and the
- * smallest change A of a fault with A >= 9 F, the gate allows e0 - D to e0 + D, D = sqrt(F A): D is
- * as many times F as A is times D, and at least three times. What is conserved has its own size as
- * floor (at least 1e-14), and no lower bound. Without any fault in the code file D = 10 F. */
+ * For an error e0 with floor F (at least 1e-4 e0, as another compiler may change that much) and
+ * smallest change A >= 9 F by a fault, the gate allows e0 - D to e0 + D, where D = sqrt(F A). The
+ * lower bound is at least e0/2, and omitted if F > e0/6. The floor of a conserved quantity is its
+ * size (at least 1e-14), and there is no lower bound. Without faults in the file D is 10 F. */
 #pragma once
 
 #include "code_run.h"

@@ -38,7 +38,7 @@ static bool is_gate(const char *line)
     return true;
 }
 
-/* Notes the smallest change that is seen, by the order if the error does not show it. */
+/* Writes the floor, and the smallest change by a fault that the gate detects by error or order. */
 static void add_note(const struct calibrate *calibrate, const struct calibrate_gate *gate,
                      struct buffer *to)
 {

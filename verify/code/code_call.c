@@ -193,8 +193,8 @@ static const char *sum_of(const char *path)
     return kept[i].sum;
 }
 
-/* Adds the files that words of a command, or of `depends`, name; in a line for a shell, what
- * separates commands separates words as well. */
+/* Adds the checksums of files that are named by words of a command or of `depends`. In a command
+ * for a shell, characters such as ; and | also separate words. */
 static void add_files(const struct code_external *external, const struct code_values *values,
                       const char *words, bool command, json_t *files)
 {

@@ -18,8 +18,8 @@ struct code_values {
 void code_values(struct code_values *values, const struct code_external *external,
                  const struct run *run, const struct run_result *start);
 
-/* The words of a command, with files beside the code file and words filled in: of sh where the code
- * file says so. Malloced, ends with NULL; NULL: no memory. */
+/* The arguments of a command: @WORDS@ are filled in, and files beside the code file become paths;
+ * with the key shell `sh -c COMMAND`. Malloced, ends with NULL; NULL: no memory. */
 char **code_words_of(const struct code_external *external, const char *command,
                      const struct code_values *values);
 void code_words_free(char **words);

@@ -69,7 +69,7 @@ static _Noreturn void become(const struct code_order *order)
 
 /* ---- the supervising process ---- */
 
-/* Bytes of memory of a process group; 0 if the system does not tell. */
+/* Bytes of memory of a process group; 0 if unknown. */
 static double memory_of(pid_t group)
 {
     double pages = 0;

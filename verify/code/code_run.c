@@ -190,7 +190,7 @@ static char *pattern_of(const struct course *course)
     return buffer_take(&pattern);
 }
 
-/* Tells that no snapshot has the name that the code file says, with its @WORDS@ filled in. */
+/* Sets the message for a missing snapshot: its name with @WORDS@ filled in, and the reason. */
 static void tell_missing(struct course *course)
 {
     char *name = code_fill(course->external->of->way.value[CODE_snapshot], course->values.of);
@@ -210,7 +210,7 @@ static bool all_in(const struct snapshot_file *file, const double *lo, const dou
     return true;
 }
 
-/* The box, if the file has none: the case's, or one as long that begins at 0. */
+/* Writes a box for a file that has none: the case's if all particles are in it, else from 0 on. */
 static bool box_of(const struct course *course, const struct snapshot_file *file, char *text,
                    size_t size)
 {
@@ -224,8 +224,8 @@ static bool box_of(const struct course *course, const struct snapshot_file *file
     return true;
 }
 
-/* Conserved sums of the initial state, if the snapshot has its particles; of a slab those of the
- * planar flow. */
+/* Conserved sums of the initial state in the coordinates of the judged box; for a slab those per
+ * unit of its thickness. */
 static enum status sum_start(const struct course *course, struct conservation *sums,
                              struct error *error)
 {
@@ -243,7 +243,7 @@ static enum status sum_start(const struct course *course, struct conservation *s
     return STATUS_OK;
 }
 
-/* Adds what depends on the kernel: the one found, else the case's. */
+/* Adds sums of the start, regularity (with the kernel found, else the case's) and cost. */
 static enum status complete(struct course *course, struct error *error)
 {
     const struct run *run = course->run;
@@ -461,6 +461,7 @@ static void add_code(const struct course *course, const char *log, json_t *docum
     free(command);
 }
 
+/* Removes the keys of our solver's scheme from "settings". */
 static void forget_scheme(json_t *document)
 {
     json_t *settings = json_object_get(document, "settings");
@@ -469,7 +470,6 @@ static void forget_scheme(json_t *document)
             json_object_del(settings, setting_keys[key].name);
 }
 
-/* Removes the keys of our solver's scheme from "settings". */
 static void describe(const struct run_external *base, json_t *document)
 {
     const struct code_external *external = (const struct code_external *)base;
@@ -478,7 +478,7 @@ static void describe(const struct run_external *base, json_t *document)
                         code_json(external, external->of->way.value[CODE_command]));
 }
 
-/* Removes what another program's run does not have. */
+/* Removes or sets to null the members that only a run of our solver has. */
 static void forget(json_t *document)
 {
     static const char *const counts[] = {
@@ -630,7 +630,7 @@ enum status code_plan(const struct code *code, const char *case_name, const char
         .work = work};
     *settings = (struct run_settings){
         .file = of->file, .settings = of->file.settings, .threads = 1, .external = &external->base};
-    settings->settings.shared = true; /* with the code, which may read @SEED@ */
+    settings->settings.shared = true; /* the code alone may read a key, as by @SEED@ */
     if (settings_apply(&settings->settings, n, arguments, error) ||
         (code_equal_masses(&of->way) && run_ask_equal_masses(settings, error)))
         return error->status;

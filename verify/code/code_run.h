@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * One run of another code, in place of one of ours: the initial state is written, templates are
- * filled in, the command runs in a folder of its own, its last snapshot is judged, and the document
- * of `sphproof run` comes of it with "code" and "judged" beside. Ladders, orders, gates, pages and
- * history are made of such documents alone, whichever code has run. */
+ * One run of another code in place of our solver: writes the initial state, fills in the templates,
+ * runs the command in a folder of its own, judges the last snapshot, and makes the document of
+ * `sphproof run` with "code" and "judged" in addition. Ladders, orders, gates, pages and history
+ * read only such documents, whichever code has run. */
 #pragma once
 
 #include <stdint.h>

@@ -132,7 +132,7 @@ static void find_way(const struct snapshot_file *ic, const struct prepared *p, d
                      double way[3])
 {
     const struct domain *box = &p->domain;
-    double shift[3]; /* into the case's coordinates, to a spacing */
+    double shift[3]; /* from the file's coordinates to the case's, within a spacing */
     for (int d = 0; d < box->dim; d++) {
         double least = (double)INFINITY;
         for (size_t i = 0; i < ic->gas; i++) least = fmin(least, ic->column[SNAPSHOT_X + d][i]);
@@ -202,7 +202,8 @@ enum code_reason code_compare(const struct snapshot_file *file, const struct cod
 
 /* ---- the start ---- */
 
-/* Medians: velocities of some codes are half a step ahead, which at a jump is much. */
+/* Differences are medians, because velocities in files of some codes are half a step ahead, which
+ * is a large difference at a jump. */
 
 /* Positions relative to a corner of the box, in [0, length) apart from round-off below its ends. */
 static double *wrapped(const double *x, size_t n, double corner, double length)

@@ -306,9 +306,9 @@ static bool near_jump(const struct judged *judged, size_t i)
     return strcmp(name, "shock") == 0 || strcmp(name, "contact") == 0;
 }
 
-/* Fraction of the window's particles that move by more than a tenth of the range of velocities
- * ahead of all exact waves: a scheme's waves are close to the exact ones, those of another time or
- * position are not. NaN if the window has no such gas. */
+/* Fraction of the window's particles that are ahead of all exact waves and move by more than a
+ * tenth of the range of velocities: a scheme's waves are close to the exact ones, those of another
+ * time or position are not. NaN if the window has no particles. */
 static double moves_ahead(const struct judged *judged, double range)
 {
     const struct snapshot *s = &judged->result.snapshot;

@@ -12,7 +12,7 @@
 
 enum { JUDGE_SNAPSHOTS_MAX = 64 };
 
-/* What the user asks for. */
+/* The options of a judgement. */
 struct judge_request {
     const char *case_name; /* NULL: named by the file; with left and right: of the file's box */
     const struct run_settings *asked;      /* the case with its keys; NULL: by its name alone */

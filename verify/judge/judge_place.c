@@ -109,8 +109,8 @@ static void extent(const struct snapshot_file *file, size_t n, int d, double *lo
     }
 }
 
-/* True if all particles that are no gas lie outside the gas, as those of walls do. Those that lie
- * among it (dust, or rows of a type that was taken for another) leave the gas to fill its box. */
+/* True if the file has particles other than gas, and each of them is outside the extent of the gas
+ * in some direction, as walls are. Dust, or rows of a wrongly assigned type, are not walls. */
 static bool has_walls(const struct snapshot_file *file)
 {
     double lo[3], hi[3];
@@ -182,8 +182,9 @@ static void take_liquid_box(const struct judge_request *request, struct judged *
                                  : "the file says so");
 }
 
-/* A line of gas whose volumes are together as long as the case's box fills that box elsewhere: from
- * 0 on, about 0, or else about the middle of the gas. False: it has another length. */
+/* If the volumes of a line of gas add up to the length of the case's box within 1 %, the box begins
+ * at 0, or is centred on 0 or on the gas: the first of these that contains all particles. False:
+ * the length differs. */
 static bool shift_case_box(struct judged *judged, const struct settings *settings, struct box *box)
 {
     struct snapshot_file *file = &judged->file;
@@ -196,7 +197,7 @@ static bool shift_case_box(struct judged *judged, const struct settings *setting
     extent(file, file->n, 0, &first, &last);
     int k = 0;
     while (k < 2 && !(first >= corners[k] && last <= corners[k] + length)) k++;
-    box->known = file->boxed = true; /* and periodic, since nothing says otherwise */
+    box->known = file->boxed = true; /* periodic unless a boundary is given */
     box->lo[0] = corners[k], box->hi[0] = corners[k] + length;
     file->box[0] = length;
     snprintf(value, sizeof value, "%.6g to %.6g along x", box->lo[0], box->hi[0]);
@@ -239,14 +240,14 @@ static enum status take_box(const struct judge_request *request, struct judged *
         extent(file, file->n, d, &box->lo[d], &box->hi[d]);
         if (file->boxed && inside)
             box->lo[d] = file->corner[d], box->hi[d] = file->corner[d] + file->box[d];
-        else if (file->boxed) { /* of the header's size, centred on the particles */
+        else if (file->boxed) { /* about the middle of the particles, or about 0 if near */
             const double middle = 0.5 * (box->lo[d] + box->hi[d]);
             const double snapped = fabs(middle) < 0.05 * file->box[d] ? 0 : middle;
             box->lo[d] = snapped - 0.5 * file->box[d], box->hi[d] = snapped + 0.5 * file->box[d];
         }
     }
     if (!file->boxed && !has_walls(file) && fits_case(file, settings, ends)) {
-        box->known = file->boxed = true; /* and periodic, since nothing says otherwise */
+        box->known = file->boxed = true; /* periodic unless a boundary is given */
         for (int d = 0; d < file->dim; d++) {
             box->lo[d] = settings_along(settings, SETTING_lo, d);
             box->hi[d] = settings_along(settings, SETTING_hi, d);
@@ -442,8 +443,7 @@ static enum status take_keys(struct judged *judged, struct settings *settings, s
 enum status judge_geometry(const struct judge_request *given, struct judged *judged,
                            double period[3], struct error *error)
 {
-    struct judge_request with_ends =
-        *given; /* including the window, if the case has ends and a window */
+    struct judge_request with_ends = *given; /* with the case's boundary and window as defaults */
     const struct judge_request *request = &with_ends;
     struct run_settings asked;
     struct box box;

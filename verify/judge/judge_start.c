@@ -244,7 +244,7 @@ static bool are_moved(const struct start_gas *gas)
     return PER_CENT * moved >= 98 * wrong;
 }
 
-/* Reports masses that all differ from the case's by one factor; each alone looks right. */
+/* Reports masses that agree with each other but not with the total mass of the case. */
 static void look_at_all_mass(const struct start_gas *gas, double ratio, struct judge_start *start)
 {
     if (start->wrong || !(fabs(ratio - 1) > MASS_OFF)) return;
