@@ -59,7 +59,7 @@ static enum status read_rules(struct request *request, struct error *error)
 
 /* --- work-precision --------------------------------------------------------------------------- */
 
-/* The case, sod if none is named; resolutions belong to --n. */
+/* Prepares the case, sod if none is named. Refuses the key n, as --n gives the resolutions. */
 static enum status prepare_case(const struct request *request, struct code *code,
                                 struct code_external *external, struct run_settings *settings,
                                 struct error *error)
@@ -80,7 +80,7 @@ static enum status prepare_case(const struct request *request, struct code *code
                      "bench: the key n and a ladder exclude each other; allowed: --n N1,N2,...");
 }
 
-/* The first of the schemes asked for, if none of them ran; else NULL. */
+/* The first requested scheme, if none of the requested schemes ran; else NULL. */
 static const struct precision_scheme *broken(const struct precision *precision)
 {
     const struct precision_scheme *first = NULL;
@@ -215,8 +215,8 @@ static enum status kernels(struct request *request, struct error *error)
 
 /* --- what is left out ------------------------------------------------------------------------- */
 
-/* Settings of the case named, or of all built-in ones: of 1D, or of 2D and 3D (clouds). The caller
- * frees. */
+/* Settings of the named case, or of all built-in cases in 1D or, with clouds, in 2D and 3D. The
+ * caller frees them. */
 static struct run_settings *all_cases(const struct request *request, size_t *count, bool clouds,
                                       struct error *error)
 {

@@ -11,7 +11,7 @@
 #include "result.h"
 #include "text.h"
 
-/* True if the folder has what no cache has: a cache has folders of two digits, and slurm. */
+/* True if the folder has entries other than those of a cache: two hexadecimal digits, and slurm. */
 static bool has_others(const char *folder)
 {
     DIR *opened = opendir(folder);

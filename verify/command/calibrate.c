@@ -16,7 +16,7 @@
 
 enum { RUNS = 4 };
 
-/* The file that is written, NAME.calibrated.ini unless --out says another. It stands in the code
+/* Sets the path of the result, NAME.calibrated.ini or that of --out, which must be in the code
  * file's folder, because paths in code files are relative to that folder. */
 static enum status take_out(const struct options *options, const struct code *code,
                             char out[CODE_PATH], struct error *error)

@@ -28,10 +28,10 @@ enum { WORDS_MAX = 64, FIGURES_MAX = FIELDS + PROBLEM_FUNCTIONALS_MAX, DRAWS = 5
 /* One side of the comparison. */
 struct side {
     const char *name; /* "a", "b" */
-    const char *text; /* as asked for */
+    const char *text; /* the argument */
     bool is_snapshot;
     struct run_settings asked; /* of runs */
-    struct run first;          /* of the first draw, or as judged */
+    struct run first;          /* of the first draw, or of the snapshot */
     char *figures[FIGURES_MAX];
     double error[FIGURES_MAX][STUDY_REPLICATES_MAX], cpu_s[STUDY_REPLICATES_MAX];
     size_t n[STUDY_REPLICATES_MAX], count; /* particles of each draw; figures */
@@ -40,7 +40,7 @@ struct side {
 
 struct comparison {
     struct side sides[2];
-    size_t asked, draws; /* draws that differ in their particles */
+    size_t asked, draws; /* requested draws; those that differ in their particles */
     struct paired of[FIGURES_MAX];
     double cpu, cpu_low, cpu_high; /* b over a: median, least, most; NaN: a side is a snapshot */
     char verdict[1024];
@@ -146,8 +146,8 @@ static enum status check_problem(const struct comparison *c, struct error *error
 
 /* ---- draws ---- */
 
-/* In 1D draws are at least so many particles apart: errors of a tube go up and down with n, over
- * some eight particles where they are few. */
+/* Least difference of n between draws in 1D: at small n errors of a tube oscillate with n, with a
+ * period of about eight particles. */
 enum { APART = 4 };
 
 /* Resolves draw r: another seed for a random start, else another number of particles
@@ -222,7 +222,7 @@ static enum status one_run(struct side *side, size_t r, size_t draws, size_t to,
     return status;
 }
 
-/* other: names the case, if it is a run. */
+/* Judges a snapshot; if the other side is a run, as a snapshot of its case. */
 static enum status one_snapshot(struct side *side, const struct side *other, bool allow_far,
                                 struct error *error)
 {
@@ -244,8 +244,8 @@ static enum status one_snapshot(struct side *side, const struct side *other, boo
     return status;
 }
 
-/* True if an earlier draw has the same particles, as lattices for two numbers of particles may have
- * and two snapshots always do: that is one draw, not two. */
+/* True if an earlier draw has the same particles, so that both count as one draw: two snapshots
+ * always do, and lattices for two numbers of particles may. */
 static bool seen(const struct comparison *c, size_t r)
 {
     for (int s = 0; s < 2; s++)

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * --engine slurm: computes the shares (--shard) of a study as Slurm tasks that fill the cache.
  *
- * What is missing in the cache decides, never what Slurm says of a task: a share is submitted if
- * some of its results are missing and no task works on it. The same command, called again,
- * therefore attaches to the tasks that run. Between calls a small file keeps the number of shares
- * and how often each was submitted. The name of the array is made of the study's computations and
- * its folder. */
+ * A share is submitted if the cache lacks some of its results and no task works on it, at most
+ * three times, and not again if its user cancelled it. The same command, called again, therefore
+ * attaches to the running tasks. Between calls a small file stores the number of shares and how
+ * often each was submitted. The array is named after a hash of the study's computations and the
+ * cache's folder. */
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
@@ -29,7 +29,7 @@ enum { TRIES = 3, SHOWN = 10, LINE = 400 };
 
 /* seconds */
 static const double first_look = 0.5, last_look = 15, visible = 30, controller_away = 120;
-static const double least_s = 600; /* a task shorter than that is a burden to a scheduler */
+static const double least_s = 600; /* shorter tasks burden a scheduler */
 
 static volatile sig_atomic_t interrupted;
 
@@ -55,7 +55,7 @@ struct array {
     struct share *shares; /* [1..count] */
     int *of;              /* share of each job of the pool; 0: computed, or in none */
     size_t lacking, wanted;
-    double left, whole; /* estimated seconds: of what is lacking; of what lacked at the start */
+    double left, whole; /* estimated seconds of the missing results: now, at the start */
     double looked;      /* duration of the last search of the cache */
     size_t waiting, running;
     bool heard;  /* the controller has answered before */
@@ -134,7 +134,7 @@ static enum status save(const struct array *array, struct error *error)
     return status;
 }
 
-/* Updates which of the lacking results are still missing. */
+/* Updates which results the cache still lacks. */
 static void look(struct array *array)
 {
     const struct pool *pool = array->work->pool;
@@ -208,7 +208,7 @@ static char *ranges(const struct array *array, const bool *chosen)
     return fclose(line) ? free(text), NULL : text;
 }
 
-/* An entry that is written nowhere else: is there room at all? */
+/* Tests whether the file with the state of the study can be written. */
 static enum status probe(const struct array *array, struct error *error)
 {
     return output_probe(array->state, error);
@@ -259,7 +259,7 @@ static bool held(const struct slurm_task *task)
     return task->live && strstr(task->reason, "launch failed");
 }
 
-/* Tasks that waited when their array was cancelled are one record, without their numbers. */
+/* Slurm lists all tasks that waited when their array was cancelled as one, without a number. */
 static void hear_cancelled(struct array *array, const struct slurm_task *task)
 {
     for (int s = 1; s <= array->count; s++) {
@@ -299,10 +299,10 @@ static bool due(struct array *array, struct share *share, int number)
     if (!share->lacking || share->live || share->failed) return false;
     if (!share->tries) return true; /* regardless of an earlier call's tasks */
     if (share->ended <= 0) share->ended = now;
-    /* one that ended well has written everything, which other machines may see a little later */
+    /* a completed task has written all results, but other machines may see them a little later */
     if (strcmp(share->state, "COMPLETED") == 0 && now < share->ended + visible) return false;
     if (share->tries >= TRIES || strcmp(share->state, "CANCELLED") == 0) {
-        share->failed = true; /* a task that its user cancelled is not submitted again */
+        share->failed = true; /* cancelled by its user, or submitted too often */
         return false;
     }
     if (!array->work->options->quiet)
@@ -350,7 +350,7 @@ static enum status step(struct array *array, struct error *error)
     struct error trouble = {0};
     enum status status = refresh(array, error);
     const bool answers = !status && !slurm_queue(array->name, &tasks, &count, &trouble);
-    look(array); /* after the queue: tasks that ended before have written their entries */
+    look(array); /* after the queue, since tasks that it lists as ended have written all results */
     if (answers) {
         array->heard = true;
         array->away = 0;
@@ -403,7 +403,7 @@ static enum status watch(struct array *array, struct error *error)
 
 /* ---- the end ---- */
 
-/* The last line that says something. */
+/* The last line that is not blank. */
 static void last_line(const char *path, char line[LINE])
 {
     char part[LINE];
@@ -433,7 +433,7 @@ static enum status give_up(const struct array *array, struct error *error)
     for (size_t i = 0; i < pool->count; i++)
         if (array->of[i] && shown++ < SHOWN)
             fprintf(stderr, "sphproof: missing: %s (share %d)\n", pool->jobs[i].name, array->of[i]);
-    unlink(array->state); /* the next call begins anew, with what is missing */
+    unlink(array->state); /* the next call divides the missing results into new shares */
     return error_set(error, STATUS_ENVIRONMENT,
                      "--engine slurm: %zu computations are missing; what is done is kept in %.200s",
                      array->lacking, array->work->cache->folder);
@@ -464,7 +464,7 @@ static enum status leave(struct array *array, struct error *error)
 static enum status finish(struct array *array, struct error *error)
 {
     if (array->lacking) return give_up(array, error);
-    if (array->running + array->waiting) slurm_cancel(array->name, NULL); /* nothing to do */
+    if (array->running + array->waiting) slurm_cancel(array->name, NULL); /* not needed */
     for (int s = 1; s <= array->count; s++) {
         char path[sizeof array->folder + 96];
         slurm_share_log(array->folder, array->name, array->shares[s].job, s, path, sizeof path);

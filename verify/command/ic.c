@@ -10,7 +10,7 @@
 #include "snapshot_writer.h"
 #include "start_format.h"
 
-/* What the format does not say, with the code's own name for it. */
+/* Prints the values that the format lacks, and where the user of the code sets them. */
 static void print_missing(const struct start_format *format, const struct run_result *result)
 {
     struct snapshot_remark remarks[SNAPSHOT_REMARKS];

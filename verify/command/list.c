@@ -33,7 +33,7 @@ struct made {
     const struct member **members; /* to the items, once all are there */
 };
 
-static bool no_memory; /* for some of them */
+static bool no_memory; /* for at least one family */
 
 static void made_add(struct made *made, const char *name, const char *label, const char *paper)
 {
@@ -124,7 +124,7 @@ static const struct family *stress(void)
     return made_family(&made);
 }
 
-/* Either of them. */
+/* Each entry is a family, or a function that makes one. */
 static const struct {
     const struct family *family;
     const struct family *(*make)(void);
@@ -212,7 +212,7 @@ static json_t *family_json(const struct family *family)
     return list;
 }
 
-/* What was installed with the program, and where. */
+/* The files that were installed with the program, and their paths. */
 static json_t *where(bool speak)
 {
     static const char *const names[] = {"cases", "sphproof-1.schema.json"};

@@ -171,7 +171,7 @@ static enum status take_theirs(struct request *r, const char *path, bool toleran
 
 static enum status take_file(struct request *r, int n, char **arguments, struct error *error)
 {
-    char *rest[n + 1], unknown[200]; /* file.ignored names them, too */
+    char *rest[n + 1], unknown[200]; /* unknown: the same names as in file.ignored */
     int left;
     enum status status =
         is_csv(r->source)
@@ -191,7 +191,7 @@ static enum status take_file(struct request *r, int n, char **arguments, struct 
                              setting_keys[k].name);
     struct setting_value *conductivity = &r->settings.value[SETTING_shock_conductivity];
     if (conductivity->source == SOURCE_USER && conductivity->automatic && r->file.dim > 1)
-        conductivity->real[0] = 1; /* an auto that is asked for: as in run */
+        conductivity->real[0] = 1; /* auto given by the user, as in a run */
     if ((status = sharpen(&r->settings, error)) ||
         (status = settings_scheme(&r->settings, r->file.dim, &r->setup.scheme, error)))
         return status;

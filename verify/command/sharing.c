@@ -23,7 +23,7 @@ static enum status take_share(struct pool_share *share, const struct options *op
     return STATUS_OK;
 }
 
-/* Chooses the engine; one that computes elsewhere needs the cache to exchange results. */
+/* Chooses the engine. An engine on other machines needs the cache to exchange results. */
 static enum status take_engine(struct sharing *sharing, const struct options *options,
                                const char *folder, bool force, struct error *error)
 {
@@ -62,7 +62,7 @@ static enum status check_build(const struct sharing *sharing, const struct optio
                      options->command->name, sharing->cache.build, build);
 }
 
-/* Refuses to forget a file that a share or a list does not write. */
+/* Refuses options for files that are not written with --shard or --list. */
 static enum status refuse_files(const struct sharing *sharing, const struct options *options,
                                 struct error *error)
 {
@@ -102,7 +102,7 @@ enum status sharing_take(struct sharing *sharing, const struct options *options,
             "%s: --only-build needs --cache DIR: it is results there that have a build",
             options->command->name);
     if (take_engine(sharing, options, folder, force, error)) return error->status;
-    if (folder && sharing->list && access(folder, R_OK)) folder = NULL; /* and none is made */
+    if (folder && sharing->list && access(folder, R_OK)) folder = NULL; /* not created */
     if (folder && cache_open(&sharing->cache, folder, force, error)) return error->status;
     if (folder) sharing->pool.cache = &sharing->cache;
     sharing->pool.again = !sharing->engine->compute && !sharing->pool.share.of;

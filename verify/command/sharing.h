@@ -9,11 +9,11 @@
 #include "progress.h"
 #include "suite.h"
 
-/* --jobs is the command's own: its fallbacks differ. */
+/* Each command lists --jobs itself, because the defaults differ. */
 #define SHARING_OPTIONS                                                                            \
     {"cache", "DIR", "keep results there, and do not repeat computations that it has"},            \
         SHARING_OPTIONS_OF_CACHE
-/* of a command that has a folder for its cache */
+/* For a command that chooses the folder of its cache. */
 #define SHARING_OPTIONS_OF_CACHE                                                                   \
     {"shard", "I/N",                                                                               \
      "compute only the Ith of N equal shares, into the cache; a call without --shard then "        \
@@ -35,32 +35,32 @@
 struct sharing {
     bool list;
     const struct engine *engine;
-    int tasks;                 /* of the engine; 0: it decides */
-    struct pool_settings pool; /* without progress */
-    struct cache cache;        /* where pool.cache is not NULL */
+    int tasks;                 /* number of tasks; 0: the engine decides */
+    struct pool_settings pool; /* sharing_run sets its progress */
+    struct cache cache;        /* used if pool.cache is not NULL */
     struct progress progress;
 };
 
-/* Reads the options; jobs: the fallback of --jobs; folder: of the cache, NULL: --cache says it.
- * STATUS_BAD_INPUT: an option is wrong, or a share has no cache to go to. It may not move
- * afterwards. */
+/* Reads the options. jobs: default of --jobs; folder: of the cache, NULL: that of --cache.
+ * STATUS_BAD_INPUT: an option is wrong, or --shard is used without a cache. sharing must not move
+ * in memory afterwards. */
 enum status sharing_take(struct sharing *sharing, const struct options *options, int jobs,
                          const char *folder, bool force, struct error *error);
 
-/* What --list prints, to standard output. */
+/* Prints the computations for --list to standard output. */
 enum status sharing_list(const struct sharing *sharing, const struct pool *pool,
                          struct error *error);
 
-/* Runs the pool with a line of progress; says what was remarkable. Where only a share was asked
- * for, says what it was, and *whole becomes false: there is nothing to judge. */
+/* Runs the pool with a line of progress and prints remarks. With --shard prints what the share has
+ * computed, and sets *whole to false: there is nothing to judge. */
 enum status sharing_run(struct sharing *sharing, struct pool *pool, const char *what,
                         const struct options *options, bool *whole, struct error *error);
 
-/* Was any option given that asks for it? */
+/* True if --jobs or one of SHARING_OPTIONS is given. */
 bool verify_shares_wanted(const struct options *options);
 
-/* As suite_run of the chosen ones of all checks. *whole becomes false, and there is no suite, where
- * only a share was asked for or a list. STATUS_BAD_INPUT: options exclude each other;
+/* As suite_run for the chosen checks, each in a process of its own. With --shard or --list *whole
+ * becomes false, and there is no suite. STATUS_BAD_INPUT: options exclude each other;
  * STATUS_ENVIRONMENT, STATUS_BROKE_DOWN: a check gave no result. */
 enum status verify_shares_run(struct suite *suite, const struct suite_choice *choice,
                               const struct options *options, bool *whole, struct error *error);

@@ -8,7 +8,7 @@
 #include "child.h"
 #include "list.h"
 
-/* Runs one of Slurm's commands; said is to be freed where that went well. error may be NULL. */
+/* Runs one of Slurm's commands. On success the caller frees said. error may be NULL. */
 static enum status ask(const char *const *words, struct child_said *said, struct error *error)
 {
     struct error trouble = {0};

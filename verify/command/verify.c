@@ -32,7 +32,7 @@ static const struct command_option verify_options[] = {
     {NULL, NULL, NULL},
 };
 
-/* Beside the program, so that neither a clone nor the working directory gets littered. */
+/* The folder `failures` beside the program or, if that is read-only, in the working directory. */
 static void default_folder(char *folder, size_t size)
 {
     const char *const name = "failures";
@@ -44,7 +44,7 @@ static void default_folder(char *folder, size_t size)
     strcat(folder, name);
 }
 
-/* Says which groups there are or, if the group exists, which checks it has. */
+/* Refuses a name: lists the groups or, if the group exists, its checks. */
 static enum status refuse_name(const char *name, const char *const *groups, size_t group_count,
                                struct error *error)
 {
@@ -116,7 +116,7 @@ static void keep_failures(const struct suite *suite, const struct options *optio
         fprintf(stderr, "sphproof: %s\n", error.message);
 }
 
-/* Tells what the suite found, and frees it. */
+/* Prints and writes the results of the suite, and frees it. */
 static enum status present(const struct options *options, struct suite *suite, enum status status,
                            struct error *error)
 {

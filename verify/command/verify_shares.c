@@ -35,7 +35,7 @@ static enum status compute(const void *context, json_t **document, struct error 
     return status;
 }
 
-/* Plans the chosen checks; a part without a check is behind the last one. */
+/* Adds the chosen checks to the pool. The part after the last one stays without a check. */
 static enum status plan(struct pool *pool, struct part *part, const struct suite_choice *choice,
                         struct error *error)
 {

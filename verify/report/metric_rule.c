@@ -50,7 +50,7 @@ static const struct metric_rule rules[] = {
     /* autopsies: the parts of an error grow and shrink with the error */
     {"power", "*", OUT},
     {"shares", "order",
-     OUT}, /* of the sizes of parts it is compared; in reports of the whole alone */
+     OUT}, /* compared for the sizes of parts, in reports only for the whole error */
     {"error", "order", 0, READING_ORDER, 0.05, 0},
     {"autopsies", "order", OUT},
     {"parts", "size", 0, READING_PART, 0.1, 1e-12},

@@ -179,7 +179,7 @@ static json_t *ladder_json(const struct ladder *ladder, const char *verdict)
 struct balance {
     size_t kept, broken, others; /* kernels without a negative transform, without and with pairs;
                                     others with pairs */
-    size_t unknown;              /* no negative transform, no pairs in the sound runs */
+    size_t unknown;              /* no negative transform and no pairs, but runs broke down */
     char worst[TEXT];            /* the first ladder that breaks the claim */
 };
 

@@ -185,7 +185,7 @@ static enum status find_cases(struct report *report, struct error *error)
     for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++) {
         struct case_file file;
         if (case_load(&file, builtin->name, error)) return error->status;
-        if (problem_of(&file.settings)->liquid) continue; /* our schemes stand beside every code */
+        if (problem_of(&file.settings)->liquid) continue; /* our solver runs every other case */
         if (!list_grow(&report->cases, report->case_count, sizeof *report->cases))
             return error_set(error, STATUS_ENVIRONMENT, "no memory for the cases");
         struct reported *of = &report->cases[report->case_count++];
@@ -510,8 +510,8 @@ static json_t *collect(struct report *report, const char *folder, double seconds
     return results;
 }
 
-/* Lack of memory or processes ends the report, as it may pass. A crash is a result, and so is a
- * refusal, which only a defect of this program can cause: see add_trouble. */
+/* Ends the report if memory or processes are lacking, since it may succeed later. A crash or a
+ * refusal, which only a defect of this program can cause, is a result: see add_trouble. */
 static enum status sound(const struct pool *pool, struct error *error)
 {
     for (size_t k = 0; k < pool->count; k++) {

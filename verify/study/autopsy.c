@@ -129,8 +129,8 @@ static size_t largest(const struct autopsy_level *level, const bool suspected[AU
     return best;
 }
 
-/* Suspects, where the order is lost, only parts that fall as slowly, if there are any. A part that
- * vanishes at a level has no order and is not excluded by it. */
+/* If the order is lost, suspects only the parts with an order below AUTOPSY_ORDER, if there are
+ * any. A part that vanishes at a level has no order and is suspected as well. */
 static void suspect(const struct autopsy *autopsy, bool suspected[AUTOPSY_PARTS])
 {
     bool any = false;

@@ -170,7 +170,7 @@ static enum status lay(const struct run *run, const char *jitter, struct initial
     struct run other;
     const enum lattice lattice = (enum lattice)settings_choice(&run->settings, SETTING_lattice);
     enum status status = STATUS_OK;
-    asked.settings.shared = true; /* a seed is of the run's own positions */
+    asked.settings.shared = true; /* these positions may not depend on the seed */
     if (lattice == LATTICE_JITTERED || lattice == LATTICE_RANDOM || lattice == LATTICE_GLASS)
         status = settings_set(&asked.settings, SETTING_lattice, "auto", SOURCE_USER, NULL, error);
     if (!status)

@@ -21,7 +21,7 @@ enum finding_status gates_weigh(const struct case_file *file, const struct order
  * it from [finer] (else 1), below it from the least order. */
 double gates_raise(const struct case_file *file, const struct case_gate *gate, size_t n);
 
-/* The gate for a finest level of n particles: with that bound, and the order of [finer]. */
+/* The gate for a finest level of n particles: with its bound raised, or from [finer]. */
 struct order_gate gates_at(const struct case_file *file, const struct case_gate *gate, size_t n);
 
 /* True if an error that fails a gate is within the known weakness. raise: the bound's factor, see

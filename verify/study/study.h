@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Studies: any case, any combination of schemes, a ladder of resolutions, replicates of each: over
- * seeds where the initial state is random, else over numbers of particles near the level's.
- * (Where a shock lies among the particles at the end changes from n to n: the error of
- * one n is a draw, with strong shocks from a distribution 14 % wide.) Every run is a job of a pool;
- * from the runs come orders with their 95 % interval, gates, functionals with Richardson
- * extrapolation and GCI, error budgets, and whatever looks too good to be true. */
+ * Studies: any case, any combination of schemes, a ladder of resolutions, replicates of each: with
+ * other seeds if the initial state is random, else with numbers of particles near the level's. (The
+ * position of a shock between the particles changes with n, so that the error at one n is a random
+ * draw, for strong shocks with a scatter of 14 %.) Every run is a job of a pool; from the runs come
+ * orders with their 95 % interval, gates, functionals with Richardson extrapolation and GCI, error
+ * budgets, and warnings of results that are too good to be true. */
 #pragma once
 
 #include <jansson.h>
@@ -108,14 +108,13 @@ bool study_suspect_same(const char *what, const struct study_result *a,
 /* True if the initial state is random, so that the seed matters. */
 bool study_is_random(const struct settings *settings);
 
-/* Number of replicates of a case: 3 for a random start, 9 for solutions with jumps in 1D, else 1,
- * also for the small jitter that lattice=jittered has by default in 2D and 3D, where runs are dear.
- */
+/* Number of replicates of a case: 3 for a random start, 9 for solutions with jumps in 1D, else 1.
+ * With the small default jitter of lattice=jittered in 2D and 3D, where runs are expensive, 1. */
 size_t study_replicates(const struct run_settings *settings);
 
-/* Number of particles of replicate r: the level's own, then alternately above and below it: in 1D
- * within 2.5 %, but at least `least` particles apart; in 2D and 3D those of a lattice with one row
- * more, one less, two more ... along each side. */
+/* Number of particles of replicate r: the level's own, then alternately above and below it (very
+ * small n: only above): in 1D within 2.5 %, but at least `least` apart; in 2D and 3D those of a
+ * lattice with one row more, one less, two more ... along each side. */
 size_t study_neighbour(size_t n, int dim, size_t replicates, size_t least, size_t r);
 
 /* Adds "dimension", "measured" (the figures that judge the case, the most important first),
