@@ -16,9 +16,9 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 
 PROGRAM, FOLDER, TABLE, MORE = sys.argv[1], sys.argv[2], sys.argv[3], sys.argv[4:]
-PATIENCE = 600 if MORE else 100  # seconds; also through `verify kernels`; by day test_user_kernel does that with a kernel that passes and one that fails
-VERIFIED = ["none", "sign_narrow", "exit_42"] if MORE else ["exit_42"]
-ENDLESS = ["loop_late", "loop_at_load"]  # seconds each
+PATIENCE = 600 if MORE else 100  # seconds
+VERIFIED = ["none", "sign_narrow", "exit_42"] if MORE else ["exit_42"]  # with `verify kernels`, too
+ENDLESS = ["loop_late", "loop_at_load"]  # each takes seconds
 RIGHT = ["wendland_c8", "gaussian", "super_gaussian", "table", "table_12", "table_4000"]
 
 

@@ -15,7 +15,7 @@
 #include "precision.h"
 #include "worst.h"
 
-/* From here on this process has a limit of its CPU time, as some processes have. */
+/* The limit of CPU time that this test sets stays for the rest of the process. */
 TEST(test_a_limit_of_cpu_time_leaves_the_clock_fine)
 {
     struct rlimit limit;
@@ -174,7 +174,7 @@ static void compare_limit(const struct kernel *kernel, const struct operator_for
     double x[3][N], r[3][N], volume[N], f[N], h[N], sums[BENCH_LIMIT_SUMS], out[3][N], limit[3];
     const double width = 0.37;
     for (size_t i = 0; i < N; i++) {
-        for (size_t a = 0; a < 3; a++) { /* far from each other, near the first */
+        for (size_t a = 0; a < 3; a++) { /* far from each other, but near the first point */
             r[a][i] = i ? 0.55 * sin(12.9898 * (double)(i + 1) * (double)(a + 1)) : 0;
             x[a][i] = 1.7 + width * r[a][i];
         }
@@ -395,7 +395,7 @@ TEST(test_skips_keep_their_promises)
         assert_true(isnan(skip->difference) == (skip->promise == PROMISE_UNUSED));
     }
     assert_true(bench_skips_pass(&skips));
-    for (size_t i = 0; i < skips.count; i++) { /* each alone fails all */
+    for (size_t i = 0; i < skips.count; i++) { /* a single failure fails all */
         bool *const said[] = {&skips.skips[i].kept, &skips.skips[i].enough};
         for (size_t k = 0; k < 2; k++) {
             *said[k] = false;
@@ -544,7 +544,7 @@ TEST(test_pairs_of_each_pass)
     bench_cells_free(&bench);
 }
 
-/* Schemes that compute more per particle have the arrays for it: forces are balanced. */
+/* Schemes that compute more per particle have the arrays that they need: forces add up to 0. */
 TEST(test_forces_of_schemes_balance)
 {
     static const char *const schemes[] = {"shifting=fluxes", "shifting=closed", "gradient=blended",
@@ -631,13 +631,13 @@ TEST(test_study)
         const struct precision_scheme *scheme = &precision.schemes[i];
         assert_int_equal(scheme->count, scheme->excluded[0] ? 0 : 2);
     }
-    /* lighter particles where the jump is */
+    /* scheme 4: lighter particles near the jump */
     assert_int_equal(precision.schemes[4].reference, REFERENCE_GRADED);
     near_inside(precision.points[5].error, 1e-4, 0.8 * precision.points[1].error);
     near_inside(precision.points[5].settings.value[SETTING_mass_ratio].real[0], 0.666, 0.667);
-    /* they have the least error, so they are on the front and alone compete */
+    /* it has the least error, so that it is on the front and competes */
     assert_true(precision.points[5].on_front && precision_competes(&precision.schemes[4]));
-    /* both references compute the same */
+    /* both seed references have the same errors */
     const struct precision_point *seed = &precision.points[6], *plain = &precision.points[8];
     for (size_t l = 0; l < 2; l++) near_relative(plain[l].error, seed[l].error, 1e-8);
     near_relative(precision.schemes[6].gain, 1, 1e-12);
@@ -668,7 +668,7 @@ TEST(test_front_of_each_processor)
         for (size_t l = 0; l < 2; l++)
             json_object_set_new(json_object_get(pool.jobs[l].document, "machine"), "processor",
                                 json_string(processors[two * (int)l]));
-        /* the coarse runs were expensive: on the same processor none of them is on the front */
+        /* coarse runs at a high price: on the same processor none of them is on the front */
         json_t *points = json_object_get(pool.jobs[0].document, "points"), *point;
         size_t k;
         json_array_foreach(points, k, point) json_object_set_new(point, "cpu_s", json_real(1000));
@@ -701,7 +701,7 @@ TEST(test_errors_relative_to_the_wave)
     assert_int_equal(precision.order, 2);
     near_relative(precision.points[0].relative, precision.points[0].error / precision.signal,
                   1e-12);
-    assert_true(isnan(precision.points[0].error_spread)); /* of one run */
+    assert_true(isnan(precision.points[0].error_spread)); /* one run has no spread */
     /* a quarter of the error for four times the work: the merit L1 x CPU is the same at any
      * resolution */
     const struct precision_point *finest = &precision.points[1];

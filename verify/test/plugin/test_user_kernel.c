@@ -60,8 +60,8 @@ TEST(test_right)
 {
     static const char *const names[] = {"wendland_c8", "gaussian", "super_gaussian",
                                         "table",       "table_12", "faulty_NONE"};
-    /* a smooth one and a table in each dimension, others in one; the test `plug-ins, looked at
-     * closely` has all in all by night */
+    /* wendland_c8 and table in each dimension, others in one; the nightly test `plug-ins, looked at
+     * closely` has all kernels in all dimensions */
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         for (int dim = 1; dim <= 3; dim++)
             if (i == 0 || i == 3 || (int)i % 3 + 1 == dim)

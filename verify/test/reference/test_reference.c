@@ -254,7 +254,7 @@ TEST(test_layers_of_mcnally)
         near_absolute(s.v[1] - 0.01 * sin(4 * M_PI * x), 0, 1e-15);
         assert_true(s.P == 2.5);
     }
-    enum { N = 7 }; /* and one more */
+    enum { N = 7 }; /* arrays have one more element, which must not count */
     const double x[] = {0.1, 0.23, 0.37, 0.52, 0.68, 0.77, 0.95, 0.4},
                  y[] = {0.2, 0.3, 0.55, 0.8, 0.4, 0.5 + 2e-7, 0.26, 0.5},
                  v[] = {1, -2, 3, 1.5, -1, 0.5, 2, 9}, w[] = {1, 2, 1.5, 0.5, 3, 100, 2, 9};

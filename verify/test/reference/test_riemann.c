@@ -119,7 +119,7 @@ TEST(test_underflow)
     }
 }
 
-/* The mark also stands for a density on either side: thin gas that moves away from a wall. */
+/* A density that underflows on either side is marked, too: thin gas that moves away from a wall. */
 TEST(test_underflow_of_one_side)
 {
     for (int side = -1; side <= 1; side += 2) {

@@ -144,7 +144,7 @@ TEST(setups_get_a_box)
     setup = (struct setup){.boundary = {BOUNDARY_PERIODIC, BOUNDARY_OPEN}}; /* no box is derived */
     assert_int_equal(particle_file_fill(&file, path, &setup, &error), STATUS_BAD_INPUT);
     says(&error, ":2: x = -5: allowed: inside of the box, 0 to 0");
-    for (int open = 0; open < 2; open++) { /* one direction has a box, one derives it */
+    for (int open = 0; open < 2; open++) { /* one axis has a given box, one a derived one */
         setup = (struct setup){.boundary = {open ? BOUNDARY_PERIODIC : BOUNDARY_OPEN,
                                             open ? BOUNDARY_OPEN : BOUNDARY_PERIODIC}};
         setup.lo[!open] = -9, setup.hi[!open] = 9;
@@ -176,7 +176,7 @@ TEST(starts_of_runs)
         .problem = &problem, .domain = {2, {0, 0}, {2, 4}}, .boost = {0.5, 0.25}};
     struct initial initial;
     struct error error = {0};
-    /* the density that the problem knows, else the file's, else the mean */
+    /* the problem's density if it has one, else the file's, else the mean density */
     for (int kind = 0; kind < 3; kind++) {
         const char *text = kind < 2 ? PLANE
                                ",rho,P\n1,2,3,4,5,6,7,0\n0,3,8,9,10,11,12,0\n1,1,1,1,1,1,1,0\n"

@@ -107,7 +107,7 @@ TEST(impossible_settings_are_refused)
         {2, "kind=yee|equal_masses=yes|lattice=random", NULL},
         {2, "kind=yee|equal_masses=yes|lattice=glass", NULL},
         {2, "kind=yee|equal_masses=no|lattice=square", NULL},
-        {2, "kind=square|equal_masses=yes|lattice=square", NULL}, /* it has lattices of its own */
+        {2, "kind=square|equal_masses=yes|lattice=square", NULL}, /* it makes its own lattices */
         /* files */
         {2, "kind=yee|file=p.csv|n=100",
          "key n and file=p.csv exclude each other: its particles are as they are"},
@@ -234,7 +234,7 @@ TEST(choices_are_written_back)
     assert_true(p.window.radius > 0 && s.value[SETTING_window_radius].real[0] == p.window.radius);
     assert_true(s.value[SETTING_window].real[0] == p.window.lo[0] && p.window.lo[0] > -1);
     prepared_of(&s, 2, "kind=rest");
-    gravity->real[0] = gravity->real[1] = 5; /* from another problem */
+    gravity->real[0] = gravity->real[1] = 5; /* left by another problem */
     struct problem closed = *(const struct problem *)family_find(&problem_family, "rest");
     closed.ends[0].usual = BOUNDARY_FIXED;
     assert_int_equal(problem_prepare_as(&p, &closed, &s, 2, &error), STATUS_OK);
@@ -279,7 +279,7 @@ TEST(times_that_hold)
     assert_string_equal(error.message, "2");
     assert_int_equal(problem_check_time(&p, 1e9, &error), STATUS_BAD_INPUT);
     near_relative(longest_seen, 0.625 * 0.999, 1e-8);
-    last = 1.5; /* halved sixty times */
+    last = 1.5; /* 2^60 is halved sixty times, to 1 */
     assert_int_equal(problem_check_time(&p, 0x1p60, &error), STATUS_BAD_INPUT);
     near_relative(longest_seen, 0.999, 1e-15);
     last = 0;

@@ -73,8 +73,7 @@ TEST(memory)
     assert_true(snapshot_writer_memory("a.vtu") == 90 && snapshot_writer_memory("a.") == 0);
 }
 
-/* A resumed run repeats neither snapshots due up to its time nor those that earlier processes made.
- */
+/* A resumed run repeats neither snapshots due up to its time nor those of earlier processes. */
 TEST(first_snapshot_of_a_resumed_run)
 {
     static const struct {

@@ -164,9 +164,9 @@ TEST(test_order_curvature)
     }
 }
 
-/* Noise that differs from level to level: weights, slope and interval by hand. A level with little
- * noise is not taken at its word: its variance is drawn towards the mean of all, with 24 degrees of
- * freedom to the replicates' 4. */
+/* Noise that differs from level to level: weights, slope and interval by hand. The weights shrink
+ * the variance of each level, which has 4 degrees of freedom, towards the mean of all, which counts
+ * as 24 degrees of freedom. */
 TEST(test_order_weights)
 {
     const double x[] = {3, 2, 1, 0}, y[] = {3.3, 2.1, 0.7, 0.2};
@@ -266,11 +266,11 @@ TEST(test_richardson_exact)
         {{1.4, 1.2, 1.1}, 1.29, ORDER_DIVERGING},
         /* within a GCI of four times the value, with errors that grow from level to level */
         {{0.000933, 0.001573, 0.002578}, 0, ORDER_DIVERGING},
-        /* errors fall with a third of the promised order, or with less */
+        /* errors fall with a third of the expected order, or with less */
         {{1.4, 1.2, 1.1}, 0.716, ORDER_PREASYMPTOTIC},
         {{1.4, 1.2, 1.1}, 0.714, ORDER_FLOOR_LIMITED},
         {{-1.4, -1.2, -1.1}, -0.714, ORDER_FLOOR_LIMITED},
-        /* differences grow, and promise nothing; errors 4^0.099, 4^0.101 */
+        /* differences grow: no order is expected; two errors fall by 4^0.099 and 4^0.101 */
         {{1, 1.1, 1.3}, 1.5, ORDER_PREASYMPTOTIC},
         {{1, 1.1, 1.3}, 0.9, ORDER_DIVERGING},
         {{1, 1.1, 1.3}, 1.2, ORDER_DIVERGING},

@@ -4,8 +4,8 @@
 
 #include "suspicion.h"
 
-/* A field is suspected to be another one if it is nearer to that one's exact values than half of
- * their spread about their mean; exactly as far is not nearer. */
+/* A field is suspected to be another one if its distance from that field's exact values is less
+ * than half of their mean deviation; a distance of exactly half is allowed. */
 TEST(test_limit_of_swapped)
 {
     static const char *const names[] = {"one", "two"};
@@ -39,8 +39,7 @@ TEST(test_suspicions)
 
     const char *const names[] = {"u", "v", "w"};
     const double volume[] = {1, 2, 100};
-    /* value and exact value of two fields; true if the second is nearer the first's solution than
-     * its own */
+    /* values and exact values of two fields, and whether the second is suspected to be the first */
     static const struct {
         double value[2][3], exact[2][3];
         bool suspected;
