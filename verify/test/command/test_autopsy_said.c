@@ -54,7 +54,7 @@ TEST(times_that_are_shown)
     }
 }
 
-/* A part owns those letters of the bar of which it covers more than the first half. */
+/* A part has those letters of the bar of which it covers more than the first half. */
 TEST(bars_of_parts)
 {
     static const struct {

@@ -184,7 +184,7 @@ static void is_text(const json_t *object, const char *key, const char *value)
     assert_string_equal(json_string_value(json_object_get(object, key)), value);
 }
 
-/* The document says what the struct says. */
+/* The JSON document has the values of the struct. */
 static void is_document(const struct comparison *c, bool pictures)
 {
     json_t *document = compare_json(c, pictures);
@@ -251,7 +251,7 @@ TEST(printed_verdicts)
             }
         }
         for (size_t k = 0; k < planted[row].figures; k++) c.sides[0].figures[k] = (char *)names[k];
-        strcpy(c.sides[0].first.asked.file.name, "sod"); /* of both; b has nothing else */
+        strcpy(c.sides[0].first.asked.file.name, "sod"); /* the case of both sides */
         c.sides[0].first.asked.file.dimension = 1;
         c.sides[1].count = 0;
         conclude(&c);
@@ -417,7 +417,7 @@ TEST(numbers_of_particles_of_draws)
     }
 }
 
-/* Draws 1 to 4 of a and b in turn. */
+/* A draw repeats an earlier one if both sides have the same number of particles as there. */
 TEST(draws_that_repeat_others)
 {
     static const size_t n[2][5] = {{4, 9, 4, 4, 9}, {1, 2, 2, 1, 2}};

@@ -112,7 +112,7 @@ TEST(share_that_fails_three_times)
     }
 }
 
-/* Of many missing computations the first ten are named. */
+/* The message names the first ten of many missing computations. */
 TEST(many_are_missing)
 {
     again();
@@ -196,7 +196,7 @@ TEST(only_what_is_missing)
     }
     again();
     for (int s = 1; s <= SHARES; s++) store_share(s, SHARES);
-    made.no_sbatch = true, made.away_to = 1e9; /* sbatch is not asked */
+    made.no_sbatch = true, made.away_to = 1e9; /* sbatch is not called */
     assert_int_equal(compute_all(), STATUS_OK);
     assert_int_equal(made.questions, 0);
 }

@@ -6,12 +6,12 @@
 
 #include "fake_slurm_call.h"
 
-/* ---- commands that do not answer ---- */
+/* ---- commands that fail or hang ---- */
 
 TEST(answers_of_sbatch)
 {
     again();
-    made.answers = ";elsewhere"; /* as on several clusters */
+    made.answers = ";elsewhere"; /* as sbatch prints if there are several clusters */
     assert_int_equal(compute_all(), STATUS_OK);
     again();
     made.no_sbatch = true;
@@ -35,7 +35,7 @@ TEST(controller_that_does_not_answer)
         double from, to;
         enum status status;
     } times[] = {
-        {0, 100.1, STATUS_ENVIRONMENT}, /* never there */
+        {0, 100.1, STATUS_ENVIRONMENT}, /* the controller never answers */
         {101, 102, STATUS_OK},          {101, 200, STATUS_OK},
         {102, 219, STATUS_OK},          {102, 250, STATUS_ENVIRONMENT},
     };
@@ -55,7 +55,7 @@ TEST(controller_that_does_not_answer)
             }
             assert_int_equal(made.submissions, times[i].from > 0);
         }
-    /* absent twice, each time not for long */
+    /* absent once, and not for too long */
     again();
     made.fates[2][0] = STAYS;
     made.away_from = 101, made.away_to = 211;
@@ -175,7 +175,7 @@ TEST(interrupted)
 /* The signal's former handler is installed again afterwards. */
 TEST(signal_handler_is_restored)
 {
-    struct sigaction before, now; /* a background job of a shell ignores the signal */
+    struct sigaction before, now; /* in a background job of a shell SIGINT is ignored */
     again();
     assert_int_equal(sigaction(SIGINT, NULL, &before), 0);
     assert_int_equal(compute_all(), STATUS_OK);
@@ -183,7 +183,7 @@ TEST(signal_handler_is_restored)
     assert_true(now.sa_handler == before.sa_handler);
 }
 
-/* The caller that submitted these tasks has died since; their tries count. */
+/* A new call finds the tasks of an interrupted one, and counts their tries. */
 TEST(submitted_tasks_are_found_again)
 {
     for (int i = 0; i < 2 * SHARES; i++) {
@@ -217,7 +217,7 @@ static void write_state(void)
     planted = NULL;
 }
 
-/* The state kept between calls, as another program may have left it. */
+/* The state kept between calls, as another process may have changed it. */
 TEST(state_file)
 {
     static const struct {

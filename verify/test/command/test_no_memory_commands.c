@@ -15,7 +15,7 @@
 enum { WORDS = 40, TEXT = 1 << 18, MANY = 1 << 28 };
 
 static char usual[TEXT], printed[TEXT], errors[TEXT];
-static int allocations; /* of the last command that was run with memory */
+static int allocations; /* of the last command */
 
 /* Reads a file without numbers, the letter e and blanks: times differ from one run to the next. */
 static void read_words(const char *path, char *to)
@@ -53,7 +53,7 @@ static int run(const char *line, int failing, char *to)
     return status;
 }
 
-/* Number of figures that are not known. */
+/* Number of figures that are NaN. */
 static int nans(const char *text)
 {
     int count = 0;

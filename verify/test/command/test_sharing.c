@@ -245,7 +245,7 @@ TEST(damaged_and_unwritable_caches)
         assert_true(strlen(call.error.message) > 10);
         assert_string_equal(call.said, "");
         pool_free(&call.pool);
-        assert_int_equal(run_share(NULL), STATUS_OK); /* it computes the result */
+        assert_int_equal(run_share(NULL), STATUS_OK); /* the plain call computes the result */
         assert_int_equal(strncmp(call.said, "sphproof: note: ", 16) == 0, !quiet);
         pool_free(&call.pool);
     }
@@ -266,11 +266,11 @@ static enum status compute_planted(const struct engine_work *work, struct error 
     assert_int_equal(work->tasks, 9);
     assert_string_equal(work->progress->what, "converge");
     work->progress->what = "tasks";
-    work->progress->spoke = 1, work->progress->terminal = true; /* its line is taken away */
+    work->progress->spoke = 1, work->progress->terminal = true; /* the progress line must go */
     return planted.status ? error_set(error, planted.status, "no tasks") : STATUS_OK;
 }
 
-/* An engine is told what to compute; what it lacks is computed here unless it fails. */
+/* An engine receives all settings; results that it lacks are computed here unless it fails. */
 TEST(engines)
 {
     static const struct engine engine = {.name = "planted", .compute = compute_planted};
@@ -455,7 +455,7 @@ TEST(valid_options)
     set("only-build", build);
     assert_int_equal(
         sharing_take(&sharing, &call.options, 5, call.place.cache_folder, false, &call.error),
-        STATUS_OK); /* the folder of the command itself counts */
+        STATUS_OK); /* the command's own folder takes precedence over --cache */
     assert_int_equal(sharing.pool.jobs, 3);
     assert_true(sharing.pool.share.number == 2 && sharing.pool.share.of == 7);
     assert_true(sharing.pool.cache == &sharing.cache && !sharing.cache.force);

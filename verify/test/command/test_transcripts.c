@@ -58,8 +58,8 @@ static void write_all(const char *path, const char *text)
     fclose(file);
 }
 
-/* A row of numbers, separated by blanks or commas. Returns how many there are, 0 if the line is
- * none. */
+/* Reads a line of numbers, separated by blanks or commas. Returns how many there are, 0 if anything
+ * else is in the line. */
 static size_t numbers_of(const char *line, double values[COLUMNS])
 {
     size_t n = 0;

@@ -33,7 +33,7 @@ TEST(case_and_keys_of_the_file)
     static const struct {
         const char *head, *name;
         bool x0;
-        double right; /* the right gas's pressure */
+        double right; /* pressure of the gas on the right */
         bool keys;
     } rows[] = {{"# case = sod\n" TIMED, NULL, false, 0.1, false},
                 {"# case = lax\n" TIMED, NULL, false, 0.571, false},
@@ -61,7 +61,7 @@ TEST(case_and_keys_of_the_file)
     }
 }
 
-/* In 2D boundaries are the file's or the user's; in 1D they are no key of the run. */
+/* In 2D the boundaries are those that the file names, or else the case's. */
 TEST(boundaries)
 {
     static const struct {
@@ -146,7 +146,7 @@ TEST(windows)
     static const struct {
         const char *head, *asked, *name;
         double lo, hi, want[2];
-        const char *note, *value, *evidence; /* note NULL: none about the window */
+        const char *note, *value, *evidence; /* NULL: no note about the window */
     } rows[] = {
         {"# box = 2\n", NULL, NULL, 0, 2, {0.5, 1.25}, NULL, NULL, NULL},
         {"# box = -2:0\n", NULL, NULL, -2, 0, {-1.5, -0.75}, NULL, NULL, NULL},
@@ -196,8 +196,8 @@ TEST(windows)
     }
 }
 
-/* In 1D a radius is half the length of a window about the middle of the box, whatever its ends
- * are. */
+/* In 1D a radius gives a window of twice that length about the middle of the box, wherever the
+ * box's ends are. */
 TEST(radius_of_a_line)
 {
     for (int open = 0; open < 2; open++) {
@@ -238,7 +238,7 @@ TEST(windows_of_discs_and_balls)
     }
 }
 
-/* A flow along x in more dimensions than its case has; also particles on one line. */
+/* A flow along x is judged in any number of dimensions, although its case is written in 1D. */
 TEST(dimensions_of_flows_along_x)
 {
     for (int dim = 1; dim <= 3; dim++) {
@@ -305,7 +305,7 @@ TEST(open_ends_are_recognised)
     static const struct {
         struct riemann_state sides[2];
         double time, at[2]; /* distance of two particles from either end, over the length */
-        double rho, v;      /* error of one of them, over density and sound speed */
+        double rho, v;      /* error of one of them, over its density and sound speed */
         bool ended;
     } rows[] = {
         {USUAL, 0.1, {0.0101, 0.0399}, 0, 0, true},
@@ -323,7 +323,7 @@ TEST(open_ends_are_recognised)
         /* sound in the slower gas must have travelled 0.05 of the length */
         {USUAL, 0.0946, {0.02, 0.03}, 0, 0, true},
         {USUAL, 0.0944, {0.02, 0.03}, 0, 0, false},
-        /* a difference of a tenth in density or pressure makes two gases */
+        /* gases whose density or pressure differ by more than a tenth are two gases */
         {{{1, 0.25, 1}, {1, 0.25, 0.89}}, 0.2, {0.02, 0.03}, 0, 0, true},
         {{{1, 0.25, 1}, {1, 0.25, 0.905}}, 0.2, {0.02, 0.03}, 0, 0, false},
         {{{1, 0.25, 0.89}, {1, 0.25, 1}}, 0.2, {0.02, 0.03}, 0, 0, true},
@@ -359,7 +359,7 @@ TEST(open_ends_are_recognised)
                 noted(&judged, "ends", "open or walls", "the gas at both is undisturbed");
             judge_free(&judged);
         }
-    /* not if the user or the file names the boundary */
+    /* a boundary that the user or the file names takes precedence */
     struct judge_request request = uniform_gas();
     struct judged judged;
     request.right = "0.125 0 0.1", request.boundary = "periodic";

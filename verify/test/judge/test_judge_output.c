@@ -5,7 +5,7 @@
 #include "near.h"
 #include "sample_snapshot.h"
 
-/* Uniform gas in 2D with this error of its density, at this time and with this much more mass. */
+/* Judges uniform gas in 2D with this density and total mass at this time. */
 static void judged_of(double rho, double time, double mass, struct judged *judged)
 {
     struct judge_request request = uniform_gas();
@@ -119,7 +119,7 @@ TEST(documents)
         assert_true(!json_object_get(document, "profile") == (n == 1));
         assert_true(!json_object_get(document, "snapshots") == (n == 1));
         const json_t *conservation = at(document, "conservation", NULL);
-        if (n == 1) { /* since the start, in a box of 2 by 1 with P = 1 */
+        if (n == 1) { /* compared with the case's start: a box of 2 by 1 with P = 1 */
             assert_string_equal(
                 json_string_value(json_array_get(at(conservation, "between", NULL), 0)),
                 "the case's initial state");
@@ -148,7 +148,7 @@ TEST(documents)
     }
     json_decref(gates);
     gates = json_array();
-    for (size_t silent = 1; silent <= 2; silent++) { /* silent if all snapshots are */
+    for (size_t silent = 1; silent <= 2; silent++) { /* one, then both, without exact solution */
         static const char *const says[] = {"pass", "smoke", "undetermined"},
                                  *const first[] = {"", "0 of 1 gates pass, 1 cannot tell; ",
                                                    "0 of 1 gates pass, 1 cannot tell; "};

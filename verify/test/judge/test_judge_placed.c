@@ -39,7 +39,7 @@ TEST(sources_of_gamma)
             gas.rho[i] = uniform(1, 1.5), gas.u[i] = i == 5 ? 0 : uniform(2, 3);
             gas.P[i] = (rows[k].planted - 1) * gas.rho[i] * gas.u[i];
         }
-        gas.P[11] = 0;                                 /* gives no gamma */
+        gas.P[11] = 0;                                 /* a pressure of 0 determines no gamma */
         gas.P[9] *= 1 + rows[k].scatter * 1.25 / 0.25; /* scatter of gamma itself */
         request.gamma = (struct snapshot_value){rows[k].said > 0, rows[k].said};
         judges(&request, &judged);
@@ -86,7 +86,7 @@ TEST(positions_of_tubes)
     static const struct {
         double lo, hi; /* of the particles */
         const char *head;
-        double x0; /* the user's; 9: none */
+        double x0; /* x0 of the user; 9: none */
         double want_lo, want_hi, window[2];
         bool periodic;
         const char *box;
@@ -142,7 +142,7 @@ TEST(positions_of_tubes)
         judge_free(&judged);
     }
     struct judge_request request = uniform_gas();
-    for (int more = 0; more < 2; more++) /* the box includes its ends, and nothing beyond */
+    for (int more = 0; more < 2; more++) /* x0 may be at an end of the box, and not beyond it */
         for (int end = 0; end < 2; end++) {
             plant(1, 0, "# box = 2\n");
             request.x0 = (struct snapshot_value){true, end ? 2 + 1e-9 * more : -1e-9 * more};
@@ -162,8 +162,8 @@ TEST(positions_of_tubes)
     refuses(&request, "long along y, but positions reach from 0 to 1");
 }
 
-/* A line of gas whose volumes are as long together as the case's box, to a hundredth, fills that
- * box from 0 on, about 0, or about its own middle, whichever holds it first. */
+/* If the volumes of a line of gas add up to the length of the case's box within 1 %, the box begins
+ * at 0, or is centred on 0 or on the gas: the first of these that contains it. */
 TEST(lines_as_long_as_the_box)
 {
     static const struct {
@@ -203,14 +203,14 @@ TEST(lines_as_long_as_the_box)
     }
 }
 
-/* What is no gas is a wall where it lies outside the gas in any direction, and then the gas does
- * not fill its box; what lies among the gas, its ends included, is no wall. */
+/* If all other particles lie outside the extent of the gas, they are walls, and the gas does not
+ * fill its box. If one of them lies within the extent, its ends included, they are not walls. */
 TEST(walls)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (int axis = 0; axis < dim; axis++)
             for (int k = 0; k < 6; k++) {
-                static const double at[] = {-0.2, 0, 0.5, 0.5, 1, 1.2}; /* of the extent */
+                static const double at[] = {-0.2, 0, 0.5, 0.5, 1, 1.2}; /* over the extent */
                 const struct judge_request request = uniform_gas();
                 struct judged judged;
                 plant(dim, 0, "# box = -1:3 -1:2 -1:2\n");
@@ -218,14 +218,14 @@ TEST(walls)
                 for (int i = N - 2; i < N; i++)
                     for (int d = 0; d < dim; d++)
                         gas.x[d][i] = (d == axis ? at[k] : 0.5) * (d ? 1 : 2);
-                if (k == 3) gas.x[axis][N - 2] = -0.5; /* one is, and one is not */
+                if (k == 3) gas.x[axis][N - 2] = -0.5; /* one lies outside, the other within */
                 judges(&request, &judged);
                 assert_true(judged.boxed == (k > 0 && k < 5));
                 judge_free(&judged);
             }
 }
 
-/* ---- missing values, and keys in vain ---- */
+/* ---- missing values, and options without effect ---- */
 
 /* If volumes fill a line, it extends half a volume beyond its outermost particles, also where these
  * are not the first and the last in the file; otherwise it ends at its particles. */

@@ -51,7 +51,7 @@ TEST(transverse_noise)
     judge_free(&judged);
 }
 
-/* The spacing of particles in a slab of layers follows from its volume divided by its thickness. */
+/* The spacing of particles in a slab of layers is the cube root of the volume per particle. */
 TEST(spacing_of_a_slab)
 {
     static const struct judge_request request = {
@@ -107,8 +107,8 @@ TEST(sums_of_any_box)
                 const bool pushed = p->boundary[d] == BOUNDARY_REFLECTING ||
                                     p->boundary[d] == BOUNDARY_FIXED || p->gravity[d] != 0;
                 x[d][i] = uniform(-1, 1), v[d][i] = uniform(-1, 1);
-                want.energy += m[i] * (0.5 * v[d][i] * v[d][i] -
-                                       p->gravity[d] * (x[d][i] + shift[d]));
+                want.energy +=
+                    m[i] * (0.5 * v[d][i] * v[d][i] - p->gravity[d] * (x[d][i] + shift[d]));
                 want.kinetic += 0.5 * m[i] * pow(v[d][i] - p->boost[d], 2);
                 want.momentum[d] += pushed ? 0 : m[i] * v[d][i];
             }
@@ -128,7 +128,7 @@ TEST(sums)
             const struct judge_request request = uniform_gas();
             struct conservation want = {0};
             plant(dim, 0, boxes[dim]);
-            for (int d = 0; d < dim; d++) gas.x[d][1] -= 1e-6; /* both ends are one position */
+            for (int d = 0; d < dim; d++) gas.x[d][1] -= 1e-6; /* the ends are the same position */
             for (int i = 0; i < N; i++) {
                 gas.rho[i] = uniform(1, 1.5), gas.u[i] = uniform(2, 3);
                 for (int d = 0; d < dim; d++) gas.v[d][i] = uniform(-1e-2, 2e-2);
@@ -154,7 +154,7 @@ TEST(sums)
                     want.angular_momentum[d] += L[d], turning = hypot(turning, L[d]);
                 want.angular_scale += turning;
             }
-            /* as from a periodic box with another origin: wrapped back */
+            /* positions as in a periodic box with another origin, which judge wraps back */
             for (int i = 2; i < N && shifted; i++)
                 if (gas.x[0][i] > 1.5) gas.x[0][i] -= 2;
             if (shifted) gas.x[0][0] = 0, gas.x[0][1] = 0;
@@ -258,8 +258,8 @@ TEST(mass_of_the_box)
 }
 
 /* For uniform gas the limit is 0.2 of half the mean value, and for velocities of the sound speed.
- * (A limit of 0.2 of the median called our own gas at rest far, with 2 % of noise in its
- * pressure.) */
+ * (With 0.2 of the median as limit, our own gas at rest, whose pressure has 2 % of noise, would be
+ * far.) */
 TEST(limits_for_uniform_gas)
 {
     static const struct {
@@ -308,7 +308,7 @@ TEST(limits_for_a_tube)
             judges(&request, &judged);
             const struct prepared problem = judged.run.problem;
             judge_free(&judged);
-            for (int twice = 0; twice < 2; twice++) { /* the range is known after the first time */
+            for (int twice = 0; twice < 2; twice++) { /* the first pass finds the range */
                 const double error = twice ? (range[1] - range[0]) * (far ? 0.062 : 0.058) : 0;
                 for (int i = 0; i < N; i++) {
                     struct problem_state s;

@@ -19,7 +19,7 @@ static struct judged made(size_t n, double time, int dim)
     judged.result.n = n;
     judged.result.time = time;
     judged.result.problem.problem = &problem;
-    /* all values of a snapshot identify it */
+    /* all sums and errors follow from n and time, so that they identify the snapshot */
     const double mark = 1000. * (double)n + time;
     judged.sums = (struct conservation){.mass = mark,
                                         .momentum = {mark, 2, 3},
@@ -114,7 +114,7 @@ TEST(snapshots_in_every_order)
         }
 }
 
-/* Snapshots of the same time: the one given first counts. */
+/* Of snapshots of the same time and n the one given first counts. */
 TEST(snapshots_of_one_time)
 {
     struct judged judged[4] = {made(50, 0.1, 2), made(50, 0.2, 2), made(50, 0.2, 2),
@@ -128,7 +128,7 @@ TEST(snapshots_of_one_time)
     judged[2].result.n = 60;
     for (int f = 0; f < FIELDS; f++) judged[0].result.errors[f].l1 = 1e9;
     json_t *orders = judge_orders(judged, 4), *other = judge_orders(judged + 1, 3);
-    assert_true(json_equal(orders, other)); /* the earlier one is not included */
+    assert_true(json_equal(orders, other)); /* orders leave out the snapshot of an earlier time */
     json_decref(orders);
     json_decref(other);
 }
@@ -136,7 +136,7 @@ TEST(snapshots_of_one_time)
 /* Errors proportional to a power of the spacing have that order, in any dimension. */
 TEST(orders)
 {
-    enum { SLAB = 4 }; /* a flow in 2D in as many layers as rows */
+    enum { SLAB = 4 }; /* a flow in 2D in a slab with as many layers as rows */
     for (int dim = 1; dim <= SLAB; dim++)
         for (int count = 2; count <= MOST; count++) {
             struct judged judged[MOST];
@@ -198,7 +198,7 @@ static json_t *gate(const char *text, const struct judged *judged, size_t n, con
     return NULL;
 }
 
-/* A snapshot of another problem has no order together with others, and no conservation. */
+/* Snapshots of different problems have neither orders nor a conservation error. */
 static const struct {
     const char *of_case, *left, *seed;
     int dim;
@@ -310,7 +310,7 @@ TEST(gates)
     static const struct {
         const char *text, *says;
     } wrong[] = {
-        {"", "NAME=BOUND,..."}, /* the empty variable of a script is not a gate that passes */
+        {"", "NAME=BOUND,..."}, /* an empty variable in a script must not pass as a gate */
         {"density_l1", "NAME=BOUND,..."},
         {"density_l1,velocity_l1=1", "NAME=BOUND,..."},
         {"velocity_l1=1,,pressure_l1=1", "NAME=BOUND,..."},

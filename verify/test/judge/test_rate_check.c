@@ -37,14 +37,14 @@ static void set_scheme(struct setup *setup, const char *words)
     snprintf(text, sizeof text, "%s", words);
     while ((word = strtok_r(rest, " ", &rest)) && n < KEYS) keys[n++] = word;
     settings_init(&settings);
-    settings.shared = true; /* words for each of several schemes */
+    settings.shared = true; /* scheme keys may have no effect */
     if (settings_apply(&settings, n, keys, &error) ||
         settings_scheme(&settings, setup->dim, &setup->scheme, &error))
         fail_msg("%s: %s", words, error.message);
     setup->gamma = settings_real(&settings, SETTING_gamma);
 }
 
-/* side^dim particles in the periodic unit box, off a lattice, with another spacing at each step. */
+/* side^dim particles in the periodic unit box, displaced at random from a lattice. */
 static void make(struct gas *gas, int dim, size_t side, const char *words)
 {
     unsigned random = 2385;
@@ -52,7 +52,7 @@ static void make(struct gas *gas, int dim, size_t side, const char *words)
     for (int a = 0; a < dim; a++) n *= side;
     assert_true(n <= MOST);
     for (size_t k = 0; k < n; k++) {
-        const size_t i = k * 5 % n; /* another order than that of positions */
+        const size_t i = k * 5 % n; /* so that particles are not in the order of positions */
         size_t rest = k;
         for (int a = 0; a < 3; a++, rest /= side) {
             gas->x[a][i] =
@@ -197,7 +197,7 @@ static double value(const struct gas *gas, const struct rate_table *table, int c
     return of[column] / (column > 2 ? gas->m[i] : 1);
 }
 
-/* The columns (a bit each) of a table, as in a file. */
+/* A table as if read from a file. */
 struct file {
     struct csv csv;
     double values[7][MOST];
@@ -244,7 +244,7 @@ TEST(equal_tables_are_good)
             assert_true(c->good && c->worst == 0 && c->rms == 0 && c->particle == 0 &&
                         !c->cause[0]);
         }
-        write_file(&file, &gas, &ours, dim < 3 ? 0x20 : 0); /* az, or no rate at all */
+        write_file(&file, &gas, &ours, dim < 3 ? 0x20 : 0); /* only az, or no rate */
         assert_int_equal(
             rate_check_make(&check, "theirs.csv", &file.csv, &gas.setup, &ours, 0, &error),
             STATUS_BAD_INPUT);
@@ -315,8 +315,8 @@ TEST(rows_of_other_particles)
         }
 }
 
-/* Two particles are off, the second by more: the check reports the error, the particle and whether
- * it is good; also if all rates are tiny, and if the first particle has by far the largest. */
+/* The check reports the larger of two errors, its particle and its quantity; also if all rates are
+ * tiny, and if those of particle 0 are by far the largest. */
 TEST(reported_errors)
 {
     static struct gas gas;
@@ -485,7 +485,7 @@ TEST(when_a_change_is_a_cause)
             check = checked(&file, &gas, &ours, nextafter(left, 0));
             assert_string_equal(check.columns[0].cause, "");
         }
-        /* with a larger tolerance the cause is named, and what is good needs none */
+        /* a larger tolerance still gives a cause; an error within the tolerance has none */
         check = checked(&file, &gas, &ours, 2e-3 * worst);
         assert_string_equal(check.columns[0].cause, "viscosity: they have none");
         check = checked(&file, &gas, &ours, worst);
@@ -646,7 +646,7 @@ TEST(factor_of_an_acceleration)
     rate_table_free(&ours);
 }
 
-/* If all rates are 0, every difference is infinitely large: nothing explains it. */
+/* If all rates are 0, every difference is infinitely large, and no cause is named. */
 TEST(rates_that_are_all_0)
 {
     static struct gas gas;

@@ -60,7 +60,8 @@ TEST(shares)
     }
 }
 
-/* Where particles along x are wrong, a character each; y and the radius are in no row's words. */
+/* `map` has a character for each particle along x, # if wrong; no words are about y or the radius.
+ */
 TEST(regions_along_x)
 {
     static const struct {
@@ -90,7 +91,7 @@ TEST(regions_along_x)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         plant(rows[k].dim, 1);
         kind.circular = rows[k].circular;
-        for (int i = 0; i < N; i++) /* another field is wrong everywhere, and not asked for */
+        for (int i = 0; i < N; i++) /* all energies are wrong, too, but do not matter here */
             wrong[i] = (rows[k].map[i] == '#' ? 1u << START_MASS : 0) | 1u << START_ENERGY;
         start_where(&gas, 1u << START_MASS, text, sizeof text);
         if (strcmp(text, rows[k].words) != 0) fail_msg("%s: '%s'", rows[k].map, text);
@@ -242,8 +243,8 @@ TEST(scalars)
     }
 }
 
-/* In gas of density 1 within a thousandth rho u is within a thousandth of u: the factor that fits
- * better is named, and rho u where both fit. */
+/* Where the density is 1 within a thousandth, both rho u and a constant factor may fit u: the
+ * better fit is named, and rho u if both fit. */
 TEST(nearest_cause)
 {
     for (int k = 0; k < 3; k++) {
@@ -258,7 +259,7 @@ TEST(nearest_cause)
     }
 }
 
-/* A sum that is a millionth of the largest values is named, too. */
+/* A constant difference is named, too, if it is only 1.5e-5 of the largest values. */
 TEST(small_sum_of_large_values)
 {
     plant(1, 1);
@@ -270,8 +271,8 @@ TEST(small_sum_of_large_values)
     cause_is("a small sum", START_ENERGY, 1, "it is 0.0625 more than the case's");
 }
 
-/* One of 20 wrong particles may be an exception, and not two; a sum is not proposed for a single
- * particle. */
+/* One of 20 wrong particles may be an exception, and not two; the factor of velocities, a
+ * least-squares fit, allows none. */
 TEST(exceptions_from_a_cause)
 {
     for (int otherwise = 0; otherwise <= 2; otherwise++) {

@@ -220,7 +220,7 @@ TEST(a_simulation_conserves)
     sphproof_simulations_free(NULL);
 }
 
-/* A run to the present time computes nothing, and a run to an earlier time is refused. */
+/* A run to the current time computes nothing, and a run to an earlier time is refused. */
 TEST(times_of_a_simulation)
 {
     const double refused[] = {-1e-300, 0.01, nextafter(0.02, 0), (double)NAN, HUGE_VAL, -HUGE_VAL};
@@ -246,7 +246,7 @@ TEST(times_of_a_simulation)
     sphproof_simulations_free(simulation);
 }
 
-/* A simulation that breaks down stays at the time of its last sound step. */
+/* A simulation that breaks down stays at the time of its last valid step. */
 TEST(time_of_a_breakdown)
 {
     static const char *const own[] = {"viscosity=none", "cfl=0.9", "energy=internal", NULL};

@@ -108,7 +108,7 @@ TEST(verdicts_on_planted_figures)
     sphproof_kernels_free(kernel);
 }
 
-/* Single precision raises bounds below 1e-6 to that, and changes nothing else. */
+/* Single precision raises bounds below 1e-6 to 1e-6, and changes nothing else. */
 TEST(single_precision)
 {
     struct sphproof_kernel *kernel;
@@ -233,7 +233,7 @@ TEST(knots)
         {3, 3, {0.2, 0.5, 0.5}},
         {3, 3, {0.2, 0.9, 0.5}},
         {3, 3, {0.2, 0.5, 1}},
-        {-1, 0, {7}}, /* the knots are found */
+        {-1, 0, {7}}, /* -1: the library finds the knots */
     };
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         struct sphproof_shape shape = usual;

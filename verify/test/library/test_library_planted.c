@@ -234,7 +234,7 @@ static double sum_of(const struct sphproof_setup *setup, const struct sphproof_k
     return sum;
 }
 
-/* At the start the rates of a setup and the state of its simulation agree with sums. */
+/* At the start the rates of a setup and the state of its simulation agree with sums over pairs. */
 TEST(setups)
 {
     static const char *const keys[] = {"kernel=cubic_spline", "eta=1.7",
@@ -509,7 +509,7 @@ static struct clouds_settings usual(enum clouds_kind kind, int dim)
 
 static int reported;
 
-/* The next figure. */
+/* Compares the next figure that the check has reported. */
 static void figure_is(const char *property, const char *formula, const char *where, double value,
                       double bound)
 {

@@ -155,7 +155,7 @@ TEST(particles_near_ends_are_not_compared)
                 assert_int_equal(found.count, 1);
                 assert_true(found.same_masses);
             }
-    /* if no particle is that far inside, those one h inside count, and otherwise all */
+    /* if no particle is that far inside, those more than h inside are compared, or else all */
     for (int margin = 0; margin < 2; margin++) {
         const struct snapshot_file file = scatter(1, 200, margin ? 0.4 : 0.9, 0);
         storage[0][0] = 0, storage[0][1] = 1;
@@ -169,13 +169,13 @@ TEST(particles_near_ends_are_not_compared)
     }
 }
 
-/* The ends are those of all particles, whatever the place in the file: beside a particle far away
- * the others are inside. */
+/* The outermost particle sets the end, wherever it is in the file: if it is far away, the next ones
+ * are inside and are compared. */
 TEST(the_outermost_particle)
 {
     const struct kernel kernel = kernel_called("cubic_spline");
     for (int side = 0; side < 2; side++)
-        for (int row = 0; row < 3; row++) { /* the first, the last, and none */
+        for (int row = 0; row < 3; row++) { /* which row is far away: the first, the last, none */
             const struct snapshot_file file = scatter(1, numbers[1], 0.06, 0);
             if (row < 2) storage[0][row ? file.n - 1 : 0] = side ? 1.3 : -0.3;
             sum_densities(&file, open_box, &kernel, 2, DENSITY_MASSES);
@@ -186,8 +186,8 @@ TEST(the_outermost_particle)
         }
 }
 
-/* On a lattice any kernel fits; densities that are no sum fit none; a kernel that nearly fits is
- * not known, and the message says how nearly it fits. */
+/* On a lattice any kernel fits; to random densities none fits; a kernel that nearly fits is not
+ * known, and the message says how nearly it fits. */
 TEST(unknown_kernels)
 {
     const struct kernel kernel = kernel_called("wendland_c4");
@@ -244,14 +244,14 @@ TEST(either_sum)
     assert_null(strstr(found.why, "quadratic_spline"));
 }
 
-/* What the user states is used, and the message says how well it fits. */
+/* A stated kernel or meaning of h is used, and the message says how well it fits. */
 TEST(stated_conventions_are_used)
 {
     const struct kernel cubic = kernel_called("cubic_spline"),
                         quintic = kernel_called("quintic_spline");
     const struct snapshot_file file = scatter(2, 400, 0.075, 1);
     sum_densities(&file, boxed, &cubic, 2, DENSITY_MASSES);
-    struct conventions found = found_in(&file, boxed, &cubic, NULL); /* h may mean anything */
+    struct conventions found = found_in(&file, boxed, &cubic, NULL); /* without a meaning of h */
     assert_int_equal(found.count, 2);
     near_relative(found.candidate[0].ratio, 2, 1e-6);
     assert_true(found.known);
@@ -266,7 +266,7 @@ TEST(stated_conventions_are_used)
                 found.candidate[0].residual > 0.01);
     found = found_in(&file, boxed, &cubic, &(struct width_meaning){.deviations = 2});
     near_relative(found.candidate[0].ratio, 1.778002, 1e-6);
-    found = found_in(&file, boxed, NULL, &(struct width_meaning){.ratio = 2}); /* any kernel */
+    found = found_in(&file, boxed, NULL, &(struct width_meaning){.ratio = 2}); /* no kernel */
     assert_int_equal(found.count, 2 * kernel_family.n);
     is_found(&found, "cubic_spline", 2, DENSITY_MASSES);
     found =
@@ -298,7 +298,7 @@ TEST(too_many_neighbours_end_the_search)
     found = found_in(&file, boxed, &cubic, &(struct width_meaning){.ratio = 2.06});
     assert_true(!found.known && found.count == 0);
     assert_string_equal(found.why, "no sum is finite");
-    for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_H][i] = 0.3; /* none within reach */
+    for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_H][i] = 0.3; /* too many neighbours */
     found = found_in(&file, boxed, &cubic, NULL);
     assert_true(!found.known && found.count == 0);
 }

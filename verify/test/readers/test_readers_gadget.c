@@ -13,7 +13,7 @@ TEST(every_form)
         b.tagged = draw % 2, b.swapped = draw / 2 % 2;
         b.extra = drawn(3);
         if (drawn(4) == 0)
-            b.box = (const double[]){0, -1, 2.5 * SIDE}[drawn(3)]; /* or the gas is thin in it */
+            b.box = (const double[]){0, -1, 2.5 * SIDE}[drawn(3)]; /* or a box that is not full */
         if (drawn(4) == 0) b.parts = 0;
         b.there[ID] = !b.tagged || drawn(2);
         b.there[ACCE] = b.tagged && drawn(2); /* without its name the block cannot be recognised */
@@ -24,7 +24,7 @@ TEST(every_form)
     struct binary b = made(2);
     b.box = (double)INFINITY;
     is_read(&b, "an infinite box");
-    b.there[HSML] = b.there[ACCE] = b.tagged = false; /* densities come last */
+    b.there[HSML] = b.there[ACCE] = b.tagged = false; /* so that densities are the last block */
     b.box = SIDE;
     is_read(&b, "without widths");
 }
@@ -47,7 +47,7 @@ TEST(missing_blocks)
                 refuses(put_all(&b), tags[k], says[k]);
             else
                 is_read(&b, tags[k]);
-            b.there[k] = true; /* of another length */
+            b.there[k] = true; /* the block has one row too many */
             const size_t each = is_vector(k) ? 3 : 1, n = b.rows[k]++,
                          size = (n + 1) * each * (size_t)b.width[k];
             char words[120];
@@ -69,7 +69,7 @@ TEST(missing_blocks)
     is_read(&b, "masses in the table");
 }
 
-/* Files that miss any byte, and counts that are wrong. */
+/* Files that end early at any byte, and files with a wrong count or name at their beginning. */
 TEST(truncated_files)
 {
     for (int form = 0; form < 4; form++) {
@@ -96,7 +96,7 @@ TEST(truncated_files)
             snapshot_file_free(&file);
         }
         put_all(&b);
-        bytes[size - 4] ^= 1, bytes[size - 1] ^= 1; /* either order */
+        bytes[size - 4] ^= 1, bytes[size - 1] ^= 1; /* the lowest byte in either byte order */
         size_t records = 1, last = 0;
         char words[80];
         for (int k = 0; k < BLOCKS; k++)
@@ -170,14 +170,14 @@ TEST(inferred_blocks)
             b.table[0] = 0, b.there[MASS] = true;
             b.rows[MASS] = 0;
             for (int t = 0; t < TYPES; t++) b.rows[MASS] += b.table[t] > 0 ? 0 : b.count[t];
-            for (size_t i = 0; i < MOST; i++) { /* spacings of 1, widths of 1 to 3 */
+            for (size_t i = 0; i < MOST; i++) { /* widths of twice the spacing */
                 b.value[RHO][i] = 1, b.value[MASS][i] = pow(SIDE, dim) / b.count[0];
                 const double spacing = pow(b.value[MASS][i], 1. / dim);
                 b.value[HSML][i] = 2 * spacing;
             }
             for (int w = MASS; w <= HSML; w++) b.width[w] = 8;
             for (size_t i = 0; i < MOST; i++) b.value[rows[k].block][i] *= rows[k].factor;
-            if (rows[k].block == RHO) /* spacings change with it */
+            if (rows[k].block == RHO) /* widths follow the spacing */
                 for (size_t i = 0; i < MOST; i++)
                     b.value[HSML][i] = 2 * pow(b.value[MASS][i] / fabs(b.value[RHO][i]), 1. / dim);
             if (rows[k].block == MASS)
@@ -206,7 +206,7 @@ TEST(inferred_blocks)
     size_t size = put_all(&b);
     for (int k = MASS; k <= HSML; k++) size = put_block(size, &b, k);
     refuses(size, "twice", "more than one choice fits");
-    b = made(1); /* again without widths, and some particles with a mass block */
+    b = made(1); /* u and rho again, without widths: the choice with widths counts */
     b.tagged = b.there[ACCE] = b.there[MASS] = false;
     for (int t = 0; t < TYPES; t++) b.table[t] = t ? 1 : 1.5 * SIDE / b.count[0];
     for (size_t i = 0; i < MOST; i++) b.value[U][i] *= 10;

@@ -134,7 +134,7 @@ TEST(boxes)
         double value;
     } wrong[] = {{0, (double)NAN},      {1, -9}, {1, -8},
                  {1, (double)INFINITY}, {4, 7},  {5, (double)NAN}};
-    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) { /* all ends, or none */
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) { /* one wrong end suffices */
         struct snapshot_file file;
         struct error error = {0};
         items_of(&layouts[2], items);

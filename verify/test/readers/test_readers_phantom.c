@@ -259,8 +259,7 @@ TEST(every_form)
         if (drawn(2)) d.array[H][drawn(N)] = 0;
         if (drawn(3) == 0) d.kind[U + (int)drawn(2)] = -1;
         if (drawn(4) == 0) d.value[4 + drawn(8)].tag = NULL;
-        if (drawn(4) == 0)
-            d.value[6 + drawn(6)].value = 0.5; /* particles lie beyond, or the ends coincide */
+        if (drawn(4) == 0) d.value[6 + drawn(6)].value = 0.5; /* too small for the gas, or empty */
         is_read(&d);
     }
 }

@@ -53,7 +53,7 @@ TEST(spellings)
         assert_int_equal(snapshot_column_of(units[k].name), units[k].column);
     for (size_t k = 0; k < sizeof nobody / sizeof *nobody; k++)
         assert_int_equal(snapshot_column_of(nobody[k]), -1);
-    assert_int_equal(snapshot_column_of(&" (x)"[1]), SNAPSHOT_X); /* no name stands before it */
+    assert_int_equal(snapshot_column_of(&" (x)"[1]), SNAPSHOT_X); /* without a name */
     char word[80] = "internalenergyinternalenergyinternalenergyinternalenergy";
     assert_int_equal(snapshot_column_of(word), -1);
     memset(word, ' ', 70), strcpy(word + 70, "u"); /* blanks do not count */

@@ -205,9 +205,9 @@ TEST(wrong_headers)
         {"x\x7f,vx\n1,2\n", "no snapshot that is read"},
         {"\n\x1f\x7f", "no snapshot that is read"}};
     char text[8000] = "";
-    memset(text, '#', 5000); /* a NUL so far behind does not tell that it is no text */
+    memset(text, '#', 5000); /* a NUL beyond the first 4096 bytes does not make a file binary */
     refuses(text, 5001, NULL, "no line with the names");
-    static const char *const needed[] = {"x", "vx", "m", "rho"}; /* every one of them */
+    static const char *const needed[] = {"x", "vx", "m", "rho"}; /* each of these is required */
     for (int k = 0; k < 4; k++) {
         char says[80], head[40];
         snprintf(says, sizeof says, "no %s; found:", needed[k]);

@@ -235,7 +235,7 @@ static const struct {
     {APPENDED, "offset=\"0\"", "offset=\"-1\"", "'Points' has the offset '-1'; allowed: 0 to"},
     {TEXT, "format=\"ascii\">\n ", "format=\"appended\" offset=\"0\">\n ",
      "'Points' has the offset '0'; allowed: 0 to 0, the length"},
-    /* longer than the longest word, and as long */
+    /* a word that is too long, and one of the largest length */
     {APPENDED, "offset=\"0\"", "offset=\"" ZEROS "0000\"", "'Points' has the offset ''"},
     {APPENDED, "offset=\"0\"", "offset=\"-" ZEROS "01\"", "'Points' has the offset '-0"},
     {APPENDED, "offset=\"0\"", "offset=\"4\"", "bytes; its points need 216"},

@@ -32,7 +32,7 @@ static void problem_is(const char *command, const char *inside, const char *name
         }
 }
 
-/* Only those settings of a run that say what is computed; schemes may differ, because they are
+/* Settings that define the problem must agree; those of the scheme may differ, because schemes are
  * compared. */
 TEST(settings_of_a_problem)
 {
@@ -51,7 +51,7 @@ TEST(settings_of_a_problem)
         problem_is("run", "settings", problem[i], true);
 }
 
-/* The subject of other documents; for a run only its case and mode. */
+/* Members of a document that define the problem; for a run only its case and mode. */
 TEST(members_of_a_problem)
 {
     static const struct {

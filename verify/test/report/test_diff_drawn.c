@@ -36,8 +36,8 @@ static void add_json(struct buffer *to, json_t *document)
     json_decref(document);
 }
 
-/* A document as after a change: figures changed by nothing, little or much, words replaced, members
- * removed. */
+/* A changed copy of a document: figures change not at all, little or much, words are replaced,
+ * members removed. */
 static json_t *changed(struct made_draw *draw, const json_t *of, const char *name)
 {
     static const double factors[] = {1,         1,      1,      1,    1,   1.0000000005,

@@ -24,7 +24,7 @@ static const struct kind {
     {"cost.cpu_s", "cost", "1", "4", VERDICT_WORSE, VERDICT_BETTER, false},
     {"cost.wall_s", "cost", "1", "40", VERDICT_WORSE, VERDICT_BETTER, false},
     {"cost.steps", "cost", "100", "200", VERDICT_WORSE, VERDICT_BETTER, false},
-    /* its noise is its distance from 1: a smaller distance is the same */
+    /* a normalisation's noise is its distance from 1, and covers a change towards 1 */
     {"normalisation", NULL, "1", "1.5", VERDICT_WORSE, VERDICT_SAME, false},
     {"p_star", NULL, "1", "2", VERDICT_INCOMPARABLE, VERDICT_INCOMPARABLE, false},
     {"signal", NULL, "1", "\"nan\"", VERDICT_INCOMPARABLE, VERDICT_INCOMPARABLE, false},

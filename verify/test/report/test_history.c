@@ -310,7 +310,7 @@ TEST(verdicts_since_last_night)
         assert_string_equal(of_order, rows[r].of_order);
         for (size_t w = 1; w < sizeof words / sizeof *words; w++) {
             size_t count = 0;
-            if (w < 3) /* statuses are new as well: no line here has them */
+            if (w < 3) /* "new" also counts statuses, which the earlier line lacks */
                 json_array_foreach(figures, i, figure)
                     count += strcmp(value_text(figure, "verdict"), words[w]) == 0;
             if (w < 3) near_absolute(value_member(since, words[w]), (double)count, 0);
@@ -320,7 +320,7 @@ TEST(verdicts_since_last_night)
     unlink(path_of("history"));
 }
 
-/* Nights without a figure are no change, and do not move its night of change. */
+/* A night without a figure is no change, and does not shift the night of a change. */
 TEST(nights_that_lack_a_figure)
 {
     for (int lacking = 0; lacking < 3; lacking++) { /* before the change, around it, at it */

@@ -63,7 +63,7 @@ static void compute_some(struct pool *pool)
 {
     static const struct {
         const char *job, *command;
-        size_t count; /* of schemes, or 1 */
+        size_t count; /* number of such pieces */
         const char *members[3];
     } cheap[] = {{"profile of sound_wave", "run", 3, {"profile", "through_time"}},
                  {"checks of riemann", "verify", 1, {"checks", "mutants"}},
@@ -274,7 +274,7 @@ static void all_say(json_t *list, const char *verdict)
     json_decref(list);
 }
 
-/* Runs with the claimed scheme come after those without. */
+/* Jobs with the claimed scheme come last: they are better if errors fall with the job's number. */
 TEST(claims_in_words)
 {
     static const char *const figures[] = {"growth_rate", "velocity_rms"};
@@ -300,7 +300,7 @@ TEST(claims_in_words)
     pool_free(&pool);
 }
 
-/* Kernels pair, or not, where their transforms are negative, or elsewhere. */
+/* Verdicts on the claim that only kernels with negative values of their transforms form pairs. */
 TEST(pairing_in_words)
 {
     static const struct {

@@ -197,7 +197,7 @@ static int open_files(int *above)
     return count;
 }
 
-/* A filter that answers before it reads, that reads nothing, that fails, dies, hangs. */
+/* A filter that answers while it reads, reads nothing, fails, is killed, hangs or is missing. */
 TEST(processes)
 {
     int above = 0;

@@ -81,8 +81,8 @@ TEST(a_viscosity_that_does_not_vanish_is_named)
     near_inside(autopsy.orders[AUTOPSY_VISCOSITY].order, 0.9, 1.1);
 }
 
-/* Also if particles have lost their lattice: most of the error is smooth, as that of viscosity is,
- * and the displaced mass is not counted as disorder. */
+/* Viscosity is named although particles have lost their lattice: most of the error is smooth, as
+ * that of viscosity is, and the displaced mass is not counted as disorder. */
 TEST(a_viscosity_that_does_not_vanish_is_named_among_disorder)
 {
     static const size_t finer[LEVELS] = {400, 576, 784, 1024};
@@ -184,8 +184,8 @@ TEST(a_conductivity_that_does_not_vanish_is_named)
     near_inside(autopsy.losses[AUTOPSY_CONDUCTION].order, 1, 1.25);
 }
 
-/* Accelerations of a wave that moves across a lattice fluctuate with it, and cancel. Without
- * viscosity the damping is missing. */
+/* Errors of the acceleration in a wave that crosses a lattice fluctuate and cancel: they do not
+ * damp it. Without viscosity the damping is missing. */
 TEST(what_shakes_a_wave_is_not_what_damps_it)
 {
     struct run run;
@@ -323,7 +323,7 @@ TEST(noise_is_told_from_smooth_fields)
         for (int k = 0; k < 5; k++) split_noise(dim);
 }
 
-/* In any state, each term's work on the flow is the negative of its heat. */
+/* In any state, each term's work on the flow is the negative of its heating. */
 TEST(the_power_of_each_term_closes)
 {
     static const char *const keys[] = {"shock_conductivity=0",

@@ -130,8 +130,8 @@ TEST(what_is_missing_fails)
     json_decref(run);
 }
 
-/* If a scheme's order cannot be measured because its errors are round-off, a measured error must
- * pass. */
+/* A known weakness with the bound NaN excuses only a missing error, one with a finite bound errors
+ * up to `raise` times that, one with an infinite bound any number. */
 TEST(round_off_excuses_a_missing_order)
 {
     const struct case_weakness absent = {(double)NAN, "no shock"}, any = {(double)INFINITY, "slow"},

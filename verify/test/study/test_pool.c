@@ -347,7 +347,7 @@ TEST(too_few_file_descriptors)
     const int next = dup(0);
     close(next);
     assert_int_equal(getrlimit(RLIMIT_NOFILE, &usual), 0);
-    for (int spare = 1; spare <= 3; spare++) { /* a process needs two, and keeps one */
+    for (int spare = 1; spare <= 3; spare++) { /* a start needs two descriptors and keeps one */
         few = usual;
         few.rlim_cur = (rlim_t)(next + spare);
         for (int i = 0; i < 4; i++) script[i].ms = 60;
@@ -386,7 +386,7 @@ static void see(void *context, const char *what, size_t done, size_t total, doub
 }
 
 /* After each job: the name of the next one, the number of jobs done, including kept ones, and the
- * share by weight of the others. */
+ * share by weight of the computed ones. */
 TEST(progress)
 {
     enum { N = 5 };

@@ -21,7 +21,7 @@ static struct pool pool;
 static struct error error;
 static struct case_file *const file = &study.settings.file;
 
-/* A study without gates, which the test adds; its result is reset to that before judging. */
+/* A study to which the test adds gates; its result is reset to the state before judging. */
 static void begin(const char *name, const char *keys, size_t replicates, tamper *tampering)
 {
     make(&study, &pool, name, keys, replicates, tampering, &error);
@@ -113,8 +113,8 @@ TEST(gates_are_judged)
     }
 }
 
-/* Half the promised order, known up to an error that this coarser ladder exceeds: the message gives
- * the limit. */
+/* A weakness is known up to a bound, which is raised for a coarser ladder; a larger error fails,
+ * and the message gives the raised bound. */
 TEST(beyond_what_is_known)
 {
     char text[200];
@@ -132,7 +132,7 @@ TEST(beyond_what_is_known)
     end();
 }
 
-/* An error that is suspiciously small counts only on the case's own ladder and settings. */
+/* A suspiciously small error fails only on the case's own ladder and with the case's settings. */
 TEST(errors_too_small_are_suspicious)
 {
     static const struct {
@@ -171,7 +171,7 @@ TEST(errors_too_small_are_suspicious)
     }
 }
 
-/* Both sides of a gate with an order count. */
+/* With an order, too, a gate bounds the error from below and from above. */
 TEST(ordered_gates_have_two_sides)
 {
     static const struct {
@@ -193,8 +193,7 @@ TEST(ordered_gates_have_two_sides)
     }
 }
 
-/* Conservation: the worst replicate of the finest level counts, and in one case it is a known
- * weakness. */
+/* Conservation: the worst replicate of the finest level counts. */
 static double drifts[LEVELS][2];
 
 static void set_drifts(json_t *run, size_t c, size_t l, size_t r)

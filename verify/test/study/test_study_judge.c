@@ -305,7 +305,7 @@ static void differ_by_eta(json_t *run, size_t c, size_t l, size_t r)
                         json_real(error_at(2, 0, l, r) * (1 + 0.1 * (double)(c / 2 % 2))));
 }
 
-/* Of two keys the one is named whose pairs are all the same; keys without a reader are not
+/* Of two keys that one is named which changes no result; keys that the scheme does not use are not
  * named. */
 TEST(idle_settings_are_suspected)
 {
@@ -316,7 +316,7 @@ TEST(idle_settings_are_suspected)
         {"eta=1.5,2,alpha=0.5,1", "alpha", differ_by_eta},
         {"alpha=0.5,1,eta=1.5,2", "eta", differ_by_eta},
         {"eta=1.5,2", "eta", NULL},
-        {"eta=0.5,1.5,2", "eta", NULL}, /* the first one is excluded */
+        {"eta=0.5,1.5,2", "eta", NULL}, /* eta = 0.5 is excluded */
         {"eta=1.5,2,0.5", "eta", NULL},
         {"eta=1.5,2,2.5", NULL, last_differs}, /* it has an effect */
         {"skip=auto,none", NULL, NULL},

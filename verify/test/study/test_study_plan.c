@@ -204,7 +204,7 @@ TEST(weights)
     near_relative(run_job_weight(&run), 0.002 + 1e-5 * 1e4, 1e-13);
 }
 
-/* A run whose profile is in the cache is not added; nor is a second one with the same key. */
+/* A run whose profile is in the pool is not added; nor is a second one with the same key. */
 TEST(kept_runs_are_not_repeated)
 {
     struct error error;

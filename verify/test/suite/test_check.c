@@ -44,7 +44,7 @@ TEST(figures_of_a_check)
         assert_true(f->value == rows[k].value || (isnan(f->value) && isnan(rows[k].value)));
         assert_true(f->bound == rows[k].bound || (isnan(f->bound) && isnan(rows[k].bound)));
         assert_true(f->floor == rows[k].floor || (isnan(f->floor) && isnan(rows[k].floor)));
-        /* each begins where the one before ended */
+        /* the time of a figure begins at the end of the previous figure */
         near_inside(f->seconds, k ? 0 : 1000, k ? 100 : 1100);
     }
     clear(&run);

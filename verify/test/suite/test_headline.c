@@ -69,7 +69,8 @@ TEST(members_and_places)
     }
 }
 
-/* Of figures that are equally far off the first one is named, also if none is off its bound. */
+/* Of figures with equal ratios to their bounds the first is named, also if the ratios are below 1.
+ */
 TEST(the_worst_figure)
 {
     json_t *list = headlines_of(4, (const struct row[]){{&one, "a: near", 2, 1},

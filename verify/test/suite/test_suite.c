@@ -325,7 +325,7 @@ static void skips_then_measures(struct check_run *run, const void *subject)
     check_measure(run, 0, 1, 0, "but this");
 }
 
-/* One figure suffices, at any index; the harness' own figures are 1 against 0. */
+/* One measured figure suffices; figures of the harness itself have the value 1 and the bound 0. */
 TEST(test_harness_figures)
 {
     struct check late = bare;

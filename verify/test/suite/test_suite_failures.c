@@ -59,7 +59,7 @@ TEST(plots_of_failures)
         FIGURE(&first, 0.5, 1, FINDING_PASS), FIGURE(&first, 1e-7, 1, FINDING_PASS),
         FIGURE(&first, 3, 0.5, FINDING_FAIL), FIGURE(&first, (double)NAN, 1, FINDING_FAIL),
         FIGURE(&first, 2, 1, FINDING_SKIP),   FIGURE(&second, 3, 1, FINDING_FAIL),
-        FIGURE(&second, 9, 1, FINDING_FAIL), /* of another suite */
+        FIGURE(&second, 9, 1, FINDING_FAIL), /* not part of the suite */
     };
     double x[] = {1, 2, 3}, y[CURVES][3];
     char label[CURVES][16];
@@ -69,7 +69,7 @@ TEST(plots_of_failures)
         snprintf(label[k], sizeof label[k], "c%d", k);
         series[k + 1] = (struct series){&second, label[k], 2, x, y[k]};
     }
-    series[CURVES + 1] = series[0]; /* after the last one */
+    series[CURVES + 1] = series[0]; /* not part of the suite */
     const struct suite suite = {.figures = figures,
                                 .figure_count = 6,
                                 .series = series + 1,
@@ -116,7 +116,7 @@ TEST(plots_of_failures)
     free(before);
     json_t *document = json_load_file(path_of("out/a-second.json"), 0, NULL);
     const json_t *kept = json_object_get(document, "series");
-    assert_int_equal(json_array_size(kept), CURVES); /* all of them */
+    assert_int_equal(json_array_size(kept), CURVES); /* the file has all curves */
     assert_true(json_real_value(json_array_get(json_object_get(json_array_get(kept, 8), "y"), 1)) ==
                 81);
     json_decref(document);

@@ -14,7 +14,7 @@ static json_t *reported(const struct suite *suite)
     return document;
 }
 
-/* Checks that ran separately have the same document together. */
+/* Checks that ran separately give, joined, the document of one suite. */
 TEST(test_joined)
 {
     enum { PARTS = 4 };
@@ -46,7 +46,7 @@ TEST(test_joined)
     suite_free(&joined);
     assert_int_equal(suite_join(&joined, checks + 1, from, 1, &error), STATUS_ENVIRONMENT);
     assert_null(joined.figures);
-    /* the sum of all parts */
+    /* the total time is the sum over all parts */
     for (size_t i = 0; i < PARTS; i++)
         json_object_set_new(documents[i], "seconds", json_real(1 << i));
     assert_int_equal(suite_join(&joined, checks, from, PARTS, &error), STATUS_CHECK_FAILED);

@@ -37,7 +37,7 @@ TEST(nested_control_groups)
     same(allowance_memory(place), 3e7);
     put("sys/fs/cgroup/jobs/7/step", "memory.max", "50000000\n");
     same(allowance_memory(place), 3e7);
-    put("sys/fs/cgroup", "memory.max", "20000000\n"); /* a container's own */
+    put("sys/fs/cgroup", "memory.max", "20000000\n"); /* the limit of a container */
     same(allowance_memory(place), 2e7);
 }
 

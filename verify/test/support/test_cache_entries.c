@@ -39,7 +39,7 @@ TEST(identity_of_a_build)
     char text[] = VERSION_FLAGS VERSION_GIT, build[CACHE_BUILD_MAX], said[CACHE_BUILD_MAX];
     hash = cache_hash(hash, text, sizeof text);
     FILE *program = fopen("/proc/self/exe", "rb");
-    if (!program) skip(); /* this system does not say which file it is */
+    if (!program) skip(); /* without /proc there is no path of this program */
     for (int c; (c = getc(program)) != EOF;) {
         const unsigned char byte = (unsigned char)c;
         hash = cache_hash(hash, &byte, 1);
@@ -78,7 +78,7 @@ TEST(paths)
     }
 }
 
-/* The longest folder allows for the names in it. */
+/* The longest allowed path of a folder leaves enough characters for the names in it. */
 TEST(folders)
 {
     struct cache cache;
@@ -214,7 +214,7 @@ TEST(entries)
     assert_string_equal(error.message, "no memory to keep a result");
     *strrchr(path, '/') = '\0';
     rmdir(path);
-    write_file(path, "", 0); /* stands where its folder should be */
+    write_file(path, "", 0); /* a file in place of the entry's folder */
     assert_int_equal(cache_store(&cache, "key", document, &error), STATUS_ENVIRONMENT);
     unlink(path);
     json_decref(document);
@@ -261,7 +261,7 @@ TEST(pruning_by_age)
                 is_there("fg/4.entry") && !is_there("00/1.entry") &&
                 !is_there("7f/.2.entry.123.0.part"));
     assert_int_equal(cache_prune(place, 1000, &census, &error),
-                     STATUS_OK); /* of exactly that age */
+                     STATUS_OK); /* entries of exactly that age */
     assert_int_equal(census.removed, 2);
     make_entry("00/0.entry", 1, 0);
     make_entry("ff/3.entry", 8, 0);

@@ -137,7 +137,7 @@ TEST(files_appear_whole)
     assert_int_equal(output_open(&output, link, &error), STATUS_OK);
     fputs("new", output.stream);
     assert_int_equal(output_close(&output, &error), STATUS_OK);
-    expect_text(path, "new"); /* the link still leads there */
+    expect_text(path, "new"); /* the link's target has changed, and not the link */
     assert_int_equal(unlink(link), 0);
 
     assert_int_equal(output_probe(path, &error), STATUS_OK);
