@@ -28,7 +28,7 @@ struct watch {
     struct trace traces[GUARD_TRACES];
 };
 
-/* Where this process records calls; NULL: nobody reads them. */
+/* Where this process records calls; NULL: no process watches it. */
 extern struct watch *guard_watched;
 
 /* Creates the shared memory; unmap it after use. NULL: no memory. */

@@ -100,7 +100,7 @@ static void take_box(const struct snapshot_source *source, struct snapshot_file 
         file->box[d] = isfinite(box[d]) && box[d] > 0 ? box[d] : 0;
 }
 
-/* Notes units that are not 1: the numbers of all columns are in them, and so are the case's. */
+/* Notes units other than 1, to which no column is converted. */
 static void note_units(const struct snapshot_source *source, struct snapshot_file *file)
 {
     static const char *const names[][5] = {

@@ -13,7 +13,7 @@ struct text_table {
     char names[TABLE_COLUMNS_MAX][48];
     int meaning[TABLE_COLUMNS_MAX]; /* snapshot_column, -1: not read, TABLE_TYPE */
     char separator;                 /* ',' or, for blanks, ' ' */
-    char unit[24];                  /* one that stands between the names; "" if none does */
+    char unit[24];                  /* a unit between the names of the columns, else "" */
 };
 enum { TABLE_TYPE = SNAPSHOT_COLUMNS };
 

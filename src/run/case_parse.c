@@ -518,8 +518,7 @@ static enum status check_fields(struct parser *parser, const struct problem *pro
     return STATUS_OK;
 }
 
-/* Says where the key stands that the reason begins with: "KEY=VALUE and ..." or "key KEY and ...".
- */
+/* Adds the path, and the line of the key if the reason begins with KEY or "key KEY". */
 static enum status refuse(const struct parser *parser, const struct error *reason)
 {
     const char *word = reason->message;
@@ -550,7 +549,7 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
     if (ini_text_read(&parser.at, take_pair, &parser) || check_complete(&parser))
         return error->status;
     struct settings trial = file->settings;
-    for (int key = 0; key < SETTINGS; key++) /* refused like a user's */
+    for (int key = 0; key < SETTINGS; key++) /* checked like a user's keys */
         if (parser.seen_settings[key]) trial.value[key].source = SOURCE_USER;
     /* `judge` accepts tubes with non-periodic ends, which a run refuses */
     if (file->dimension == 1 && problem_reads(problem_of(&trial), SETTING_left))

@@ -22,7 +22,7 @@ struct crystal {
 
 static const struct crystal line = {1, 0, 1, {1}, {{0.5}}};
 static const struct crystal square = {2, 1, 1, {1, 1, 1}, {{0.5, 0.5, 0.5}}};
-/* in 3D hexagonal close-packed: each layer fills the gaps of the next, every second one is alike */
+/* in 3D hexagonal close-packed: layers fill each other's gaps in the order ABAB */
 static const struct crystal hexagonal = {2,
                                          2,
                                          4,

@@ -382,7 +382,7 @@ enum status settings_refuse_unused(const struct settings *settings, struct error
 {
     for (int i = 0; i < SETTINGS; i++) {
         const enum setting key = (enum setting)i;
-        enum setting idle = key; /* the key itself, or one that decides and is idle, too */
+        enum setting idle = key; /* the key itself, or an unused key that it depends on */
         if (settings->value[key].source != SOURCE_USER || settings_uses(settings, key)) continue;
         while (decides(idle) != SETTINGS && !settings_uses(settings, decides(idle)))
             idle = decides(idle);

@@ -118,8 +118,8 @@ bool settings_shaken(const struct settings *settings);
  * seed of a start that is not random. Automatic keys must have their values. */
 bool settings_uses(const struct settings *settings, enum setting key);
 
-/* Takes the keys that `settings` uses off the user's in `left`. What is left after all schemes of a
- * sweep has an effect on none, and settings_refuse_unused refuses it. */
+/* Removes the keys that `settings` uses from those of the user in `left`. Keys that remain after
+ * all schemes of a sweep have no effect on any; settings_refuse_unused refuses them. */
 void settings_take_used(const struct settings *settings, struct settings *left);
 
 /* STATUS_BAD_INPUT: the user gave a key that has no effect by settings_uses(). */

@@ -12,8 +12,8 @@
 /* Offsets of the sums. */
 enum { PF = 0, P = 3, PX = 6, W = 15, WF = 16, WX = 17, USED = 20 };
 
-/* The kinds of sums that the operators need; a matrix if the pair vector is not the gradient, and
- * in one more kind, CORRECTED, which has it as well. */
+/* The kinds of sums that the operators need: with a matrix if the pair vector is not the gradient,
+ * and a further kind, CORRECTED, with a matrix. */
 enum { CORRECTED = PAIR_VECTORS };
 #define DIMENSIONS(vector, tag, X, name)                                                           \
     X(name, tag, vector, 1) X(name, tag, vector, 2) X(name, tag, vector, 3)

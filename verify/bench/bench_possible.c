@@ -19,7 +19,7 @@ struct counting {
     double *h;                 /* of the start, by id */
     double *before;            /* v and rho of the step before, by id: dim + 1 runs of n */
     bool *asleep, *free;       /* particles that sleep, and that could: in snapshot order */
-    double sound, time, t_end; /* of the setup; of the step before; of the run */
+    double sound, time, t_end; /* mean of the setup; of the step before; end of the run */
     /* what could be skipped, and what of it was done: summed over steps */
     double share, reached, layers;
     uint64_t steps;
@@ -218,9 +218,8 @@ static enum status run_counting(const struct run *run, struct counting *counting
 
 bool bench_shares_enough(const struct bench_shares *shares)
 {
-    /* With few particles in 1D the layers, which are so many spacings thick, are most of what is
-     * left. They explain no more than as much again as is skipped, or sleep that fails would not
-     * show. */
+    /* With few particles in 1D most of the rest is layers, up to `spacings` spacings thick. They
+     * excuse at most as much work as is skipped, so that sleep that fails is noticed. */
     const double spacings = 40, thickest = fmin(spacings * shares->spacing, shares->skipped);
     const double explained = fmin(shares->layers, thickest);
     return !(shares->skipped + explained < 0.8 * shares->allowed - 0.02);

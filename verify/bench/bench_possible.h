@@ -22,7 +22,7 @@ struct bench_shares {
     /* Possible but not skipped: particles with rates above the tolerance of sleep, which a
      * precursor has reached; and particles that are active because of their neighbours. */
     double reached, layers;
-    double spacing; /* 1D: mean spacing over the length of the box; 2D and 3D: 0, nothing excuses */
+    double spacing; /* 1D: mean spacing over the length of the box; 2D and 3D: 0 */
     /* Sleeping fraction of the gas, in intervals of t_end and of the box along x; the columns are
      * few enough that none between particles is empty at the start. NaN: no gas. */
     int columns;
@@ -36,10 +36,10 @@ bool bench_shares_enough(const struct bench_shares *shares);
 /* Runs it, with or without skips according to its keys. STATUS_*: as run_execute. */
 enum status bench_possible(const struct run *run, struct bench_shares *shares, struct error *error);
 
-/* Runs it without skips. The share of particle updates after which velocity, density and internal
- * energy of the particle, and of all within a smoothing length of it, are still those of the start
- * to a tolerance, of c, rho and the energy that belongs to c: the particle's own sound speed or
- * `sound`, whichever is more. Sums differ from those of the start by what such neighbours do, so
- * anything less would leave out more than the tolerance. STATUS_*: as run_execute. */
+/* Runs it without skips. *share: the part of all particle updates after which velocity, density and
+ * internal energy of the particle and of all its neighbours are those of the start, to a tolerance
+ * relative to c, rho and the energy of sound speed c, the particle's own or `sound`, whichever is
+ * larger. To skip other updates would change sums by more than the tolerance. STATUS_*: as
+ * run_execute. */
 enum status bench_allowed(const struct run *run, const struct initial *initial, double tolerance,
                           double sound, double *share, struct error *error);

@@ -14,7 +14,7 @@
 /* Work that keys restore; a case whose scheme does not skip it has no entry. */
 enum when { ALWAYS, PREDICTED, INVISCID, UNIFORM, LOCAL };
 static const struct {
-    /* ALPHA and CFL stand for the scheme's own: what is automatic depends on the viscosity */
+    /* ALPHA and CFL: the values of the scheme, as automatic values depend on the viscosity */
     const char *name, *keys[BENCH_SIDES];
     enum when when;
     enum bench_promise promise;

@@ -110,9 +110,9 @@ static enum status error_at(const struct run *run, double *value, struct error *
     return status;
 }
 
-/* Averages the error over the replicates of a study of the case, scaled to the point's own n by the
- * case's order. The first is there; the others run once, untimed. Five are enough, because errors
- * are compared over a factor of ten. For a random start only the point's own seed counts. */
+/* Averages the error over the replicates of a study, at most five, scaled to the point's own n by
+ * the case's order. The first is the timed run; the others run once. Five suffice for errors
+ * compared over a factor of ten. A random start has only the point's own seed. */
 static enum status average(struct job *job, int order, struct error *error)
 {
     const size_t n = (size_t)settings_real(&job->run.settings, SETTING_n);

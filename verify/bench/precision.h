@@ -5,7 +5,7 @@
  * corrected method of the seed program, by the solver and as plain C. The error is the L1 of
  * density, relative to the signal: how far the exact density is from its own mean.
  * In d dimensions errors fall as n^(-p/d) and work grows as n^((d+1)/d): L1^((d+1)/p) x CPU time;
- * the error is that of judged.h, and compared is SPH as textbooks have it. */
+ * the error is that of judged.h, and the comparison is with textbook SPH. */
 #pragma once
 
 #include <jansson.h>

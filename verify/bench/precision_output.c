@@ -39,7 +39,7 @@ static const struct precision_scheme **sorted_schemes(const struct precision *pr
     return list;
 }
 
-/* The best ones, and the references. */
+/* The table has the best schemes and the references. */
 enum { ROWS_MAX = 40 };
 
 static bool shown(const struct precision_scheme *scheme, size_t rank)
@@ -202,7 +202,7 @@ static void add_points(struct picture *picture, const struct precision *precisio
     }
 }
 
-/* The targets that anything comes near to. */
+/* Marks the targets that are not far below the smallest error. */
 static void add_marks(struct picture *picture, const struct precision *precision, size_t points)
 {
     for (size_t t = 0; t < PRECISION_TARGETS; t++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Waves of lattices in 2D and 3D by differences of the solver's forces (lattice_waves.h): long ones
- * run as fast as sound, wherever they run. */
+ * Waves of lattices in 2D and 3D by differences of the solver's forces (lattice_waves.h): long
+ * waves travel with the speed of sound in every direction. */
 #include <math.h>
 #include <stdio.h>
 

@@ -46,7 +46,7 @@ struct property_worst {
 
 void property_keep(struct property_worst *worst, double value, double bound, double floor,
                    const char *where, ...) __attribute__((format(printf, 5, 6)));
-/* Nothing kept: NaN, a failure. */
+/* Passes the worst figure on; without one NaN, a failure. */
 void property_take_worst(struct property_sink *sink, const struct property_worst *worst);
 
 /* Smoothing lengths at which all properties are measured. */

@@ -88,8 +88,8 @@ static long double limiter(const struct oracle *oracle, const struct oracle_part
     return q < near ? phi * expl(-((q - near) / 0.2L) * ((q - near) / 0.2L)) : phi;
 }
 
-/* v_ij . e_ij as the viscosity sees it: with velocities at the midpoint where it reconstructs; 0
- * where there is no viscosity. */
+/* v_ij . e_ij in the viscosity, from velocities reconstructed at the midpoint if the viscosity does
+ * so; 0 for pairs without viscosity. */
 static long double closing_speed(const struct oracle *oracle, const struct oracle_particle *a,
                                  const struct oracle_particle *b, const oracle_vector x,
                                  const oracle_vector v_ij, const struct gradients *G)
@@ -100,7 +100,7 @@ static long double closing_speed(const struct oracle *oracle, const struct oracl
     const long double w = -oracle_dot(v_ij, x) / r;
     if (w >= 0) return 0;
     if (viscosity != VISCOSITY_RECONSTRUCTED && viscosity != VISCOSITY_PROJECTED) return w;
-    if (oracle_dot(v_ij, G->mean) <= 0) return 0; /* it would cool */
+    if (oracle_dot(v_ij, G->mean) <= 0) return 0; /* viscosity would cool the pair */
     oracle_vector step_a, step_b, at_midpoint;
     oracle_product(&a->L, x, step_a);
     oracle_product(&b->L, x, step_b);
@@ -109,7 +109,7 @@ static long double closing_speed(const struct oracle *oracle, const struct oracl
     return fminl(0, -oracle_dot(at_midpoint, x) / r);
 }
 
-/* h as the viscosity's width sees it: in 1D as the last sum has found it. */
+/* The h of the viscosity: in 1D that of the last density sum. */
 static long double viscous_width(const struct oracle *oracle, const struct oracle_particle *a)
 {
     return oracle->dim == 1 ? a->h : a->width;
@@ -137,8 +137,8 @@ static long double shock_pressure(const struct oracle *oracle, const struct orac
     return f * (-alpha * c * mu + beta * mu * mu) / rho;
 }
 
-/* PI_n = -nu cbar e . (1 - P_ij) u_ij/rhobar, u_ij = v_ij - (L_i + L_j) r_ij/2, r_ij = -x; less
- * for pairs as fast as sound. */
+/* PI_n = -nu (1 - M^2) cbar e . (1 - P_ij) u_ij/rhobar, u_ij = v_ij - (L_i + L_j) r_ij/2, r_ij =
+ * -x; 0 where the Mach number M of the pair is 1 or more. */
 static long double noise_pressure(const struct oracle *oracle, const struct oracle_particle *a,
                                   const struct oracle_particle *b, const oracle_vector x,
                                   const oracle_vector v_ij)
@@ -158,7 +158,7 @@ static long double noise_pressure(const struct oracle *oracle, const struct orac
            (a->rho + b->rho);
 }
 
-/* f_ij of the grad-h factors: of particle a in its pair with b. */
+/* The grad-h factor of particle a in its pair with b. */
 static long double grad_h_factor(const struct oracle *oracle, const struct oracle_particle *a,
                                  const struct oracle_particle *b)
 {
@@ -199,7 +199,7 @@ static long double conducted(const struct oracle *oracle, const struct oracle_pa
     return a->m * b->m * strength * sqrtl(jump / rho) * (a->U / a->m - b->U / b->m) / rho * along;
 }
 
-/* The potentials' difference, by x . G/d, and what is left of a constant. */
+/* Closes the gradient by the difference of the potentials, and adds to the gradient of 1. */
 static void close_gradient(const struct oracle *oracle, struct oracle_particle *a,
                            const struct oracle_particle *b, const oracle_vector x,
                            struct gradients *G)
@@ -211,8 +211,8 @@ static void close_gradient(const struct oracle *oracle, struct oracle_particle *
     }
 }
 
-/* What a gains of the volume that shifting sweeps over, with the density and the specific energy of
- * whom it comes from; momentum with the mean velocity, kinetic energy so that none becomes heat. */
+/* Exchange by the volume that shifting sweeps over: density and specific energy are the donor's,
+ * momentum has the mean velocity, and kinetic energy is such that none becomes heat. */
 static void add_exchange(struct oracle_particle *a, const struct oracle_particle *b,
                          const struct gradients *G)
 {

@@ -60,7 +60,7 @@ static inline long double oracle_distance(const struct oracle *oracle, size_t i,
 long double oracle_W(const struct oracle *oracle, long double r, long double h);
 long double oracle_dW_dr(const struct oracle *oracle, long double r, long double h);
 
-/* What the density sum adds up. */
+/* The quantity in the density sum: m, 1 or U. */
 long double oracle_Z(const struct oracle *oracle, const struct oracle_particle *a);
 
 /* The weight of a gradient by matrix, in the matrix and in the pair vector. */
@@ -69,11 +69,11 @@ long double oracle_weight(const struct oracle *oracle, long double r, long doubl
 /* Moments, velocity gradients and what follows from them, for all particles. */
 void oracle_find_matrices(struct oracle *oracle);
 
-/* The switch of viscosity=cullen_dehnen, from the rates of all particles; and what it does to alpha
- * in a step. */
+/* The switch of viscosity=cullen_dehnen, from the rates of all particles; and the change of alpha
+ * by it in a step. */
 void oracle_find_switch(struct oracle *oracle);
 void oracle_apply_switch(struct oracle *oracle, long double dt);
 
-/* Adds what pair (a, b) does to a; x = r_b - r_a. */
+/* Adds the contributions of pair (a, b) to the rates of a; x = r_b - r_a. */
 void oracle_add_pair(const struct oracle *oracle, struct oracle_particle *a,
                      const struct oracle_particle *b, const oracle_vector x);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Linear stability of a scheme on a lattice in 2D or 3D, by differences of the solver's own
- * evaluation: a wave of displacements X e cos(k . x), with the internal energy that the scheme's
- * own rates give it on the way and h that follows the density at once, is answered by forces
- * -m (D e) X cos(k . x), and the eigenvalues of D(k) are omega^2 of the d waves of that k. Exact
- * for any Bravais lattice that fits the periodic box, for every kernel, gradient and formulation
- * without viscosity. */
+ * evaluation: a wave of displacements X e cos(k . x), with the internal energy changed as by the
+ * scheme's own rates and with h that satisfies the density sum, causes forces -m (D e) X cos(k .
+ * x), and the eigenvalues of D(k) are omega^2 of the d waves of that k. Exact for any Bravais
+ * lattice that fits the periodic box, for every kernel, gradient and formulation without
+ * viscosity. */
 #pragma once
 
 #include "initial.h"
@@ -31,7 +31,7 @@ struct lattice_wave {
 enum status lattice_waves_at(const struct lattice_waves *lattice, const int whole[3],
                              struct lattice_wave *wave, struct error *error);
 
-/* The worst of all waves in the box (for square and cubic lattices of one of each symmetric set):
- * growth and frequency each over all of them; *where: of the fastest growth. */
+/* The largest growth and the largest frequency of all waves in the box (for square and cubic
+ * lattices one wave of each symmetric set); *where: the wave with the largest growth. */
 enum status lattice_waves_worst(const struct lattice_waves *lattice, struct lattice_wave *worst,
                                 int where[3], struct error *error);

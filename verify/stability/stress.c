@@ -285,9 +285,9 @@ static const char *outcome_of(const json_t *entry)
     return json_string_value(json_object_get(entry, "outcome"));
 }
 
-/* Is this an outcome that fails the map? That is a prediction that fails, an undetected fault, a
- * breakdown where every scheme must survive, or round-off that the default scheme amplifies where
- * it is not known to. */
+/* True if the outcome fails the map: a theory that runs do not confirm, an undetected NaN, a crash,
+ * refused settings, a breakdown where every scheme must survive, or round-off amplified by the
+ * default scheme unless that is known. */
 static bool is_wrong(const struct stress_cell *cell, const json_t *entry)
 {
     const char *outcome = outcome_of(entry),
@@ -315,7 +315,7 @@ static void add_failure(json_t *document, const json_t *entry, const char *detai
                   "command", json_object_get(entry, "command")));
 }
 
-/* Where the default scheme breaks down and the seed program's method does not. */
+/* Adds "comparison" and a failure for each breakdown that the seed program's method survives. */
 static void compare(const struct stress *stress, const json_t *cells, json_t *document)
 {
     json_t *lost = json_array();

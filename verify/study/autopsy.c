@@ -130,7 +130,7 @@ static size_t largest(const struct autopsy_level *level, const bool suspected[AU
 }
 
 /* If the order is lost, suspects only the parts with an order below AUTOPSY_ORDER, if there are
- * any. A part that vanishes at a level has no order and is suspected as well. */
+ * any; else all parts. A part that vanishes at a level has no order. */
 static void suspect(const struct autopsy *autopsy, bool suspected[AUTOPSY_PARTS])
 {
     bool any = false;

@@ -90,9 +90,9 @@ struct autopsy {
     struct autopsy_level levels[CASE_LADDER_MAX];
     /* set by autopsy_judge: */
     struct order_fit order,
-        orders[AUTOPSY_PARTS]; /* of the error; of the sizes (n = 0: zero at a level) */
+        orders[AUTOPSY_PARTS]; /* of the error; of the sizes (NaN: zero at a level) */
     struct order_fit regular, own, jittered;
-    /* of share x error; n = 0: zero at a level */
+    /* of share x error; NaN: zero at a level */
     struct order_fit losses[AUTOPSY_PARTS], share_orders[AUTOPSY_SHARES];
     bool theirs;             /* of snapshots: viscosity and time step are unknown */
     bool lost;               /* the order is below AUTOPSY_ORDER */

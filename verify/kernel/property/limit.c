@@ -96,7 +96,7 @@ static double oscillating(const struct pieces *pieces, int power, double kappa,
 }
 
 static _Thread_local double
-    wave_number; /* of slope_times_bessel, which has no room for a context */
+    wave_number; /* for slope_times_bessel, as a measure_function has no context */
 
 static double slope_times_bessel(const struct kernel *kernel, double r, double h, int dim)
 {
