@@ -31,7 +31,7 @@ static inline void printed_end(const struct printed *printed, char *text, size_t
     fclose(printed->file);
 }
 
-/* In expected text "[-worse]" is printed in the colour of bad news; + good, . faint, * bold. */
+/* Expands expected text: "[-worse]" is worse in the colour of bad news; + good, . faint, * bold. */
 static inline void printed_dress(const char *of, bool color, char *text)
 {
     const struct table_style style = table_style(color);

@@ -17,7 +17,7 @@ import tempfile
 LAYERS = ("src", "reference", "reports", "verify", "cases")
 TEXTS = (".c", ".h", ".def", ".py", ".sh", ".md", ".txt", ".ini", ".build", ".options")
 SKIP = {os.path.join("reports", "out"), os.path.join("verify", "fuzz", "corpus")}
-# made by the build or a run, part of the system, or an example's file that the user has
+# files that the build or a run makes, that the system has, or that examples assume
 FOREIGN = {"config.h", "version.h", "family_names.h", "cmocka.h", "summary.md", "my_kernel.c", "file.c", "cloud.csv", "mine.h",
            "particles.csv", "theirs.csv", "mine.csv", "out.csv", "kh.csv", "code.sh"}
 

@@ -218,7 +218,7 @@ TEST(test_every_allocation_fails_once)
         work *doing;
         int least_dim;
         size_t n;
-        long least, most; /* calls; `least` where there is capacity already */
+        long least, most; /* bounds of calls; few if capacity is left */
     } all[] = {{find, 1, 90, 8, 45},
                {differentiate, 1, 60, 105, 160},
                {differentiate_clump, 1, 200, 25, 45},

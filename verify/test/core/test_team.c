@@ -146,7 +146,7 @@ TEST(lengths_of_stretches_between_trials)
     }
 }
 
-/* A trial that lasts exactly as long as it should is over. */
+/* A trial ends when it has lasted exactly as long as planned. */
 TEST(length_of_a_trial)
 {
     struct team team;

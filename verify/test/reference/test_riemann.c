@@ -315,7 +315,7 @@ TEST(test_bad_input)
                                back = {3.5e-307, 1.7e308, 1e308};
     assert_string_equal(riemann_solve(1.4, &far, &none, &s), beyond);
     assert_string_equal(riemann_solve(1.4, &none, &back, &s), beyond);
-    /* the left state's fault comes first */
+    /* the message is about the left state if both are wrong */
     assert_string_equal(riemann_solve(1.4, &rows[0].gas, &rows[4].gas, &s), negative);
     assert_string_equal(riemann_solve(1.4, &rows[4].gas, &rows[0].gas, &s), finite);
     for (size_t i = 0; i < sizeof gammas / sizeof *gammas; i++)

@@ -51,7 +51,7 @@ TEST(estimate_of_memory_and_steps)
         struct estimate found = estimate_size(&setup);
         near_relative(found.memory, memory, 1e-15);
         assert_true(found.steps == 0 && found.cpu_s == 0);
-        /* signals: the sound speed, and that after motion relative to the mean has become heat */
+        /* signal speed: twice the sound speed after motion relative to the mean has become heat */
         double fastest = 0;
         for (int i = 0; i < N; i++) {
             double square = 0;

@@ -327,7 +327,7 @@ static const char square_keys[] = "kind=square|lo=-1 2 0|hi=3 4 8|gamma=1.6|cont
 /* Equal spacing: a lattice of 4 by 4 cells or multiples, with no cell on both sides of an edge. */
 TEST(squares_share_a_lattice)
 {
-    /* few particles, and so many that 1/16 or 1/64 more or less would be a row more or less */
+    /* few particles, and numbers above and below one at which the lattice gains a row */
     static const int wanted[][3] = {{0}, {0}, {4, 968, 950}, {4, 1320, 1300}};
     for (int dim = 2; dim <= 3; dim++)
         for (int k = 0; k < 3; k++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A key that is accepted has an effect: for schemes and starts drawn at random, another value of
- * one of the keys gives another result, in gas with shocks and disorder, where everything acts.
+ * one of the keys gives another result, in gas with shocks and disorder, where every term acts.
  * Only `skip` may change nothing: results must not depend on it. */
 #include "test.h"
 

@@ -301,7 +301,7 @@ static struct walk walk_case(const char *name, const char *keys, const struct pr
     walk.settings = file.settings;
     if (file.dimension > 1) walk.sums = 0.02; /* few points, kinks, masses of whole particles */
     if (strcmp(name, "noh_1d") == 0) walk.sums = 0.01; /* with odd n one particle is at rest */
-    if (strcmp(name, "leblanc") == 0) walk.sums = 0.5; /* its light gas is half a particle */
+    if (strcmp(name, "leblanc") == 0) walk.sums = 0.5; /* the light gas weighs half a particle */
     walk.problem = instead ? instead : problem_of(&walk.settings);
     snprintf(text, sizeof text, "%s", keys);
     for (char *key = strtok_r(text, "|", &rest); key; key = strtok_r(NULL, "|", &rest)) {

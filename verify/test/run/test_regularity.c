@@ -93,7 +93,7 @@ TEST(agrees_with_its_definition)
                 volume[i] = whole / N * (1 + 0.3 * sin(7 * i));
                 h[i] = (dim == 1 ? 4 : dim == 2 ? 2.2 : 1.4) * pow(volume[i], 1. / dim);
             }
-            /* a pair, two coincident points, and in 1D a wide one */
+            /* a pair, two coincident points, and in 1D a point with a wide h */
             for (int d = 0; d < dim; d++) {
                 x[d][3] = x[d][2] + 0.001 * (d + 1);
                 x[d][41] = x[d][40];

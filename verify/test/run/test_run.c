@@ -137,7 +137,7 @@ TEST(from_a_file)
     struct run_result result;
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/p.csv", folder);
-    /* besides other warnings, or alone; a column of one letter */
+    /* with another warning, and alone; a column with a name of one letter */
     static const char *const more[] = {"colour,age", "q,q2", "q"}, *const ignored[] = {"colour age",
                                                                                        "q q2", "q"};
     static const char *const keys[] = {"", "energy=total viscosity=none", ""};

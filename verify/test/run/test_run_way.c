@@ -130,7 +130,7 @@ TEST(samples_of_a_growing_amplitude)
     assert_true(times[0] > 0 && times[1] < 1.84 + 1e-2 && times[0] < times[1]);
     for (int parts = 4; parts <= 16; parts += 6) {
         char words[64];
-        /* between two samples */
+        /* the run ends between two samples */
         snprintf(words, sizeof words, "n=12^2 t_end=%.17g",
                  times[0] + (times[1] - times[0]) * (parts - 0.5) / 16);
         run = keyed_run("kelvin_helmholtz_mode", words);

@@ -54,7 +54,7 @@ TEST(test_bound_of_skipped_updates)
                  {0, 0.02, 0, 0, true},
                  {0, 0.1, 0, 0, false},
                  {0, NAN, 0, 0, true},
-                 /* lax with 200 particles; with fewer layers, with 1000 particles */
+                 /* case lax with 200 particles; with fewer layers, with 1000 particles */
                  {0.265, 0.456, 0.204, 0.005, true},
                  {0.265, 0.456, 0.07, 0.005, false},
                  {0.265, 0.456, 0.204, 0.001, false},

@@ -31,7 +31,7 @@ TEST(names)
 
 /* ---- calls that fail ---- */
 
-static long calls, refused; /* calls below, number of the failing one; 0: none */
+static long calls, refused; /* number of calls, and of the one that fails; 0: none */
 
 #define WRAP(type, name, parameters, arguments, failure)                                           \
     type __real_##name parameters;                                                                 \
@@ -98,7 +98,7 @@ static void take_their_place(void)
     h5.Pclose = Pclose_counts;
 }
 
-/* Also files, groups, arrays and attributes. */
+/* The number of open objects: also files, groups, arrays and attributes. */
 static long open_things(void)
 {
     return (long)H5Fget_obj_count((hid_t)H5F_OBJ_ALL, H5F_OBJ_ALL) + unclosed;

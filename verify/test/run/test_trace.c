@@ -159,7 +159,7 @@ TEST(drifts)
     }
     start.momentum[0] = 0, now.momentum[0] = 1e-200;
     near_relative(trace_drift(&start, &now, &end).momentum, 1e-200 / 102, 1e-15);
-    /* the other scale if the first one is negligible */
+    /* sound_scale and turning_scale replace negligible scales of momentum */
     end.momentum_scale = nextafter(1e-12 * end.sound_scale, 1);
     near_relative(trace_drift(&start, &now, &end).momentum, 1e-200 / 7e-12, 1e-12);
     end.momentum_scale = 1e-12 * end.sound_scale;
