@@ -119,8 +119,8 @@ class Tree:
             raise Failed("a report would compute nothing that is called '%s'" % pattern)
 
 
-# A row is a generator: it adds a member; build; it tests that the member is seen, and adds it to the oracle;
-# build; it tests that, and plants a fault; build; it tests that the fault is noticed.
+# A row is a generator; the tree is built at each `yield`. The row adds a member, tests that checks measure it and adds
+# it to the oracle, tests that and plants a fault, and tests that the fault is noticed.
 ROWS = {}
 
 
@@ -252,7 +252,7 @@ ALWAYS_INLINE double mixed_weight(double w, double slope)
 #endif
 GRADIENT(mixed, .member = {"mixed", "as ia with the mean of W and -W'/q", ""}, .least_dim = 1, .weight = WEIGHT_BOTH)
 """)
-    # those with a form in 1D come first
+    # gradients that exist in 1D come first
     tree.replace("src/core/gradient/gradients.def", '#include "gradient/corrected.h"',
                  '#include "gradient/mixed.h"\n#include "gradient/corrected.h"')
     yield

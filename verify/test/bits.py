@@ -42,7 +42,7 @@ THREADS = [1, 2, 7]
 
 
 def instruction_sets():
-    """Name and arguments of the compiler; without arguments loops are chosen at run time."""
+    """(name, compiler arguments) of each instruction set; None: the program chooses its loops at run time."""
     try:
         with open("/proc/cpuinfo", encoding="ascii") as file:
             flags = next((line for line in file if line.startswith("flags")), "").split()
@@ -57,7 +57,7 @@ def instruction_sets():
 
 
 def build(source, folder, compiler, arguments):
-    """The program's path."""
+    """Builds the program and returns its path."""
     shutil.rmtree(folder, ignore_errors=True)
     options = [] if arguments is None else ["-Dclones=false", "-Dc_args=" + arguments]
     for command in (["meson", "setup", folder, source, "-Dslow=false", *options],

@@ -68,7 +68,7 @@ def seen(stem):
 
 
 def on_the_way(stem):
-    """Number -> bytes."""
+    """Snapshots of a run: end of the file name -> contents."""
     found = {}
     for path in glob.glob(stem + "_????.csv"):
         with open(path, "rb") as file:

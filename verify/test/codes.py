@@ -41,7 +41,7 @@ def test_gresho():
 
 
 def ladder(case, code_file, status):
-    """The status of the only gate: pass or fail."""
+    """Tests that the only gate has this status, pass or fail."""
     found = json_of("converge", case, "--code", code_file, "--replicates", "1", status=status != "pass")
     gates = [order["status"] for order in found["orders"] if order["gate"]]
     assert gates == [status], (case, code_file, gates)

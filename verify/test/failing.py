@@ -18,7 +18,7 @@ def sphproof(*words, what="kernels"):
 
 
 def last_words(log, name="testlog.json"):
-    """Prints the failure for a build folder with this test log and nothing else."""
+    """What first_failure prints for a build folder with this test log and nothing else."""
     shutil.rmtree("meson-logs", ignore_errors=True)
     os.makedirs("meson-logs")
     with open(os.path.join("meson-logs", name), "w", encoding="utf-8") as file:

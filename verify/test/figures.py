@@ -55,7 +55,7 @@ def on_the_tree():
         with open(os.path.join(SOURCE, name), encoding="utf-8") as file:
             texts[name] = file.read()
     precision = texts["reports/precision/README.md"]
-    texts["reports/precision/README.md"] = precision.replace("2.8 GHz", "")  # the machine
+    texts["reports/precision/README.md"] = precision.replace("2.8 GHz", "")  # a clock rate is no result
     for name, text in texts.items():
         troubles += free_figures(name, text)
     # texts with a fault

@@ -13,7 +13,7 @@ SMALL = {"sod_2d": ["n=1400", "t_end=0.1"], "sod_3d": ["n=9216", "t_end=0.02"],
          "sedov_2d": ["n=32^2"], "sedov_3d": ["n=14^3", "t_end=0.03"],
          "noh_2d": ["n=30^2", "t_end=0.3"], "noh_3d": ["n=10^3", "t_end=0.2"],
          "rotation": ["n=24^2"], "shear": ["n=24^2", "t_end=0.5", "direction=1 1"]}
-# limits of functionals, and tolerances at this size
+# exact values of functionals, and tolerances at this size
 NEAR = {"sedov_2d": {"shock_radius": (0.4, 0.02)}, "rotation": {"disc_radius": (1.5811388, 0.01), "angular_speed": (0.4, 0.01)},
         "shear": {"shear_amplitude": (1, 0.05)}, "noh_2d": {"shock_radius": (0.1, 0.05)}}
 
@@ -23,7 +23,7 @@ def judge(name):
     kept = document["conservation"]
     scalars = {entry["name"]: entry["value"] for entry in document["functionals"]}
     expect("%s: status" % name, document["status"] == "ok", document["status"])
-    # gravity does work along paths that time steps cut short
+    # time steps of finite length give the work of gravity only approximately
     energy = 1e-12 if document["settings"]["gravity"] in (0, [0]) else 1e-6
     expect("%s: does not conserve" % name,
            kept["momentum"] <= 1e-13 and kept["energy"] <= energy and kept["mass"] <= 1e-13, kept)

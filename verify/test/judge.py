@@ -120,7 +120,7 @@ def phantom():
     assert got["n"] == 1512 and got["dim"] == 3 and got["time"] == 0.05
     assert got["kernel"]["name"] == "quintic_spline" and got["kernel"]["residual"] < 1e-5, got["kernel"]
     near("Phantom's H/h", got["kernel"]["ratio"], 3, 1e-4)
-    # every particle is near a jump, so that only means are compared, and another gamma's differ much
+    # every particle is near a jump, so that only means are compared; those for another gamma differ much
     assert not got["foreign"], got["verdict"]
     other = judge(PHANTOM, "--case", "sod", "--gamma", "1.6666666666666667")
     assert other["foreign"] and not any("inf" in note["evidence"] for note in other["assumptions"]), other["assumptions"]
@@ -174,7 +174,7 @@ def files_of_ours(folder, hdf5):
     with open(document, encoding="ascii") as text:
         want = json.load(text)
     same_as_run(judge(path), want, "a case file of one's own")
-    # it contains the case's path, which may have any encoding
+    # the snapshot contains the case's path, which may have any encoding
     with open(path, encoding=sys.getfilesystemencoding(), errors="surrogateescape") as text:
         head, *rest = text.readlines()
     assert head == "x,vx,m,rho,u,P,h\n" and rest[0] == "# case = %s\n" % case, (head, rest[0])
@@ -193,7 +193,7 @@ def files_of_ours(folder, hdf5):
                        ("# box = 1:-1\n", "box = -2")):
         own = [one for one in rest[:6] if not one.startswith(line[:6])]  # a contradiction is refused as well
         refused(write(folder, "bad.csv", head + "".join(own) + line + "".join(rest[6:])), says=says)
-    # rows of another type among the gas are counted, and missed; gas that lies elsewhere is the same gas
+    # judge counts rows of another type among the gas, and finds their mass missing; shifted gas has the same errors
     rows = [one for one in rest if one[0] not in "#\n"]
     whole = judge(path, "--case", case)
     typed = write(folder, "typed.csv", head.strip() + ",itype\n" + "".join(one for one in rest if one[0] == "#")

@@ -55,7 +55,7 @@ def kill(command, cache, count, longest, look=lambda: None, fine=(0,), **options
         child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                  stderr=subprocess.PIPE, start_new_session=True, **options)
         alive = wait(child, cache, 0 if at_random else len(before) + 1, generator.uniform(0, longest))
-        if alive:  # sometimes only the parent: what its workers finish counts, too
+        if alive:  # sometimes only the parent: results that its workers complete count, too
             (os.kill if generator.random() < 0.3 else os.killpg)(child.pid, signal.SIGKILL)
         said = child.stderr.read().decode(errors="replace")  # ends when the last of the workers ends
         child.stderr.close()

@@ -48,7 +48,7 @@ def sources(source):
 
 
 def layer_of(file, layers):
-    """The longest layer's folder that contains a file; files below verify outside of any layer may include all."""
+    """The longest folder of a layer that contains the file; files below verify that are in no layer may include all."""
     found = [layer for layer in layers if file.startswith(layer + "/")]
     return max(found, key=len) if found else "/".join(file.split("/")[:2]) if file.startswith("verify/") else None
 

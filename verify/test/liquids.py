@@ -20,13 +20,13 @@ def judged(path, case, *words):
 
 
 def couette(y, t, nu):
-    """By images."""
+    """Couette flow, by the method of images."""
     width = 2 * math.sqrt(nu * t)
     return sum(math.erfc((2 * n + 1 - y) / width) - math.erfc((2 * n + 1 + y) / width) for n in range(60))
 
 
 def poiseuille(y, t, nu, force, terms=4000):
-    """From the eigenfunctions, also for the steady flow, whose parabola is not used."""
+    """Poiseuille flow from its eigenfunctions, without the known parabola of the steady flow."""
     return sum(4 * force / (nu * (n * math.pi) ** 3) * math.sin(n * math.pi * y) * (1 - math.exp(-nu * (n * math.pi) ** 2 * t))
                for n in range(1, 2 * terms, 2))
 

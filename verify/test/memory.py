@@ -33,7 +33,7 @@ def said_and_taken(words):
     said = json.loads(sphproof("run", *words, "--explain", "--json", "-").stdout)
     estimate = said["estimate"]
     assert "status" not in said and estimate["cpu_s"] > 0
-    # the addresses of memory differ from run to run, and so does the number of pages touched: the least of three
+    # addresses differ from run to run, and with them the number of used pages: the least of three runs counts
     costs = [json.loads(sphproof("run", *words, "--json", "-").stdout)["cost"] for _ in range(3)]
     cost = min(costs, key=lambda one: one["peak_rss_bytes"])
     expect("steps of %s" % words, 0.3 * cost["steps"] - 1 <= estimate["steps"] <= 3 * cost["steps"] + 1, (estimate, cost))

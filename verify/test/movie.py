@@ -30,7 +30,7 @@ def tools(name, script):
 
 
 def sizes(path):
-    """The pictures handed over, one after the other."""
+    """Sizes of the pictures that the encoder got, in order."""
     with open(path, "rb") as file:
         data = file.read()
     assert data.startswith(b"\x89PNG") and data.endswith(b"IEND\xaeB`\x82")

@@ -29,7 +29,7 @@ def cells():
 
 
 def plainly(code, plots):
-    """The cells that ran: all but those that plot if nothing can be plotted."""
+    """Runs all cells, except those that plot if nothing can be plotted, and returns their number."""
     names, ran = {}, 0
     for cell in code:
         if plots or "plot" not in cell["metadata"].get("tags", []):

@@ -306,7 +306,7 @@ def test_count_from_0():
     for case, *words in ("sod", "n=60"), ("yee", "n=14^2", "t_end=0.5"), ("rayleigh_taylor_mode", "n=200", "t_end=0.2"):
         bad_file("count", case)
         ours, theirs = document("run", case, *words), document("run", case, *words, "--code", "bad.ini")
-        for key in ("errors",) if case == "sod" else ("errors", "functionals"):  # its shock is elsewhere
+        for key in ("errors",) if case == "sod" else ("errors", "functionals"):  # positions of sod's shock differ
             same(ours[key], theirs[key], case + "/" + key, 1e-9)
         for key in "mass", "energy", "angular_momentum":  # of the start as of the end
             assert abs((ours["conservation"][key] or 0) - (theirs["conservation"][key] or 0)) < 1e-9, (case, key, ours["conservation"], theirs["conservation"])
@@ -314,8 +314,8 @@ def test_count_from_0():
 
 
 def test_files_before():
-    """A file that was there before the run is no result unless the run has changed it, be it by a nanosecond, and no
-    start of the run."""
+    """A file that was there before the run is no result unless the run has changed it, be it by a nanosecond, nor
+    is it a snapshot of the start."""
     answer("ic", "sod", "n=60", "jitter=0.02", "--format", "csv", "--out", "here.csv")
     answer("run", "sod", "n=60", "--quiet", "--snapshot", "there.csv")
     for mode, status in ("same", 3), ("touches", 0):
@@ -325,7 +325,7 @@ def test_files_before():
 
 
 def test_cost():
-    """The time that a code takes is that of the user and of the system; what it sleeps counts on the clock alone."""
+    """A code's CPU time is that of the user and of the system; while it sleeps only the wall-clock time grows."""
     bad_file("works", "sod")
     done = document("run", "sod", "n=60", "--code", "bad.ini")
     code, cost = done["code"], done["cost"]
@@ -558,7 +558,7 @@ def test_calibrate():
         if gate["status"] != "sees":
             continue
         assert set(gate["sees"]) <= {"thick", "viscous", "thicker"} and gate["smallest"] in gate["sees"], gate
-        if gate["change"] < 9 * gate["floor"]:  # seen by a bound that a larger fault has set
+        if gate["change"] < 9 * gate["floor"]:  # detected by a bound that follows from a larger fault
             continue
         width = gate["bound"] - (gate["value"] if gate["name"] not in ("mass", "momentum", "angular_momentum", "energy") else 0)
         assert 2.99 * gate["floor"] < width < 0.34 * max(gate["change"], 9 * gate["floor"]), gate
@@ -660,8 +660,8 @@ def test_report():
 
 
 def test_corner():
-    """A code that counts positions from 0 is drawn at the case's positions; how still its gas is, is reported and not
-    judged."""
+    """A code that counts positions from 0 is drawn at the case's positions; motion of its gas at rest is reported and
+    not judged."""
     write("corner.ini", (FILE % ("corner sod", 60, "none")).split("[case gresho]")[0] + "n = 60 80 100 120\n")
     words = ("report", "--code", "corner.ini", "--out", "corner", "--jobs", "2")
     said = answer(*words, "--json", "-", status=4, environment={**os.environ, "PATH": "/nowhere"})

@@ -130,7 +130,7 @@ def by_night():
     said("run", "sod", "n=200", "kernel=cubic_spline", "eta=2.5", "--snapshot", snapshot)
     judged = same_document(1e-7, "judge", snapshot, "--case", "sod", "--time", "0.2", option=True)
     check(judged["kernel"]["name"].startswith(COPY + "@"), "judge names the kernel", judged["kernel"])
-    # a document names the content, and its name can be typed
+    # a document names the kernel with its checksum, and the command line accepts this name
     code, out, _ = said("run", "sod", "n=50", "kernel=" + COPY, "--json", "-")
     name = json.loads(out)["settings"]["kernel"]
     check(name.startswith(COPY + "@") and said("run", "sod", "n=50", "kernel=" + name)[0] == 0, "name", name)

@@ -34,7 +34,7 @@ def unloads():
 
 
 def read_table():
-    """The table's lines, and the number before its last part: those take a whole certificate each."""
+    """The table's lines, and the number of those before its last part, which take a whole certificate each."""
     with open(TABLE) as f:
         parts = f.read().split("# -- never a value --\n")
     left_out = ("#",) if unloads() else ("#", "crash_at_unload ")

@@ -43,8 +43,8 @@ def keys(program, readme):
     print("the table of keys is the program's")
 
 
-# The pages whose stories are tried, in this order, and so are the commands within their sentences, except those of
-# cases/README.md, which have a measurement of their own.
+# The pages whose blocks of commands are run, in this order. Commands within sentences are run as well, except those of
+# cases/README.md, which another test measures.
 PAGES = ("README.md", "cases/README.md", "src/README.md", "verify/README.md", "reports/README.md")
 
 
@@ -52,14 +52,14 @@ def pages(folder, names=PAGES):
     return "\n".join(open(os.path.join(folder, name), encoding="utf-8").read() for name in names)
 
 
-# Replacements for words in capitals in commands; None: tried elsewhere.
+# Replacements for words in capitals in commands; None: another test runs the command.
 PLACES = {
     "sphproof COMMAND --help": "sphproof run --help",
     "sphproof converge sod kernel=cubic_spline eta=4.8":
         "sphproof converge sod kernel=cubic_spline eta=4.8  # exit 1",  # its gate is not for this scheme
     "sphproof run CASE": "sphproof run sod",
     "sphproof verify GROUP": "sphproof verify kernels",
-    "sphproof verify --mutants": "sphproof verify norms --mutants",  # of all groups: the quick suite
+    "sphproof verify --mutants": "sphproof verify norms --mutants",  # the quick suite runs all groups
     "sphproof run CASE n=64^2": "sphproof run gresho n=24^2 t_end=0.1",
     "sphproof diff OLD.json NEW.json": "sphproof run sod --json try/a.json; sphproof diff try/a.json try/a.json",
     "sphproof kernel ./mine.so --dim 3":

@@ -63,7 +63,7 @@ def entries():
 
 
 def kill_one():
-    """A report killed after it has kept some results; these, with their inodes."""
+    """Kills a report after it has stored some results, and returns these with their inodes."""
     running = subprocess.Popen([program, "report", "--out", folder, "--jobs", "2", "--quiet"], start_new_session=True)
     while running.poll() is None and len(entries()) < 5:
         time.sleep(0.05)

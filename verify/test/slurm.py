@@ -123,7 +123,7 @@ def hold(nodes):
 
 
 def end_held(nodes, end):
-    """Holds the next task and ends it with end(its name), which is said again if Slurm, on a busy host, loses it."""
+    """Holds the next task and ends it with end(its name), which is repeated if Slurm, on a busy host, loses it."""
     task, stopped = hold(nodes)
     for patience in (30, 30, 60):
         end(task)

@@ -48,7 +48,7 @@ def source_of(member, files):
 
 
 def prefixes(path):
-    """First words that its symbols may have: of the file, of its folder; one of cases is a case."""
+    """First words that the symbols of a file may have: those of the file and its folder, also in the singular."""
     words = {os.path.basename(path).split(".")[0].split("_")[0], os.path.basename(os.path.dirname(path))}
     words |= {w[:-1] for w in words if w.endswith("s")} | {w[:-3] + "y" for w in words if w.endswith("ies")}
     return words - {""}

@@ -42,7 +42,7 @@ def make(points, binary, field, grid, kind):
         text += b" %d %d\n" % (n, 2 * n) + numbers([(1, i) for i in range(n)], "i")
     if grid:
         text += b"CELL_TYPES %d\n" % n + numbers([(1,)] * n, "i")
-    if grid:  # as ParaView writes it: data of cells first, and what it knows of an array behind it
+    if grid:  # as ParaView writes it: cell data first, and metadata after each array
         text += b"CELL_DATA %d\nSCALARS rho %s 1\nLOOKUP_TABLE default\n" % (n, kind) + numbers([(7.0,)] * n, kind.decode())
         text += b"VECTORS vel %s\n" % kind + numbers([(7.0, 8.0, 9.0)] * n, kind.decode())
         text += b"FIELD FieldData 2\n" + b"".join(b"%s 1 %d int\n" % (name, n) + numbers([(7,)] * n, "i") for name in (b"u", b"m"))

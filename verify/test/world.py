@@ -70,7 +70,7 @@ def run_tests(world, selection):
 
 
 def sign_missing(world, condition):
-    """Why a process started in there does not see that the condition holds; None: it does."""
+    """Why a process started in this world does not detect the condition; None: it does."""
     command = [*world.prefix, *world.wrapper, sys.executable, os.path.abspath(__file__), "sign", condition.name, world.source]
     done = subprocess.run(command, env=world.environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                           stderr=subprocess.PIPE, text=True, errors="replace", check=False, cwd=world.build)
@@ -150,7 +150,7 @@ def plant(place):
 
 
 def planted_for(condition):
-    """As things are all planted tests; else that of the condition, and two that must pass beside it."""
+    """Without a condition all planted tests; else that of the condition, and two that must pass with it."""
     if condition is worlds.CONDITIONS[0]:
         return ["--suite", "quick"]
     others = [c.name for c in worlds.CONDITIONS[1:] if c is not condition and c.name not in condition.implies]

@@ -60,8 +60,7 @@ TEST(shares)
     }
 }
 
-/* `map` has a character for each particle along x, # if wrong; no words are about y or the radius.
- */
+/* `map` has a character for each particle along x, # if wrong; words are not about y or r. */
 TEST(regions_along_x)
 {
     static const struct {

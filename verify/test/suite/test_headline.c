@@ -69,8 +69,7 @@ TEST(members_and_places)
     }
 }
 
-/* Of figures with equal ratios to their bounds the first is named, also if the ratios are below 1.
- */
+/* Of figures with equal ratios to their bounds the first is named, also if these are below 1. */
 TEST(the_worst_figure)
 {
     json_t *list = headlines_of(4, (const struct row[]){{&one, "a: near", 2, 1},
