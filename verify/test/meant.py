@@ -14,7 +14,9 @@ CASES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "ca
 SIZE = {1: "100", 2: "24^2", 3: "10^3"}
 LARGER = {"sod_2d": "1400", "sod_3d": "9216", "rayleigh_taylor_mode": "1152"}
 QUICK = (("gresho", "sod_2d"), ("gresho", "yee"), ("gresho", None), ("sod", "lax"), ("lax", "sod"), ("sound_wave", "sod"),
-         ("square", "kelvin_helmholtz_mode"))  # its noise happens to have the mode's amplitude. One gas at two times; two modes of layers with the same measures; a growing mode has an exact value only at its own time.
+         ("square", "kelvin_helmholtz_mode"))  # the square's noise happens to have the mode's amplitude
+# Snapshots that pass as another case: one gas at two times, and two modes of layers with the same measures. (A growing
+# mode has an exact value only at its own time.)
 PASS = {("sod", "sod_standard"), ("sod_standard", "sod"), ("kelvin_helmholtz_mode", "rayleigh_taylor_mode")}
 
 

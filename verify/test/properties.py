@@ -14,7 +14,10 @@ import subprocess
 import sys
 import tempfile
 
-SECONDS = 60  # seconds of a run; nearly all take hundredths. Relative bounds. Momentum: to sum |p| + sum m c. Forces are antisymmetric to the last bit except for pairs across the ends of the box, whose distance is rounded (to eps box/distance of itself): the few runs that press particles together there may have more than round-off.
+SECONDS = 60  # limit for a run; nearly all take hundredths of a second
+# Relative bounds. Momentum: over sum |p| + sum m c. Forces are antisymmetric to the last bit except for pairs across the
+# ends of the box, whose distance is rounded (to eps box/distance of itself): the few runs that press particles together
+# there may exceed round-off.
 MOMENTUM, MOMENTUM_FEW, FEW = 1e-12, 1e-6, 0.02
 # Total energy: round-off if it is integrated; else to the integrator's order, which is a small number only for a
 # stable run.

@@ -269,8 +269,8 @@ def failing_thread(expect):
 
 
 def sound_without(expect):
-    """A constant is compiled in place: a copy of the build made before decides whether the test that notices it is
-    sound."""
+    """A mutant of a constant is compiled in the build itself: whether the test that notices it passes without it is
+    tried in a copy of the build made before."""
     import trial
     asked = []
     table = types.SimpleNamespace(build="/build", units={"t": {"seconds": 1, "failed": "", "reached": [], "differs": []}},

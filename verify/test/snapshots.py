@@ -17,7 +17,7 @@ RUNS = [(["sod", "n=200"], 0.2, 0.07, (0, 1, 7, 14)),
         (["sound_wave", "n=64", "viscosity=none"], 0.5, 0.002, (1, 2, 250, 499)),  # several within each step
         (["strong_shock", "n=100", "integrator=leapfrog", "skip=none"], 0.006, 0.11, (1, 8)),
         (["gresho", "n=16^2", "viscosity=cullen_dehnen"], 0.4, 0.3, (0, 2)),
-        (["kelvin_helmholtz_mode", "n=16^2"], 0.9, 0.09, (2, 7, 11)),  # the case records figures at times of its own
+        (["kelvin_helmholtz_mode", "n=16^2"], 0.9, 0.09, (2, 7, 11)),  # the run also stops to measure the growth of the mode
         (["noh_3d", "n=12^3", "integrator=vl2"], 0.05, 0.5, (0, 1))]
 
 

@@ -68,7 +68,7 @@ TEST(judge_without_memory)
         gas.has_u = k != 0, gas.has_P = k != 1, gas.has_h = k == 2;
         for (int i = 0; i < N; i++) gas.h[i] = 0.004;
         read_path = put("a.csv");
-        spared = 1; /* a case may lack its reference */
+        spared = 1; /* the case may lack its reference without an error */
         without_memory(judged, 10, true);
     }
     without_memory(as_csv, 20, true);

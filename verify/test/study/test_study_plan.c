@@ -110,8 +110,8 @@ TEST(numbers)
     for (size_t r = 0; r < 11; r++) assert_int_equal(study_neighbour(64, 3, 11, 1, r), rows_3d[r]);
     assert_int_equal(study_neighbour(64, 3, 1, 1, 0), 64);
     assert_int_equal(study_neighbour(100, 1, 5, 4, 3), 108);
-    assert_int_equal(study_neighbour(400, 1, 5, 4, 4), 390); /* 5 apart anyway */
-    /* 5000, just below one half more */
+    assert_int_equal(study_neighbour(400, 1, 5, 4, 4), 390); /* 5 % of n are enough */
+    /* 5000.499 is rounded down */
     assert_int_equal(study_neighbour(6300629, 1, 64, 1, 1), 6300629 + 5000);
     assert_int_equal(study_neighbour(200, 1, 1, 1, 0), 200);
     assert_int_equal(study_neighbour(200, 1, 1, 1, 5), 200);
