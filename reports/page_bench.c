@@ -71,8 +71,8 @@ static size_t read_curves(const json_t *document, struct curve *curves, size_t m
     return count;
 }
 
-/* Errors of other codes, without CPU times, which belong to other machines. 0.148 is the exact
- * amplitude, and its factor is 1 minus M/reference in cases/README.md. `sphproof run CASE n=N
+/* Errors of other codes, without their CPU times, which belong to other machines. 0.148 is the
+ * exact amplitude, its factors are 1 - M/reference from cases/README.md. `sphproof run CASE n=N
  * --code verify/examples/codes/athena.ini` reproduces those of Athena++. */
 static const struct {
     const char *case_name, *error_of, *label;
@@ -159,7 +159,7 @@ static void scheme_table(struct buffer *to, const struct curve *curves, size_t c
         html_cell(to, curve->name);
         html_cell_number(to, curve->n ? curve->error[curve->n - 1] : (double)NAN);
         html_cell_number(to, curve->n ? curve->cpu[curve->n - 1] : (double)NAN);
-        for (size_t v = 0; v < 2; v++) { /* other codes have neither */
+        for (size_t v = 0; v < 2; v++) { /* missing for other codes */
             const double value =
                 value_member(curve->scheme, v ? "seed_plain_over_this" : "figure_of_merit");
             if (isnan(value))

@@ -14,8 +14,8 @@
  * after it. In a process that is not guarded both do nothing. */
 void guard_call(const char *function, double a, double b, int dim);
 void guard_back(void);
-/* After this call, foreign code that fails is a kernel that fails its checks; before, it is not a
- * kernel at all. */
+/* After this call a failure of foreign code is a failed check (STATUS_CHECK_FAILED), before it an
+ * unusable file (STATUS_BAD_INPUT). */
 void guard_begun(void);
 
 /* Work in the child process; reply: result, a new reference. */

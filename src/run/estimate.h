@@ -7,7 +7,7 @@
 struct estimate {
     double memory; /* bytes, peak: initial particles, solver and final snapshot */
     double steps;
-    double cpu_s; /* on a 3 GHz core; of these steps right within a factor of two or so */
+    double cpu_s; /* on a busy 3.7 GHz core; for these steps right within a factor of two or so */
 };
 
 /* Memory from dimension, scheme, threads and number of particles alone; steps and cpu_s are 0. */

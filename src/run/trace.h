@@ -25,8 +25,8 @@ struct trace {
 };
 
 /* Relative differences from the start, >= 0: mass and energy over their initial values; momentum
- * over sum |p| at the end or, if that vanishes, mass times sound speed; angular momentum over sum
- * |r x p|, or the same. */
+ * over sum |p| at the end, angular momentum over sum |r x p|, or, where such a sum vanishes, the
+ * same with the sound speed for the velocity. */
 struct trace_drift {
     double mass, momentum, angular_momentum, energy;
 };

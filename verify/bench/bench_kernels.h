@@ -16,7 +16,7 @@ struct bench_cost {
 
 struct bench_kernel_row {
     const char *kernel, *what; /* what: "density", "step ia", an operator's name ... */
-    bool on_cloud;             /* a gradient operator on a cloud of points, else the 1D solver */
+    bool on_cloud; /* a gradient operator on a cloud of points, else a part of the solver */
     int dim;
     double pairs; /* per particle */
     double ns_per_particle;

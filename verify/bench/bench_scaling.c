@@ -15,8 +15,8 @@
 /* The time of a step is the difference between a longer and a shorter run, which cancels the
  * set-up. The solver asks every 32 steps whether to continue. */
 enum { STEPS_SHORT = 32, STEPS_LONG = 160 };
-/* Comparisons of threads use wall time, which other load disturbs most: not a difference of two
- * times, but a run long enough that its set-up matters little. */
+/* Threads are compared by wall time, which other load disturbs most; therefore not by a difference
+ * of two times, but by a run so long that its set-up matters little. */
 enum { STEPS_THREADS = 320 };
 enum { RUN_N_MAX = 10000 }; /* whole runs cost as n^2 */
 static const size_t thread_n[] = {800, 6400, 20000, 100000};

@@ -38,7 +38,7 @@ struct bench_skip {
     double error[BENCH_SIDES]; /* L1 of density, else of velocity, else of the first functional */
     double momentum[BENCH_SIDES], energy[BENCH_SIDES]; /* conservation errors, as in a run */
     double cpu_s[BENCH_SIDES];   /* of a run, or of the update of one particle */
-    double spread;               /* the larger of the two */
+    double spread;               /* of the times, the larger one */
     struct bench_shares *shares; /* see bench_possible.h; NULL: none */
     /* fractions of the neighbour sums that omitted these terms; NaN: unknown */
     double without_viscosity, without_slope;

@@ -188,7 +188,7 @@ static void measure_radial(struct check_run *run, const struct radial *flow,
     check_measure(run, fmax(balance_of(&ball, 0.5 * start), balance_of(&ball, 1.5 * end)), 1e-10,
                   1e-13, "%s, gamma %.4g, d %d: balls inside and outside of the front", flow->name,
                   flow->gamma, flow->d);
-    /* a free edge has nothing on either side of it */
+    /* a disc has no shock but a free edge */
     if (flow->at != disc_at)
         check_measure(run, jump, 1e-7, 1e-9, "%s, gamma %.4g, d %d: jump at the shock", flow->name,
                       flow->gamma, flow->d);

@@ -2,7 +2,7 @@
  * Compares density, smoothing length, force, heating and time step of disordered clouds in 2D and
  * 3D with the oracle, for the choices that enter the sums: every geometry of a pair with one
  * physics, and every physics with one geometry, in turn; in 3D a part of them. The slow suite
- * combines every one with every other in 2D, and has all of the former in 3D. */
+ * combines every geometry with every physics in 2D, and takes all of these turns in 3D. */
 #include "check.h"
 #include "hydro_against.h"
 #include "hydro_setup.h"

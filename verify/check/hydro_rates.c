@@ -36,7 +36,7 @@ static void subjects(struct check_run *run)
         add(run, s, hydro_disordered);
         const bool internal = s.energy == ENERGY_INTERNAL;
         if (s.viscosity == VISCOSITY_TIME_DEPENDENT && internal) add(run, s, hydro_expanding);
-        s.eta = 4.8; /* with eta = 2 coincident particles have no h */
+        s.eta = 4.8; /* coincident particles have no h at eta = 2 */
         if (s.viscosity == VISCOSITY_RECONSTRUCTED && internal) add(run, s, hydro_coincident);
         s.eta = 2;
     }

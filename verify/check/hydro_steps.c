@@ -41,7 +41,7 @@ static void subjects(struct check_run *run)
             }
             if (c == 6)
                 s.viscosity = VISCOSITY_NONE,
-                s.eta = 4.8; /* with eta = 4.8 coincident particles have an h */
+                s.eta = 4.8; /* so that coincident particles have an h */
             if (c == 4 || c == 5) {
                 s.formulation = FORMULATION_LAGRANGIAN;
                 s.volume_element = c == 5 ? VOLUME_ENERGY : VOLUME_MASS;

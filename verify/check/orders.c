@@ -19,8 +19,8 @@ struct fit_subject {
     fit_function *fit;
 };
 
-/* A kind of synthetic ladder: error = 0.3 spacing^1.37 exp(noise), noise normal. noise: its
- * deviation at the coarsest level; falls: that over the deviation at the finest. */
+/* A kind of synthetic ladder: error = 0.3 spacing^1.37 exp(x), x normal with standard deviation
+ * `noise` at the coarsest level and noise/falls at the finest. */
 struct ladder_kind {
     double noise, falls;
     size_t replicates;
@@ -86,8 +86,8 @@ static void measure_weights(struct check_run *run, fit_function *fit)
     check_measure(run, fabs(got.order - 1), 0.05, 0.005, "a level whose error may be off by half");
 }
 
-/* Levels far off the line compared with their noise: the scatter of replicates does not contain
- * curvature. */
+/* Levels with little noise that lie on a curve: the interval must contain the scatter about the
+ * line, not only the noise of the replicates. */
 static void measure_curved(struct check_run *run, fit_function *fit)
 {
     double spacing[LEVELS], error[LEVELS], variance[LEVELS];

@@ -14,7 +14,7 @@ enum { JUDGE_SNAPSHOTS_MAX = 64 };
 
 /* The options of a judgement. */
 struct judge_request {
-    const char *case_name; /* NULL: named by the file; with left and right: of the file's box */
+    const char *case_name;                 /* NULL: the case that the file names */
     const struct run_settings *asked;      /* the case with its keys; NULL: by its name alone */
     const char *left, *right;              /* "rho v P"; NULL: the case's */
     struct snapshot_value gamma, x0, time; /* given by the user */

@@ -123,7 +123,7 @@ json_t *judge_conservation(const struct judged *judged, size_t n, struct trace *
         from = judged[pair[0]].path, to = main->path;
         take_trace(judged, n, pair, trace);
         drift = trace_worst(trace);
-    } else if (main->start.mass > 0) { /* also for a snapshot of t = 0, of which a trace has one */
+    } else if (main->start.mass > 0) { /* at t = 0 the second entry replaces the first */
         trace_add(trace, 0, &main->start);
         trace_add(trace, main->result.time, &main->sums);
         drift = trace_drift(&main->start, &main->sums, &main->sums);

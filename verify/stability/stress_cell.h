@@ -19,24 +19,24 @@ enum stress_kind {
     STRESS_RUN,     /* a run against its exact solution: error of density, relative to its mean */
     STRESS_DRIFT,   /* many steps of a still box: drift of energy */
     STRESS_LIMIT,   /* limits of eta: predicted, and found by noise runs */
-    STRESS_STEP,    /* largest c dt/dx of an integrator: the same */
+    STRESS_STEP,    /* largest c dt/dx of an integrator: predicted, and found by noise runs */
     STRESS_PAIRING, /* onset of pairing in 2D and 3D: predicted */
     STRESS_CLOUD,   /* a run in 2D or 3D: survival, fraction of particles in pairs */
     STRESS_LATTICE, /* growth of noise on a lattice in 2D or 3D: predicted, and found by runs */
-    STRESS_CLOUD_STEP, /* largest c dt/dx of an integrator there */
+    STRESS_CLOUD_STEP, /* the same on a lattice in 2D or 3D */
     STRESS_AMPLIFY,    /* growth of round-off: a run, and one with a displaced start */
 };
 
 struct stress_group {
     struct member member; /* name, what it does, paper */
     enum stress_kind kind;
-    const char *case_name, *keys; /* of all cells, followed by those of the column and the row;
-                                     case_name NULL: that of the column's label */
+    const char *case_name, *keys; /* of all cells; keys of the column and the row follow. case_name
+                                     NULL: the label of the column */
     const char *row_title, *column_title; /* of the map */
-    const struct family *row_family; /* a row for each member, whose key is the row's title; or */
-    const struct stress_entry *rows; /* these; neither: stress_schemes */
-    const struct stress_entry *columns;       /* entries end with a NULL label; or */
-    const struct stress_entry *(*made)(void); /* a function that makes them */
+    const struct family *row_family;      /* the rows are its members, with row_title as the key */
+    const struct stress_entry *rows;      /* rows without a family; NULL: stress_schemes */
+    const struct stress_entry *columns;   /* ends with a NULL label; NULL: see made */
+    const struct stress_entry *(*made)(void); /* makes the columns */
     double bound;      /* of the measured value: above it a cell is inaccurate */
     const char *known; /* STRESS_AMPLIFY: why the default scheme may exceed it; NULL: it may not */
     bool survives;     /* no cell may break down */

@@ -57,8 +57,8 @@ struct autopsy_power {
 
 /* A vector field on particles: its rms over the window; its noise, the rms deviation from the best
  * linear functions in cells of 4 spacings; and the component of the smooth rest along the
- * velocity's error (or the whole rest if that is unknown), because accelerations that come and go
- * leave no error as smooth as they are. */
+ * velocity's error (or the whole rest if that is unknown), because accelerations that alternate
+ * cause less error than steady ones. */
 struct autopsy_split {
     double rms, noise, along;
 };

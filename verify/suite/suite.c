@@ -183,7 +183,7 @@ bool suite_chosen(const struct check *check, const struct suite_choice *choice)
     return choice->group_count == 0;
 }
 
-/* In the order given; by_rank: that of least rank, which names the cause, before the others. */
+/* The checks in the given order or, with by_rank, by increasing rank: the least names the cause. */
 static const struct check **in_order(const struct check *const *checks, size_t count, bool by_rank)
 {
     const struct check **ordered = malloc((count + 1) * sizeof *ordered);
