@@ -283,7 +283,6 @@ static bool is_cloud(const json_t *const *runs, size_t count)
     return count && dimension_of(runs[0]) > 1;
 }
 
-/* Writes all results of one case. */
 static void one_case(struct page_writer *writer, const json_t *results, const char *name)
 {
     struct buffer *to = &writer->to;

@@ -270,7 +270,6 @@ static void change_table(struct buffer *to, const json_t *changes)
     if (rows == SHOWN) buffer_add(to, "<p>All of them are in results.json.</p>");
 }
 
-/* Curves of one case. */
 struct curves {
     size_t count, nights;
     const char *field, *label[PAGE_SCHEMES];

@@ -75,7 +75,6 @@ void page_study_name(struct buffer *to, const json_t *order)
     html_format(to, is_scalar(order) ? "the error of %-s" : "L1(%-s)", value_text(order, "field"));
 }
 
-/* The error at level i of a study. */
 static double error_of(const json_t *document, const char *name, size_t i)
 {
     const json_t *level = json_array_get(json_object_get(document, "levels"), i), *entry;

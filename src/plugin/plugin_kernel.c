@@ -58,7 +58,6 @@ bool plugin_is_path(const char *word)
     return certificate && user_kernel_is_path(path);
 }
 
-/* Computes the hash of the file's content. */
 static enum status hash_file(const char *path, char digits[HASH_DIGITS + 1], struct error *error)
 {
     struct stat is;

@@ -44,7 +44,7 @@ static double width_at_start(const struct setup *setup, size_t i)
     return setup->scheme.eta * pow(setup->m[i] / setup->rho[i], 1. / setup->dim);
 }
 
-/* Largest ratio of signal speed to h, in 1/s. */
+/* Largest ratio of signal speed to h, if all kinetic energy became heat. */
 static double fastest(const struct setup *setup)
 {
     const double g = setup->gamma;

@@ -14,7 +14,7 @@ enum status hdf5_image_possible(const char *path, struct error *error)
     return h5_load(path, error);
 }
 
-/* For an identifier or a status of the library. */
+/* True for a valid identifier, or for a status of success. */
 static bool went_well(hid_t code)
 {
     return code >= 0;

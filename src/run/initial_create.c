@@ -31,7 +31,7 @@ static double spacing(const struct initial *initial, size_t i)
     return initial->dim == 1 ? volume : initial->dim == 2 ? sqrt(volume) : cbrt(volume);
 }
 
-/* Maps x into a periodic box, or reflects it at another end. */
+/* Maps x into a periodic box, or reflects it at an end that is not periodic. */
 static double into_box(const struct prepared *p, int d, double x)
 {
     const double lo = p->domain.lo[d], hi = p->domain.hi[d];

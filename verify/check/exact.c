@@ -231,7 +231,7 @@ static struct simple_wave_state wave_rigid(const struct simple_wave *wave, doubl
     return simple_wave_sample(wave, x - (wave->v0 + c0) * t, 0);
 }
 
-/* State whose values travel at a v + b c. */
+/* State of a wave whose values travel with the speed a v + b c. */
 static struct simple_wave_state carried(const struct simple_wave *wave, double x, double t,
                                         double a, double b)
 {

@@ -20,7 +20,6 @@
 #include "slab.h"
 #include "value.h"
 
-/* State of a run. */
 struct course {
     const struct run *run;
     const struct code_external *external;

@@ -25,7 +25,6 @@
 enum { WORDS_MAX = 64, FIGURES_MAX = FIELDS + PROBLEM_FUNCTIONALS_MAX, DRAWS = 5, TIMED_DRAWS = 4 };
 #define LEVEL 0.05 /* of all figures together */
 
-/* One side of the comparison. */
 struct side {
     const char *name; /* "a", "b" */
     const char *text; /* the argument */

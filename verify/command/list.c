@@ -180,7 +180,7 @@ static void print_key(const struct setting_key *key, const struct table_style *s
     table_wrap("      ", allowed);
 }
 
-/* The README's table. */
+/* Prints the table of keys in the README. */
 static void print_keys_markdown(void)
 {
     printf("| key | default | unit | allowed | meaning |\n|---|---|---|---|---|\n");

@@ -200,7 +200,6 @@ static enum status serialise_out(const struct options *options, struct report *r
 
 /* ---- other codes ---- */
 
-/* The codes of a report. */
 struct codes {
     size_t count;
     struct code code[REPORT_CODES_MAX];

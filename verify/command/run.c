@@ -380,7 +380,6 @@ static enum status take_snapshots(struct snapshots *snapshots, const struct opti
     return STATUS_OK;
 }
 
-/* The checkpoint of the run. */
 struct kept {
     bool wanted;
     struct checkpoint checkpoint;

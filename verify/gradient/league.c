@@ -137,7 +137,7 @@ enum status league_measure(struct league_row **rows, size_t *count, struct error
     return status;
 }
 
-/* Three digits: these are figures for a table. */
+/* Rounds to three digits, for a table. */
 static json_t *rounded(double value)
 {
     if (!isfinite(value) || value == 0) return result_number(value);

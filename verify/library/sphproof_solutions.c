@@ -16,7 +16,7 @@ static enum sphproof_status fault(const char *text, struct sphproof_error *error
     return text ? library_fail(error, STATUS_BAD_INPUT, "%s", text) : SPHPROOF_OK;
 }
 
-/* The positions are finite and at least least. */
+/* Checks that all positions are finite and not below `least`. */
 static enum sphproof_status check(size_t n, const double *at, double least,
                                   struct sphproof_error *error)
 {

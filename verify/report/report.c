@@ -559,7 +559,7 @@ static struct reported *reported_of(struct report *report, const struct case_fil
     return of;
 }
 
-/* The codes come first: the first entry of a case judges it. */
+/* Adds the codes before our schemes, because the first entry of a case judges it. */
 static enum status add_codes(struct report *report, struct error *error)
 {
     for (size_t k = 0; k < report->code_count; k++)

@@ -241,7 +241,7 @@ static json_t *column_labels(const struct stress_group *group, bool nightly)
     return list;
 }
 
-/* The quantity of a cell's number. */
+/* What the number of a cell measures. */
 static const char *number_of(enum stress_kind kind)
 {
     switch (kind) {

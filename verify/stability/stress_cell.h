@@ -14,7 +14,6 @@ struct stress_entry {
     bool nightly; /* not in the quick stress test */
 };
 
-/* Kinds of cells. */
 enum stress_kind {
     STRESS_RUN,     /* a run against its exact solution: error of density, relative to its mean */
     STRESS_DRIFT,   /* many steps of a still box: drift of energy */

@@ -119,7 +119,6 @@ static enum status fit_shares(struct autopsy *autopsy, struct error *error)
 
 /* ---- cause ---- */
 
-/* The largest of the suspected parts. */
 static size_t largest(const struct autopsy_level *level, const bool suspected[AUTOPSY_PARTS])
 {
     size_t best = AUTOPSY_PARTS;

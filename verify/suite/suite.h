@@ -67,7 +67,6 @@ enum status suite_join(struct suite *suite, const struct check *const *checks,
 /* Estimated seconds of a check including its mutants, above 0. */
 double suite_cost(const struct check *check);
 
-/* True if the check is among those that were chosen. */
 bool suite_chosen(const struct check *check, const struct suite_choice *choice);
 
 /* Counts figures and outcomes when the suite is complete. STATUS_OK or STATUS_CHECK_FAILED. */

@@ -22,7 +22,7 @@ struct vtk {
     size_t cells; /* with data of their own */
 };
 
-/* What the arrays that follow belong to. */
+/* The entities to which the following arrays belong. */
 enum part { WHOLE, POINTS, CELLS };
 
 struct array {

@@ -372,7 +372,7 @@ static const struct functional transverse_noise = {"transverse_noise", has_width
 
 enum { UNDISTURBED, FAN, PLATEAU, CONTACT, SHOCK };
 
-/* A missing wave has a NaN position and is near nothing. */
+/* False for a missing wave, whose position is NaN. */
 static bool near(double x, double position, double reach)
 {
     return fabs(x - position) <= reach;
