@@ -66,7 +66,7 @@ static bool inside(const struct snapshot_file *file, const double box[3], const 
     return true;
 }
 
-/* Picks particles well inside at odd intervals, to be independent of the period of a lattice. */
+/* Picks particles well inside, by a golden-ratio sequence that avoids the period of a lattice. */
 static void choose(const struct snapshot_file *file, const double box[3], struct sample *sample)
 {
     static const double margins[] = {3, 1, 0};

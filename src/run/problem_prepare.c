@@ -109,8 +109,8 @@ static void choose_shifting(const struct prepared *p, struct settings *settings)
     shifting->choice = closed ? SHIFTING_CLOSED : SHIFTING_NONE;
 }
 
-/* On for gas, off for liquids; scheme_default handles schemes without dissipation. Evaluations of
- * other codes' particles have none unless asked. */
+/* On for gas in 2D and 3D, off in 1D and for liquids; scheme_default handles schemes without
+ * dissipation. Evaluations of other codes' particles have none unless asked. */
 static void choose_conductivity(const struct prepared *p, struct settings *settings)
 {
     struct setting_value *conductivity = &settings->value[SETTING_shock_conductivity];

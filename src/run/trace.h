@@ -34,7 +34,7 @@ struct trace_drift trace_drift(const struct conservation *start, const struct co
                                const struct conservation *end);
 
 /* Errors of the motion that the final error does not show (CONVENTIONS.md, section 6). NaN: fewer
- * than two entries, or nothing moves at the start. */
+ * than two entries; the first two also if nothing moves at the start. */
 struct trace_motion {
     double rebound;   /* largest rise of the kinetic energy above its previous minimum, over its
                          initial value */

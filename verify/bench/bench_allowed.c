@@ -12,7 +12,7 @@ struct watching {
     struct grid *grid;             /* of the initial positions, where unchanged gas still is */
     struct grid_reader reader;
     double *v[3], *rho, *u; /* initial values, by id */
-    bool *changed;          /* likewise */
+    bool *changed;          /* by id */
     int dim;
     double share; /* summed over steps */
     uint64_t steps;

@@ -92,7 +92,7 @@ static int column_at(const struct counting *counting, double x, int columns)
     return (int)fmax(0, fmin(at * columns, columns - 1));
 }
 
-/* True if one of so many columns is empty between two with particles. */
+/* True if, with this number of columns, an empty one lies between two with particles. */
 static bool has_gap(const struct counting *counting, int columns)
 {
     const struct initial *initial = counting->initial;

@@ -374,7 +374,7 @@ static enum status lay_out(const struct run_settings *settings, const struct swe
                            const size_t *ladder, size_t count, struct precision *precision,
                            struct error *error)
 {
-    const size_t compared = settings->file.dimension > 1 ? 1 : 2; /* plain C knows 1D */
+    const size_t compared = settings->file.dimension > 1 ? 1 : 2; /* plain C is 1D only */
     const size_t schemes = sweep->count + (settings->external != NULL) + compared +
                            want_graded(settings, sweep),
                  most = schemes * count;

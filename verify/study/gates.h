@@ -25,8 +25,7 @@ double gates_raise(const struct case_file *file, const struct case_gate *gate, s
 struct order_gate gates_at(const struct case_file *file, const struct case_gate *gate, size_t n);
 
 /* True if an error that fails a gate is within the known weakness. raise: the bound's factor, see
- * gates_raise. A non-finite error is known only if the weakness says that nothing can be
- * measured. */
+ * gates_raise. A NaN is known only if the weakness says that nothing can be measured. */
 bool gates_know(const struct case_weakness *known, double raise, double error);
 
 /* Gates for a compared scheme: from [compared], else error bounds three times as wide, because

@@ -55,7 +55,7 @@ static enum status fill(const struct prepared *p, const struct settings *setting
     return initial_fill_ball(p, settings, radius_of(p), initial, error);
 }
 
-/* True until gas from the edge of the ball reaches the window. */
+/* True until gas from the edge of the ball reaches the window or the shock. */
 static bool holds(const struct prepared *p, double t)
 {
     double far = 0;
