@@ -72,7 +72,8 @@ static void table(struct buffer *to, const json_t *document)
                     value_member(figure, "b"));
         const int places = half > 0 && half < 0.1 ? 2 : 0;
         buffer_format(to, "<td class=\"n\">%+.*f", places, 100 * change);
-        if (!isnan(half)) /* Student's interval is that of the logarithm */
+        /* Student's interval is that of the logarithm; a ratio of 0 has none */
+        if (!isnan(half) && ratio > 0)
             buffer_format(to, " (%+.*f to %+.*f)", places, 100 * (ratio * exp(-half / ratio) - 1),
                           places, 100 * (ratio * exp(half / ratio) - 1));
         html_format(to, "</td><td>%s</td></tr>\n",

@@ -132,7 +132,7 @@ TEST(what_is_missing_fails)
 
 /* A known weakness with the bound NaN excuses only a missing error, one with a finite bound errors
  * up to `raise` times that, one with an infinite bound any number. */
-TEST(round_off_excuses_a_missing_order)
+TEST(known_weaknesses_excuse_up_to_their_bound)
 {
     const struct case_weakness absent = {(double)NAN, "no shock"}, any = {(double)INFINITY, "slow"},
                                some = {2, "slow"}, unsaid = {0, ""};

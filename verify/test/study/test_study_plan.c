@@ -205,7 +205,7 @@ TEST(weights)
 }
 
 /* A run whose profile is in the pool is not added; nor is a second one with the same key. */
-TEST(kept_runs_are_not_repeated)
+TEST(runs_in_the_pool_are_not_repeated)
 {
     struct error error;
     struct pool pool = {0};
