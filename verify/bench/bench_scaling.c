@@ -87,7 +87,8 @@ static enum status work_at_once(void *context, uint64_t times, struct clock_take
     return status;
 }
 
-/* Prepares steps of a moving state: no particle may sleep, and t_end is not reached. */
+/* Prepares a whole run or, with most_steps, steps that do not reach t_end and let no particle
+ * sleep. */
 static enum status prepare(struct job *job, const struct run_settings *settings, size_t n,
                            uint64_t most_steps, int threads, struct error *error)
 {

@@ -158,9 +158,9 @@ static bool positive(double value)
     return value > 1e-30 && value < 1e30;
 }
 
-/* True if the records may be masses, densities and smoothing lengths of the gas: all positive, with
- * a total volume between half and twice that of the box (or of the extent of the particles, without
- * a box), and smoothing lengths of 0.3 to 30 spacings. */
+/* True if the records may be masses, energies, densities and smoothing lengths of the gas: all
+ * positive, with a total volume between half and twice that of the box (or of the extent of the
+ * particles, without a box), and smoothing lengths of 0.3 to 30 spacings. */
 static bool plausible(const struct binary *b, const struct layout *layout, double volume, int dim)
 {
     const struct record *m = b->mass[0] > 0 ? NULL : layout->block[MASSES],
