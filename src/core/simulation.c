@@ -485,13 +485,16 @@ static void add_straight(const struct simulation *simulation, struct conservatio
         momentum_scale += particles_norm(a, a->p, i);
         sound += (long double)a->m[i] * a->c[i];
         energy += a->e[i];
+        long double square = 0;
         for (int k = 0; k < a->dim; k++) {
             const long double p = a->p[k][i];
             momentum[k] += p;
             energy -= (long double)a->m[i] * simulation->gravity[k] * a->x[k][i];
-            if (!total) energy += 0.5L * p * p / a->m[i];
-            kinetic += 0.5L * p * p / a->m[i];
+            square += p * p;
         }
+        const long double motion = 0.5L * square / a->m[i]; /* a division takes long */
+        if (!total) energy += motion;
+        kinetic += motion;
     }
     for (int k = 0; k < 3; k++) sums->momentum[k] = (double)momentum[k];
     sums->mass = (double)mass;
