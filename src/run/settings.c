@@ -355,7 +355,7 @@ static bool is_read_with(enum setting key, int choice)
     }
 }
 
-bool settings_shaken(const struct settings *settings)
+bool settings_random_start(const struct settings *settings)
 {
     const enum lattice lattice = (enum lattice)settings_choice(settings, SETTING_lattice);
     const bool jittered = lattice == LATTICE_JITTERED && settings->value[SETTING_jitter].automatic;
@@ -368,7 +368,7 @@ bool settings_uses(const struct settings *settings, enum setting key)
     const enum setting other = decides(key);
     if (other == SETTINGS) return true;
     if (other == SETTING_grade) return settings_real(settings, SETTING_grade) < 1;
-    if (other == SETTING_lattice) return !settings->file[0] && settings_shaken(settings);
+    if (other == SETTING_lattice) return !settings->file[0] && settings_random_start(settings);
     return settings_uses(settings, other) && is_read_with(key, settings_choice(settings, other));
 }
 
@@ -398,10 +398,10 @@ enum status settings_refuse_unused(const struct settings *settings, struct error
                 used += (size_t)snprintf(allowed + used, sizeof allowed - used, " %s",
                                          family->members[k]->name);
         return error_set(error, STATUS_BAD_INPUT,
-                         "%s=%.40s and %s=%.80s exclude each other: %s is of %s%s%s",
+                         "%s=%.40s and %s=%.80s exclude each other: %s needs %s%s%s",
                          setting_keys[key].name, given, setting_keys[other].name, excludes,
                          setting_keys[key].name, setting_keys[other].name, allowed,
-                         key == SETTING_seed ? ", or of jitter above 0" : "");
+                         key == SETTING_seed ? ", or jitter above 0" : "");
     }
     return STATUS_OK;
 }

@@ -111,7 +111,7 @@ enum status settings_scheme(struct settings *settings, int dim, struct scheme *s
                             struct error *error);
 
 /* True if particles are displaced at random, so that the seed matters. */
-bool settings_shaken(const struct settings *settings);
+bool settings_random_start(const struct settings *settings);
 
 /* False if the value of another key leaves this one without effect: a parameter of another
  * viscosity, sinc_n of another kernel, balsara_floor without a factor, grade_ratio of equal masses,

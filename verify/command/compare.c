@@ -305,7 +305,7 @@ static void say_change(char *text, size_t size, const struct paired *of, bool si
                  high = turn * (ratio * exp(turn < 0 ? -half : half) - 1);
     say(text, size, format, places, turn * of->change);
     say(text, size, " %%");
-    if (!isfinite(half)) return;
+    if (isnan(half)) return;
     say(text, size, " (");
     say(text, size, format, places, low);
     say(text, size, " to ");

@@ -409,7 +409,7 @@ const struct problem problem_entropy_wave = {
     .prepare = prepare,
     .sample = sample,
     .fill = fill,
-    .random = settings_shaken,
+    .random = settings_random_start,
     .functionals = {&functional_mean_internal_energy, &functional_mean_pressure},
 };
 """)

@@ -82,6 +82,6 @@ const struct problem problem_channel = {
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_shaken,
+    .random = settings_random_start,
     .functionals = {&flow},
 };

@@ -93,6 +93,6 @@ const struct problem problem_gresho = {
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_shaken,
+    .random = settings_random_start,
     .functionals = {&disc_error, &peak},
 };

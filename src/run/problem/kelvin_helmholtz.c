@@ -85,6 +85,6 @@ const struct problem problem_kelvin_helmholtz = {
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_shaken,
+    .random = settings_random_start,
     .functionals = {&mode_amplitude},
 };

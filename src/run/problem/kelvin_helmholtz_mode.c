@@ -46,7 +46,7 @@ const struct problem problem_kelvin_helmholtz_mode = {
     .prepare = prepare,
     .sample = mode_sample,
     .fill = initial_fill,
-    .random = settings_shaken,
+    .random = settings_random_start,
     .functionals = {&mode_amplitude, &mode_error, &mode_noise, &mode_other_parity},
     .growing = &mode_growing,
 };

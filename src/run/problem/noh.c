@@ -131,6 +131,6 @@ const struct problem problem_noh = {
     .fill = fill,
     .holds = holds,
     .refuse = refuse,
-    .random = settings_shaken,
+    .random = settings_random_start,
     .functionals = {&shock_radius, &plateau, &centre},
 };

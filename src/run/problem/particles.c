@@ -37,7 +37,7 @@ static enum status fill(const struct prepared *p, const struct settings *setting
 
 static bool is_random(const struct settings *settings)
 {
-    return !settings->file[0] && settings_shaken(settings);
+    return !settings->file[0] && settings_random_start(settings);
 }
 
 #define ANY                                                                                        \

@@ -49,7 +49,7 @@ const struct problem problem_rayleigh_taylor_mode = {
     .prepare = prepare,
     .sample = mode_sample,
     .fill = initial_fill,
-    .random = settings_shaken,
+    .random = settings_random_start,
     .functionals = {&mode_amplitude, &mode_error, &mode_noise},
     .growing = &mode_growing,
 };

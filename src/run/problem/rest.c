@@ -54,6 +54,6 @@ const struct problem problem_rest = {
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_shaken,
+    .random = settings_random_start,
     .functionals = {&functional_velocity_rms},
 };

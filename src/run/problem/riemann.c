@@ -483,7 +483,7 @@ const struct problem problem_riemann = {
     .ahead = ahead,
     .holds = holds,
     .refuse = refuse,
-    .random = settings_shaken,
+    .random = settings_random_start,
     .functionals = {&functional_mean_internal_energy, &functional_mean_pressure, &shock_position,
                     &transverse_noise},
     .regions = &regions,

@@ -32,7 +32,7 @@ static bool starts_even(const struct prepared *p, const struct settings *setting
 {
     const int lattice = settings_choice(settings, SETTING_lattice);
     bool even =
-        (lattice == LATTICE_SQUARE || lattice == LATTICE_CUBIC) && !settings_shaken(settings);
+        (lattice == LATTICE_SQUARE || lattice == LATTICE_CUBIC) && !settings_random_start(settings);
     for (int d = 1; d < p->domain.dim; d++)
         even = even && domain_length(&p->domain, d) == domain_length(&p->domain, 0);
     return even;
@@ -321,6 +321,6 @@ const struct problem problem_sedov = {
     .ahead = ahead,
     .holds = holds,
     .refuse = refuse,
-    .random = settings_shaken,
+    .random = settings_random_start,
     .functionals = {&shock_radius, &peak, &kinetic, &outward, &thermal, &asymmetry},
 };

@@ -122,6 +122,6 @@ const struct problem problem_shear = {
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_shaken,
+    .random = settings_random_start,
     .functionals = {&amplitude, &viscosity},
 };

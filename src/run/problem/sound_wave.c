@@ -214,6 +214,6 @@ const struct problem problem_sound_wave = {
     .fill = fill,
     .holds = holds,
     .refuse = refuse,
-    .random = settings_shaken,
+    .random = settings_random_start,
     .functionals = {&functional_mean_internal_energy, &functional_mean_pressure, &mode_amplitude},
 };

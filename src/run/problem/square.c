@@ -141,6 +141,6 @@ const struct problem problem_square = {
     .prepare = prepare,
     .sample = sample,
     .fill = fill,
-    .random = settings_shaken,
+    .random = settings_random_start,
     .functionals = {&functional_velocity_rms},
 };

@@ -97,6 +97,6 @@ const struct problem problem_standing_wave = {
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_shaken,
+    .random = settings_random_start,
     .functionals = {&amplitude},
 };

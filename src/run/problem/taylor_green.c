@@ -98,6 +98,6 @@ const struct problem problem_taylor_green = {
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_shaken,
+    .random = settings_random_start,
     .functionals = {&amplitude, &rate},
 };

@@ -48,5 +48,5 @@ const struct problem problem_yee = {
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_shaken,
+    .random = settings_random_start,
 };

@@ -313,9 +313,9 @@ TEST(gravity_keeps_energy)
     }
 }
 
-/* Between walls, too, where the forces on the gas as a whole change with time, the sum of all
- * energies is kept to round-off by integrators that move particles with the velocity that does the
- * work. */
+/* Walls push the gas as a whole with a force that changes with time. The sum of all energies is
+ * still conserved to round-off if gravity's power is computed with the velocity with which the
+ * integrator moves the particles. */
 TEST(gravity_keeps_energy_of_driven_gas)
 {
     draw_state = 8;

@@ -312,13 +312,13 @@ TEST(whole_files)
     refused(HEAD "[initial]\nwaves = 2\n",
             AT("13") "key waves and kind = riemann exclude each other");
     refused(HEAD "[scheme]\nviscosity = none\nalpha = 2\n",
-            AT("14") "alpha=2 and viscosity=none exclude each other: alpha is of viscosity "
+            AT("14") "alpha=2 and viscosity=none exclude each other: alpha needs viscosity "
                      "constant reconstructed fading projected");
     refused(HEAD "[scheme]\nsinc_n = 7\n", AT("13") "sinc_n=7 and kernel=quadratic_spline exclude "
-                                                    "each other: sinc_n is of kernel sinc");
+                                                    "each other: sinc_n needs kernel sinc");
     refused(HEAD "[initial]\nseed = 2\n", AT("13") "seed=2 and lattice=uniform exclude each other: "
-                                                   "seed is of lattice jittered random "
-                                                   "glass, or of jitter above 0");
+                                                   "seed needs lattice jittered random "
+                                                   "glass, or jitter above 0");
     refused("[case]\ntitle = a\ndimension = 1\nreference = simple_wave\n[initial]\nkind = riemann\n"
             "left = 1 0 1\nright = 1 0 2\n[run]\nt_end = 1\n",
             AT("4") "reference = simple_wave; allowed: riemann");

@@ -47,7 +47,7 @@ TEST(seeds_change_random_starts_alone)
                 {"jitter=0.01", true}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct settings settings = keyed_settings(rows[k].key);
-        assert_true(settings_shaken(&settings) == rows[k].shaken);
+        assert_true(settings_random_start(&settings) == rows[k].shaken);
     }
 }
 

@@ -367,50 +367,50 @@ TEST(keys_without_effect_are_refused)
     } rows[] = {
         {1,
          {"sinc_n=7"},
-         "sinc_n=7 and kernel=quadratic_spline exclude each other: sinc_n is of kernel sinc"},
+         "sinc_n=7 and kernel=quadratic_spline exclude each other: sinc_n needs kernel sinc"},
         {1, {"sinc_n=7", "kernel=sinc"}, NULL},
         {1,
          {"alpha_max=9"},
-         "alpha_max=9 and viscosity=constant exclude each other: alpha_max is of viscosity "
+         "alpha_max=9 and viscosity=constant exclude each other: alpha_max needs viscosity "
          "time_dependent cullen_dehnen"},
         {1, {"alpha_max=9", "viscosity=time_dependent"}, NULL},
         {2, {"alpha_min=0", "viscosity=cullen_dehnen"}, NULL},
         {1, {"viscosity=none", "alpha=3"}, "alpha=3 and viscosity=none exclude"},
         {1,
          {"viscosity=time_dependent", "alpha=3"},
-         "alpha=3 and viscosity=time_dependent exclude each other: alpha is of viscosity constant "
+         "alpha=3 and viscosity=time_dependent exclude each other: alpha needs viscosity constant "
          "reconstructed fading projected"},
         {2, {"viscosity=cullen_dehnen", "beta=3"}, NULL}, /* beside the default alpha */
         {1, {"alpha=1", "beta=3"}, NULL},
         {2,
          {"viscosity=constant", "noise=2"},
-         "noise=2 and viscosity=constant exclude each other: noise is of viscosity projected"},
+         "noise=2 and viscosity=constant exclude each other: noise needs viscosity projected"},
         {2, {"noise=2"}, NULL},
         {2,
          {"balsara=off", "balsara_floor=3"},
-         "balsara_floor=3 and balsara=off exclude each other: balsara_floor is of balsara on"},
+         "balsara_floor=3 and balsara=off exclude each other: balsara_floor needs balsara on"},
         {2, {"balsara=on", "balsara_floor=3"}, NULL},
         {2,
          {"viscosity=none", "balsara=on"},
-         "balsara=on and viscosity=none exclude each other: balsara is of viscosity constant "
+         "balsara=on and viscosity=none exclude each other: balsara needs viscosity constant "
          "time_dependent reconstructed fading cullen_dehnen projected"},
         {3,
          {"viscosity=none", "viscosity_form=mu"},
          "viscosity_form=mu and viscosity=none exclude"},
         {2,
          {"viscosity=none", "balsara_floor=3"},
-         "balsara_floor=3 and viscosity=none exclude each other: balsara_floor is of viscosity "
+         "balsara_floor=3 and viscosity=none exclude each other: balsara_floor needs viscosity "
          "con"},
         {1,
          {"seed=3"},
-         "seed=3 and lattice=uniform exclude each other: seed is of lattice jittered random glass, "
-         "or of jitter above 0"},
+         "seed=3 and lattice=uniform exclude each other: seed needs lattice jittered random glass, "
+         "or jitter above 0"},
         {1, {"seed=3", "jitter=0.1"}, NULL},
         {2, {"seed=3", "lattice=jittered"}, NULL},
         {2, {"seed=3", "lattice=glass"}, NULL},
         {1,
          {"grade_ratio=1.5"},
-         "grade_ratio=1.5 and grade=1 exclude each other: grade_ratio is of grade below 1"},
+         "grade_ratio=1.5 and grade=1 exclude each other: grade_ratio needs grade below 1"},
         {1, {"grade_ratio=1.5", "grade=0.5"}, NULL},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
