@@ -50,10 +50,10 @@ struct share {
 
 struct array {
     const struct engine_work *work;
-    char name[32], folder[CACHE_PATH_MAX], state[CACHE_PATH_MAX + 64];
+    char name[32], folder[CACHE_PATH_MAX + 8], state[CACHE_PATH_MAX + 64];
     int count;            /* of shares */
     struct share *shares; /* [1..count] */
-    int *of;              /* share of each job of the pool; 0: computed, or in none */
+    int *of;              /* share of each job of the pool; 0: computed */
     size_t lacking, wanted;
     double left, whole; /* estimated seconds of the missing results: now, at the start */
     double looked;      /* duration of the last search of the cache */
@@ -69,15 +69,14 @@ static enum status name_array(struct array *array, struct error *error)
     const struct pool *pool = array->work->pool;
     const struct cache *cache = array->work->cache;
     char *real = realpath(cache->folder, NULL);
+    if (!real)
+        return error_set(error, STATUS_ENVIRONMENT, "%.400s: %s", cache->folder, strerror(errno));
     uint64_t hash = cache_hash(CACHE_HASH, cache->build, strlen(cache->build));
-    if (real) hash = cache_hash(hash, real, strlen(real));
+    hash = cache_hash(hash, real, strlen(real));
     for (size_t i = 0; i < pool->count; i++)
-        if (pool->jobs[i].key)
-            hash = cache_hash(hash, pool->jobs[i].key, strlen(pool->jobs[i].key));
-    const int length = snprintf(array->folder, sizeof array->folder, "%s/slurm", real ? real : "");
+        hash = cache_hash(hash, pool->jobs[i].key, strlen(pool->jobs[i].key));
+    snprintf(array->folder, sizeof array->folder, "%s/slurm", real);
     free(real);
-    if (length >= (int)sizeof array->folder)
-        return error_set(error, STATUS_BAD_INPUT, "the path of the cache is too long");
     snprintf(array->name, sizeof array->name, "sphproof-%016" PRIx64, hash);
     snprintf(array->state, sizeof array->state, "%s/%s.json", array->folder, array->name);
     return output_folder(array->folder, error);
@@ -172,7 +171,7 @@ static enum status divide(struct array *array, struct error *error)
     size_t lacking = 0;
     for (size_t i = 0; i < pool->count; i++) {
         const struct pool_job *job = &pool->jobs[i];
-        if (!job->key || cache_has(work->cache, job->key)) continue;
+        if (cache_has(work->cache, job->key)) continue;
         array->whole += job->weight;
         lacking++;
     }

@@ -119,7 +119,7 @@ enum status sharing_list(const struct sharing *sharing, const struct pool *pool,
     for (size_t i = 0; i < pool->count && !status; i++) {
         const struct pool_job *job = &pool->jobs[i];
         if (share->of && shares[i] != share->number) continue;
-        const bool kept = sharing->pool.cache && job->key && cache_has(&sharing->cache, job->key);
+        const bool kept = sharing->pool.cache && cache_has(&sharing->cache, job->key);
         printf("%.3g\t%d\t%s\t%s\n", job->weight, shares[i], kept ? "kept" : "-", job->name);
     }
     free(shares);

@@ -29,14 +29,14 @@ struct worker {
 size_t pool_add(struct pool *pool, const char *name, const char *key, double weight,
                 pool_compute *compute, const void *context)
 {
-    const size_t known = key ? pool_find(pool, key) : (size_t)-1;
+    const size_t known = pool_find(pool, key);
     if (known != (size_t)-1) return known;
     if (!pool->numbers) pool->numbers = json_object();
-    if (key && json_object_set_new(pool->numbers, key, json_integer((json_int_t)pool->count)))
+    if (json_object_set_new(pool->numbers, key, json_integer((json_int_t)pool->count)))
         return (size_t)-1;
     if (!list_grow(&pool->jobs, pool->count, sizeof *pool->jobs)) return (size_t)-1;
-    struct pool_job job = {.name = strdup(name), .key = key ? strdup(key) : NULL, .weight = weight};
-    if (!job.name || (key && !job.key)) {
+    struct pool_job job = {.name = strdup(name), .key = strdup(key), .weight = weight};
+    if (!job.name || !job.key) {
         free(job.name);
         free(job.key);
         return (size_t)-1;
@@ -85,7 +85,7 @@ static json_t *reply_of(const struct pool_job *job, const struct cache *cache)
         result_object("status=%d message=%s document=%p", (int)status, status ? error.message : "",
                       (void *)(document ? document : json_null()));
     const bool result = status != STATUS_ENVIRONMENT && status != STATUS_BAD_INPUT;
-    if (reply && result && cache && job->key && cache_store(cache, job->key, reply, &trouble))
+    if (reply && result && cache && cache_store(cache, job->key, reply, &trouble))
         result_add(reply, "note=%s", trouble.message);
     return reply;
 }
@@ -196,7 +196,7 @@ static int heavy_first_by_key(const void *a, const void *b)
     const struct pool_job *x = &sorted_jobs[*(const size_t *)a],
                           *y = &sorted_jobs[*(const size_t *)b];
     if (x->weight != y->weight) return (x->weight < y->weight) - (x->weight > y->weight);
-    return strcmp(x->key ? x->key : "", y->key ? y->key : "");
+    return strcmp(x->key, y->key);
 }
 
 enum status pool_divide(const struct pool *pool, int of, int *shares, struct error *error)
@@ -208,8 +208,6 @@ enum status pool_divide(const struct pool *pool, int of, int *shares, struct err
     if (order && load) qsort(order, pool->count, sizeof *order, heavy_first_by_key);
     for (size_t k = 0; order && load && k < pool->count; k++) {
         const struct pool_job *job = &pool->jobs[order[k]];
-        shares[order[k]] = 0;
-        if (!job->key) continue;
         int share = 0;
         for (int s = 1; s < of; s++)
             if (load[s] < load[share]) share = s;
@@ -250,8 +248,7 @@ static size_t look_up(struct pool *pool, const struct pool_settings *settings,
         struct pool_job *job = &pool->jobs[i];
         bool damaged = false;
         if (job->elsewhere) continue;
-        json_t *reply =
-            settings->cache && job->key ? cache_load(settings->cache, job->key, &damaged) : NULL;
+        json_t *reply = settings->cache ? cache_load(settings->cache, job->key, &damaged) : NULL;
         pool->damaged += damaged;
         job->cached =
             reply && !(settings->again && failed(job, reply)) && take_reply(pool, job, reply);

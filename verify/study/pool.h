@@ -18,7 +18,7 @@ typedef enum status pool_compute(const void *context, json_t **document, struct 
 
 struct pool_job {
     char *name;    /* for messages and progress */
-    char *key;     /* in the cache; NULL: never cached */
+    char *key;     /* in the cache */
     double weight; /* estimated time in any unit; heavy jobs start first */
     pool_compute *compute;
     const void *context; /* not owned */
@@ -46,7 +46,7 @@ typedef void pool_progress(void *context, const char *what, size_t done, size_t 
                            double share);
 
 /* One share of the jobs, for machines that compute side by side into one cache. A pure function of
- * the jobs' names, keys and weights. Jobs without a cache key are in no share. */
+ * the jobs' names, keys and weights. */
 struct pool_share {
     int number, of; /* 1..of; of = 0: all jobs */
 };
@@ -68,7 +68,7 @@ size_t pool_add(struct pool *pool, const char *name, const char *key, double wei
 /* The number of the job with this key; (size_t)-1: there is none. */
 size_t pool_find(const struct pool *pool, const char *key);
 
-/* Writes the share of each job, 1..of, into shares (pool->count elements); 0: none. Balanced by
+/* Writes the share of each job, 1..of, into shares (pool->count elements). Balanced by
  * weight: the heaviest job goes to the lightest share. STATUS_ENVIRONMENT: no memory. */
 enum status pool_divide(const struct pool *pool, int of, int *shares, struct error *error);
 

@@ -97,7 +97,7 @@ static inline size_t lacking(void)
 {
     size_t n = 0;
     for (size_t i = 0; i < call.pool.count; i++)
-        n += call.pool.jobs[i].key && !cache_has(&call.place.cache, call.pool.jobs[i].key);
+        n += !cache_has(&call.place.cache, call.pool.jobs[i].key);
     return n;
 }
 

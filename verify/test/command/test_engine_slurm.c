@@ -112,22 +112,26 @@ TEST(share_that_fails_three_times)
     }
 }
 
-/* The message names the first ten of many missing computations. */
+/* The message names the first ten of many missing computations and of many shares. */
 TEST(many_are_missing)
 {
-    again();
-    for (int s = 1; s <= SHARES; s++)
-        for (int t = 0; t < 3; t++) made.fates[s][t] = ENDS_BADLY;
-    assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
-    for (int i = 0; i < N; i++) {
-        char name[64];
-        snprintf(name, sizeof name, "sphproof: missing: task %d (share ", i);
-        assert_int_equal(strstr(call.said, name) != NULL, i < 10);
-    }
-    for (int s = 1; s <= SHARES; s++) {
-        char share[32];
-        snprintf(share, sizeof share, "share %d of 3 (FAILED, ", s);
-        says(share);
+    for (int shares = SHARES; shares <= 11; shares += 8) {
+        again();
+        call.work.tasks = shares;
+        for (int i = 0; i < N; i++) call.pool.jobs[i].weight = 1;
+        for (int s = 1; s <= shares; s++)
+            for (int t = 0; t < 3; t++) made.fates[s][t] = ENDS_BADLY;
+        assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+        for (int i = 0; i < N; i++) {
+            char name[64];
+            snprintf(name, sizeof name, "sphproof: missing: task %d (share ", i);
+            assert_int_equal(strstr(call.said, name) != NULL, i < 10);
+        }
+        for (int s = 1; s <= shares; s++) {
+            char share[48];
+            snprintf(share, sizeof share, "share %d of %d (FAILED, ", s, shares);
+            assert_int_equal(strstr(call.said, share) != NULL, s <= 10);
+        }
     }
 }
 
@@ -307,8 +311,18 @@ TEST(name_of_a_study)
     char path[CACHE_PATH_MAX];
     cache_path(&call.place.cache, "task 1", path);
     assert_int_equal(unlink(path), 0);
+    snprintf(call.place.cache.folder, sizeof call.place.cache.folder, "./%s",
+             call.place.cache_folder);
     assert_int_equal(compute_all(), STATUS_OK);
     assert_string_equal(made.name, name);
+    again();
+    assert_int_equal(compute_all(), STATUS_OK);
+    assert_string_not_equal(made.name, name);
+    again();
+    strcat(call.place.cache.folder, "_none");
+    assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+    says_error("_none: No such file or directory");
+    assert_int_equal(made.submissions, 0);
 }
 
 TEST_BETWEEN(begin, end);

@@ -250,6 +250,28 @@ TEST(state_file)
         assert_int_equal(compute_all(), states[i].status);
         assert_string_equal(made.arrays, states[i].arrays);
     }
+    /* the least and the greatest number of shares, and one too many */
+    for (int tasks = 1; tasks <= ENGINE_TASKS_MAX + 1; tasks += tasks > 1 ? 1 : 999) {
+        char path[300], of[32];
+        again();
+        made.fates[2][0] = STAYS;
+        made.interrupt = 130;
+        assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+        state_path(path);
+        FILE *file = fopen(path, "w");
+        fprintf(file, "{\"tasks\": %d", tasks);
+        for (int k = 0; k < 2; k++) {
+            fputs(k ? ", \"jobs\": [0" : ", \"tries\": [0", file);
+            for (int t = 1; t < tasks; t++) fputs(", 0", file);
+            fputc(']', file);
+        }
+        fputc('}', file);
+        fclose(file);
+        for (size_t k = 0; k < made.count; k++) made.tasks[k].fate = FORGOTTEN;
+        assert_int_equal(compute_all(), STATUS_OK);
+        snprintf(of, sizeof of, "TASK_ID/%d ", tasks > ENGINE_TASKS_MAX ? SHARES : tasks);
+        assert_non_null(strstr(made.wrap, of));
+    }
     /* invalid states: the study is divided again */
     static const char *const none[] = {"",
                                        "{",

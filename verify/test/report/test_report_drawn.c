@@ -191,8 +191,7 @@ static void add_settings(struct buffer *to, const struct pool_job *job)
     static const char *const names[] = {"profile of ", "rest_", "square,", "kelvin_", "rayleigh_"};
     json_t *key = NULL;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (job->key && !strncmp(job->name, names[i], strlen(names[i])))
-            key = json_loads(job->key, 0, NULL);
+        if (!strncmp(job->name, names[i], strlen(names[i]))) key = json_loads(job->key, 0, NULL);
     char *settings = key ? json_dumps(json_object_get(key, "settings"),
                                       JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(6))
                          : NULL;
@@ -209,8 +208,7 @@ static struct report *planned(struct made_kept *kept, enum report_mode mode)
     assert_int_equal(report_create(mode, &report, &error), STATUS_OK);
     const struct pool *pool = report_pool(report);
     for (size_t i = 0; i < pool->count; i++) {
-        buffer_format(&text, "%s: %.4g%s\n", pool->jobs[i].name, pool->jobs[i].weight,
-                      pool->jobs[i].key ? "" : ", never kept");
+        buffer_format(&text, "%s: %.4g\n", pool->jobs[i].name, pool->jobs[i].weight);
         add_settings(&text, &pool->jobs[i]);
     }
     compare(kept, "plan", mode == REPORT_NIGHTLY, &text);

@@ -161,7 +161,7 @@ TEST(many_jobs)
     for (size_t i = 0; i < SLOTS; i++) {
         snprintf(name, sizeof name, "job %zu", i);
         snprintf(key, sizeof key, "key %zu", i);
-        assert_int_equal(pool_add(&pool, name, i % 5 ? key : NULL, (double)i, obey, &script[i]), i);
+        assert_int_equal(pool_add(&pool, name, key, (double)i, obey, &script[i]), i);
         assert_int_equal(pool.count, i + 1);
     }
     for (size_t i = 0; i < SLOTS; i++) {
@@ -171,13 +171,9 @@ TEST(many_jobs)
         assert_string_equal(job->name, name);
         assert_true(job->weight == (double)i && job->compute == obey && job->context == &script[i]);
         assert_true(!job->done && !job->cached && !job->crashed && !job->elsewhere);
-        assert_true(pool_find(&pool, key) == (i % 5 ? i : (size_t)-1));
-        if (i % 5) {
-            assert_string_equal(job->key, key);
-            assert_int_equal(pool_add(&pool, "again", key, 7, obey, NULL), i);
-        } else {
-            assert_null(job->key);
-        }
+        assert_true(pool_find(&pool, key) == i);
+        assert_string_equal(job->key, key);
+        assert_int_equal(pool_add(&pool, "again", key, 7, obey, NULL), i);
     }
     /* a key that is not UTF-8 cannot be found again */
     assert_true(pool_add(&pool, "job", "\xff", 1, obey, NULL) == (size_t)-1);
@@ -248,26 +244,25 @@ TEST(results_that_are_kept)
     place_clear(&place);
 }
 
-/* A job without a key is never kept; a valid entry that is not a reply is computed again, and so is
- * a damaged one, which is counted. */
+/* A valid entry that is not a reply is computed again, and so is a damaged one, which is
+ * counted. */
 TEST(entries_that_are_missing_or_damaged)
 {
     struct place place;
     struct pool pool;
     struct error error = {0};
-    struct script script[3] = {{.kind = WITH_DOCUMENT}, {.kind = WITH_DOCUMENT}, {.kind = NOTHING}};
+    struct script script[2] = {{.kind = WITH_DOCUMENT}, {.kind = WITH_DOCUMENT}};
     char path[CACHE_PATH_MAX];
     *board = (struct board){0};
     place_make(&place);
     for (int round = 0; round < 3; round++) {
         add(&pool, script, 2, NULL);
-        assert_int_equal(pool_add(&pool, "no key", NULL, 9, obey, &script[2]), 2);
         assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK);
         assert_int_equal(pool.found, round == 0 ? 0 : 1);
         assert_int_equal(pool.damaged, round == 1);
-        assert_int_equal(board->count, 3 + 2 * round);
-        assert_true(pool.jobs[0].document && pool.jobs[1].document && !pool.jobs[2].document);
-        assert_true(pool.jobs[0].done && pool.jobs[1].done && pool.jobs[2].done);
+        assert_int_equal(board->count, 2 + round);
+        assert_true(pool.jobs[0].document && pool.jobs[1].document);
+        assert_true(pool.jobs[0].done && pool.jobs[1].done);
         pool_free(&pool);
         if (round == 0) {
             cache_path(&place.cache, "job 0", path);
@@ -463,7 +458,7 @@ TEST(shares_by_hand)
     static const struct {
         const char *key;
         double weight;
-    } rows[] = {{"d", 5}, {"b", 3}, {"a", 3}, {NULL, 9}, {"c", 4}, {"e", 1}, {"f", 1}, {NULL, 3}};
+    } rows[] = {{"d", 5}, {"b", 3}, {"a", 3}, {"c", 4}, {"e", 1}, {"f", 1}};
     enum { N = sizeof rows / sizeof *rows };
     struct pool pool = {0};
     struct error error = {0};
@@ -472,10 +467,10 @@ TEST(shares_by_hand)
         assert_int_equal(pool_add(&pool, "job", rows[i].key, rows[i].weight, obey, NULL), i);
     for (int of = 1; of <= 3; of++) {
         /* computed independently, in the order d c a b e f */
-        static const int order[] = {0, 4, 2, 1, 5, 6};
+        static const int order[] = {0, 3, 2, 1, 4, 5};
         double load[3] = {0};
         int want[N] = {0};
-        for (size_t k = 0; k < 6; k++) {
+        for (size_t k = 0; k < N; k++) {
             int least = 0;
             for (int s = 1; s < of; s++) least = load[s] < load[least] ? s : least;
             load[least] += rows[order[k]].weight;
@@ -497,15 +492,14 @@ TEST(share_computes_its_own_jobs)
     struct script script[N] = {{0}};
     static const double weights[N] = {6, 5, 4, 3, 2, 1};
     for (int number = 1; number <= 2; number++) {
-        int of[N + 1];
+        int of[N];
         *board = (struct board){0};
         add(&pool, script, N, weights);
-        assert_int_equal(pool_add(&pool, "no key", NULL, 7, obey, &script[0]), N);
         assert_int_equal(pool_divide(&pool, 2, of, &error), STATUS_OK);
         const struct pool_settings settings = {.jobs = 1, .share = {.number = number, .of = 2}};
         assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
         int mine = 0;
-        for (int i = 0; i <= N; i++) {
+        for (int i = 0; i < N; i++) {
             assert_true(pool.jobs[i].elsewhere == (of[i] != number));
             assert_true(pool.jobs[i].done == (of[i] == number));
             mine += of[i] == number;
