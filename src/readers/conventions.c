@@ -49,7 +49,7 @@ static int nearer(const void *a, const void *b)
 /* Truncates the list, since no code sums over more than NEIGHBOURS_MAX neighbours. */
 static void limit_reach(struct sample *sample, struct near *near)
 {
-    if (near->count) qsort(near->neighbour, near->count, sizeof *near->neighbour, nearer);
+    qsort(near->neighbour, near->count, sizeof *near->neighbour, nearer);
     if (near->count <= NEIGHBOURS_MAX) return;
     near->count = NEIGHBOURS_MAX;
     sample->reach = fmin(sample->reach, near->neighbour[NEIGHBOURS_MAX - 1].s);
@@ -141,7 +141,7 @@ static struct convention fit(const struct sample *sample, const struct kernel *k
         if (given <= sample->reach) best.residual = residual(sample, kernel, sum, given);
         return best;
     }
-    for (int k = 0; k <= RATIO_STEPS; k++) {
+    for (int k = 0;; k++) {
         const double ratio = RATIO_LEAST * pow(step, k);
         if (ratio > sample->reach) break;
         const double value = residual(sample, kernel, sum, ratio);

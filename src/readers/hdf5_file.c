@@ -120,7 +120,8 @@ static void close_entry(struct entry *e)
     if (e->self >= 0) e->attribute ? h5.Aclose(e->self) : h5.Dclose(e->self);
 }
 
-/* False: missing, or more numbers than a header has. Close with close_entry. */
+/* False: missing, or more numbers than a header has. Close with close_entry. (Calls of the library
+ * with a handle that is negative fail.) */
 static bool open_entry(const struct snapshot_source *source, const char *group, const char *name,
                        struct entry *e)
 {
@@ -131,12 +132,12 @@ static bool open_entry(const struct snapshot_source *source, const char *group, 
     e->attribute = h5.Aexists_by_name(file_of(source), group, name, H5P_DEFAULT) > 0;
     if (e->attribute) {
         e->self = h5.Aopen_by_name(file_of(source), group, name, H5P_DEFAULT, H5P_DEFAULT);
-        if (e->self >= 0) e->type = h5.Aget_type(e->self), e->space = h5.Aget_space(e->self);
+        e->type = h5.Aget_type(e->self), e->space = h5.Aget_space(e->self);
     } else if (hdf5_has(source, path)) {
         e->self = h5.Dopen2(file_of(source), path, H5P_DEFAULT);
-        if (e->self >= 0) e->type = h5.Dget_type(e->self), e->space = h5.Dget_space(e->self);
+        e->type = h5.Dget_type(e->self), e->space = h5.Dget_space(e->self);
     }
-    if (e->type >= 0 && e->space >= 0) e->count = h5.Sget_simple_extent_npoints(e->space);
+    e->count = h5.Sget_simple_extent_npoints(e->space);
     if (e->count >= 1 && e->count <= HEADER_NUMBERS_MAX) return true;
     close_entry(e);
     return false;
@@ -199,13 +200,11 @@ static bool open_dataset(const struct snapshot_source *source, const char *path,
 {
     *d = (struct dataset){-1, -1, -1, {0, 1}};
     d->self = h5.Dopen2(file_of(source), path, H5P_DEFAULT);
-    if (d->self >= 0) d->type = h5.Dget_type(d->self);
-    if (d->self >= 0) d->space = h5.Dget_space(d->self);
-    if (d->type >= 0 && d->space >= 0 && is_number(d->type)) {
-        const int rank = h5.Sget_simple_extent_ndims(d->space);
-        if ((rank == 1 || rank == 2) &&
-            h5.Sget_simple_extent_dims(d->space, d->shape, NULL) == rank)
-            return true;
+    d->type = h5.Dget_type(d->self), d->space = h5.Dget_space(d->self);
+    const int rank = h5.Sget_simple_extent_ndims(d->space);
+    if (is_number(d->type) && (rank == 1 || rank == 2)) {
+        h5.Sget_simple_extent_dims(d->space, d->shape, NULL);
+        return true;
     }
     close_dataset(d);
     return false;
@@ -214,16 +213,14 @@ static bool open_dataset(const struct snapshot_source *source, const char *path,
 void hdf5_kind(const struct snapshot_source *source, const char *path, char *text, size_t size)
 {
     const hid_t self = h5.Oopen(file_of(source), path, H5P_DEFAULT);
-    const H5I_type_t kind = self >= 0 ? h5.Iget_type(self) : H5I_BADID;
-    const hid_t type = kind == H5I_DATASET ? h5.Dget_type(self) : -1,
-                space = kind == H5I_DATASET ? h5.Dget_space(self) : -1;
-    if (type >= 0 && space >= 0 && is_number(type))
+    const hid_t type = h5.Dget_type(self), space = h5.Dget_space(self);
+    if (is_number(type))
         snprintf(text, size, "numbers with %d indices", h5.Sget_simple_extent_ndims(space));
     else
         snprintf(text, size, "%s",
-                 kind == H5I_GROUP                                ? "a group"
-                 : type >= 0 && h5.Tget_class(type) == H5T_STRING ? "text"
-                                                                  : "something else");
+                 h5.Iget_type(self) == H5I_GROUP     ? "a group"
+                 : h5.Tget_class(type) == H5T_STRING ? "text"
+                                                     : "something else");
     if (type >= 0) h5.Tclose(type);
     if (space >= 0) h5.Sclose(space);
     if (self >= 0) h5.Oclose(self);
@@ -254,7 +251,7 @@ static enum status take(const struct dataset *d, const struct snapshot_source *s
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s: %.80s has %zu x %zu numbers; allowed: %zu x %s", source->path,
                          path, (size_t)d->shape[0], columns, file->n, most ? "1 to 3" : "1");
-    double *all = file->n ? malloc(columns * file->n * sizeof *all) : NULL;
+    double *all = malloc(columns * file->n * sizeof *all);
     enum status status = STATUS_OK;
     if (!all)
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);

@@ -67,8 +67,7 @@ static bool comoving(const struct snapshot_source *source, const struct snapshot
     const struct snapshot_value said = hdf5_first(source, says, NULL),
                                 redshift = hdf5_first(source, redshifts, NULL);
     if (said.known) return said.value != 0;
-    return redshift.known && redshift.value > 0 && file->time.known &&
-           fabs(file->time.value * (1 + redshift.value) - 1) < 1e-6;
+    return redshift.value > 0 && fabs(file->time.value * (1 + redshift.value) - 1) < 1e-6;
 }
 
 static enum status take_masses(const struct snapshot_source *source, struct snapshot_file *file,

@@ -50,6 +50,8 @@ static void take_box(const struct phantom_header *header, struct snapshot_file *
 {
     if (!header->boxed) return;
     for (int d = 0; d < 3; d++)
+        if (!isfinite(header->hi[d] - header->lo[d])) return;
+    for (int d = 0; d < 3; d++)
         for (size_t i = 0; i < file->n; i++)
             if (!(file->column[d][i] >= header->lo[d] && file->column[d][i] <= header->hi[d]))
                 return;

@@ -95,8 +95,7 @@ static enum status take_results(const char *path, FILE *results, struct snapshot
                                 struct error *error)
 {
     rewind(results);
-    bool sound = fread(file, sizeof *file, 1, results) == 1 && file->n <= SNAPSHOT_ROWS_MAX &&
-                 file->gas <= file->n && file->notes.count <= SNAPSHOT_NOTES_MAX;
+    bool sound = fread(file, sizeof *file, 1, results) == 1;
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++) {
         const bool there = file->column[c] != NULL;
         file->column[c] = NULL;
@@ -157,8 +156,8 @@ static bool part_path(const char *path, int part, char *text, size_t size)
     const char *base = strrchr(path, '/');
     const char *at = strstr(base ? base : path, ".0");
     while (at && at[2] && at[2] != '.') at = strstr(at + 1, ".0");
-    return at &&
-           snprintf(text, size, "%.*s.%d%s", (int)(at - path), path, part, at + 2) < (int)size;
+    if (at) snprintf(text, size, "%.*s.%d%s", (int)(at - path), path, part, at + 2);
+    return at;
 }
 
 static bool same(struct snapshot_value a, struct snapshot_value b)

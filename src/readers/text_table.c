@@ -12,7 +12,7 @@
 bool text_table_is_text(const struct snapshot_source *source)
 {
     const size_t n = source->size < 4096 ? source->size : 4096;
-    if (source->hdf5 || !n) return false;
+    if (source->hdf5) return false;
     for (size_t i = 0; i < n; i++) {
         const unsigned char c = source->bytes[i];
         if ((c < ' ' && c != '\n' && c != '\r' && c != '\t') || c == 127) return false;

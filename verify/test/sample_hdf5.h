@@ -20,8 +20,10 @@ struct item {
     hsize_t shape[3];
     bool packed; /* chunked and compressed */
     double values[ITEM_NUMBERS];
-    char text[48];
+    char text[48];  /* "" of variable length: none is written */
+    size_t letters; /* of a text of fixed length that is 'k' throughout; 0: it is text[] */
 };
+enum { ITEM_LETTERS = 5000 };
 
 static hid_t item_type(const struct item *item)
 {
@@ -30,7 +32,9 @@ static hid_t item_type(const struct item *item)
     if (item->stored < TEXT) return H5Tcopy(numbers[item->stored]);
     if (item->stored > TEXT_VARIABLE) return H5Tcreate(H5T_OPAQUE, 8);
     const hid_t type = H5Tcopy(H5T_C_S1);
-    H5Tset_size(type, item->stored == TEXT ? sizeof item->text : H5T_VARIABLE);
+    H5Tset_size(type, item->stored == TEXT_VARIABLE ? H5T_VARIABLE
+                      : item->letters               ? item->letters
+                                                    : sizeof item->text);
     return type;
 }
 
@@ -58,10 +62,14 @@ static void write_item(hid_t file, const struct item *item)
     const hid_t type = item_type(item), how = H5Pcreate(H5P_DATASET_CREATE);
     const hid_t space =
         item->rank ? H5Screate_simple(item->rank, item->shape, NULL) : H5Screate(H5S_SCALAR);
-    const char *text = item->text;
+    const char *text = item->text[0] ? item->text : NULL;
+    char texts[ITEM_LETTERS];
+    memset(texts, 'k', sizeof texts);
+    for (size_t k = 0; k < 2 && !item->letters; k++) /* the same text twice, for an array of two */
+        memcpy(texts + k * sizeof item->text, item->text, sizeof item->text);
     const hid_t memory = item->stored < TEXT ? H5T_NATIVE_DOUBLE : type;
     const void *values = item->stored < TEXT    ? (const void *)item->values
-                         : item->stored == TEXT ? (const void *)item->text
+                         : item->stored == TEXT ? (const void *)texts
                                                 : (const void *)&text;
     herr_t status = 0;
     if (item->stored == GROUP) {
@@ -80,7 +88,8 @@ static void write_item(hid_t file, const struct item *item)
             H5Pset_deflate(how, 4);
         }
         const hid_t self = H5Dcreate2(group, name, type, space, H5P_DEFAULT, how, H5P_DEFAULT);
-        if (item->stored < TEXT || !item->rank) /* an array of texts is left empty */
+        /* an array of texts is left empty, and so is one of more numbers than an item has */
+        if (item->stored < TEXT ? !item->rank || item->shape[0] <= ITEM_NUMBERS : !item->rank)
             status = H5Dwrite(self, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
         H5Dclose(self);
     }

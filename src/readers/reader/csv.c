@@ -309,7 +309,7 @@ static enum status read(const struct snapshot_source *source,
         return error->status;
     for (int d = 0; d < 3 && file->column[d]; d++)
         if (file->boxed && !(file->box[d] > 0 && isfinite(file->box[d])))
-            return error_set(error, STATUS_BAD_INPUT, "%.200s: box = %g; allowed: above 0",
+            return error_set(error, STATUS_BAD_INPUT, "%.200s: box = %g; allowed: finite, above 0",
                              source->path, file->box[d]);
     snprintf(file->code, sizeof file->code, "unknown");
     return STATUS_OK;

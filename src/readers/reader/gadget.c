@@ -130,11 +130,11 @@ static enum status read_header(struct binary *b, struct error *error)
     return STATUS_OK;
 }
 
-/* Bytes of a number if the record has `count` numbers, else 0. */
+/* Bytes of a number if the record has `count` > 0 numbers, else 0. */
 static size_t width_of(const struct record *record, size_t count)
 {
-    if (count && record->size == 4 * count) return 4;
-    if (count && record->size == 8 * count) return 8;
+    if (record->size == 4 * count) return 4;
+    if (record->size == 8 * count) return 8;
     return 0;
 }
 
@@ -202,11 +202,10 @@ static bool try_layout(const struct binary *b, size_t first, struct layout *layo
 {
     size_t at = first;
     const size_t n = b->particles[0];
-    if (b->massive) layout->block[MASSES] = at < b->count ? &b->record[at++] : NULL;
+    if (b->massive) layout->block[MASSES] = &b->record[at++];
     for (int k = ENERGIES; k <= WIDTHS; k++)
         layout->block[k] = at < b->count ? &b->record[at++] : NULL;
-    if (b->massive && !(layout->block[MASSES] && width_of(layout->block[MASSES], b->massive)))
-        return false;
+    if (b->massive && !width_of(layout->block[MASSES], b->massive)) return false;
     if (layout->block[WIDTHS] && !width_of(layout->block[WIDTHS], n)) layout->block[WIDTHS] = NULL;
     return layout->block[ENERGIES] && width_of(layout->block[ENERGIES], n) &&
            layout->block[DENSITIES] && width_of(layout->block[DENSITIES], n);

@@ -7,7 +7,7 @@
 
 static bool recognises(const struct snapshot_source *source)
 {
-    return source->file && hdf5_has(source, "Header") && !hdf5_has(source, "HydroScheme");
+    return source->file && hdf5_has(source, "Header"); /* SWIFT's reader is asked before */
 }
 
 static const struct hdf5_names names[] = {

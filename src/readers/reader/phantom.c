@@ -22,15 +22,16 @@ struct dump {
     char arrays[200];    /* names of the particle arrays, as many as fit */
 };
 
-/* Checks the first record: magic numbers as an integer, a real and two or three integers, all of
+/* Reads the first record: magic numbers as an integer, a real and two or three integers, all of
  * the default kinds of 4 or 8 bytes. */
-static bool begins(const struct snapshot_source *source, bool swapped, size_t bytes[KINDS])
+static bool begins(struct dump *dump, bool swapped)
 {
     static const size_t fixed[KINDS] = {4, 1, 2, 4, 8, 8, 4, 8};
     struct error ignored = {0};
     struct fortran_record record;
-    size_t at = 0;
-    if (source->hdf5 || fortran_next(source, swapped, 1, &at, &record, &ignored)) return false;
+    *dump = (struct dump){.source = dump->source, .swapped = swapped, .count = 1};
+    if (dump->source->hdf5 || fortran_next(dump->source, swapped, 1, &dump->at, &record, &ignored))
+        return false;
     for (size_t i = 4; i <= 8; i += 4)
         for (size_t r = 4; r <= 8; r += 4) {
             const unsigned char *b = record.bytes;
@@ -39,8 +40,8 @@ static bool begins(const struct snapshot_source *source, bool swapped, size_t by
                 fortran_integer(b + i + r, i, swapped) != MAGIC_SECOND ||
                 fortran_integer(b + 3 * i + r, i, swapped) != MAGIC_THIRD)
                 continue;
-            memcpy(bytes, fixed, sizeof fixed);
-            bytes[0] = i, bytes[FIRST_REAL] = r;
+            memcpy(dump->bytes, fixed, sizeof fixed);
+            dump->bytes[0] = i, dump->bytes[FIRST_REAL] = r;
             return true;
         }
     return false;
@@ -48,8 +49,8 @@ static bool begins(const struct snapshot_source *source, bool swapped, size_t by
 
 static bool recognises(const struct snapshot_source *source)
 {
-    size_t bytes[KINDS];
-    return begins(source, false, bytes) || begins(source, true, bytes);
+    struct dump dump = {.source = source};
+    return begins(&dump, false) || begins(&dump, true);
 }
 
 static enum status next(struct dump *dump, size_t size, const char *what,
@@ -125,11 +126,9 @@ static enum status read_header(struct dump *dump, struct values *values, struct 
             take_value(tags.bytes + TAG * k,
                        number(dump, numbers.bytes + dump->bytes[kind] * k, kind), values);
     }
-    bool boxed = true;
+    values->header.boxed = true;
     for (int d = 0; d < 3; d++)
-        boxed = boxed && values->end[d][0] && values->end[d][1] &&
-                values->header.hi[d] > values->header.lo[d];
-    values->header.boxed = boxed;
+        values->header.boxed = values->header.boxed && values->end[d][0] && values->end[d][1];
     return STATUS_OK;
 }
 
@@ -233,16 +232,12 @@ static enum status read(const struct snapshot_source *source,
 {
     struct dump dump = {.source = source};
     struct values values = {0};
-    struct fortran_record record, name;
+    struct fortran_record name;
     double *types = NULL;
     char words[101];
     (void)options;
-    dump.swapped = !begins(source, false, dump.bytes);
-    if (dump.swapped) begins(source, true, dump.bytes);
-    dump.count = 1;
-    if (fortran_next(source, dump.swapped, 1, &dump.at, &record, error) ||
-        next(&dump, 100, "the name", &name, error))
-        return error->status;
+    if (!begins(&dump, false)) begins(&dump, true);
+    if (next(&dump, 100, "the name", &name, error)) return error->status;
     snprintf(words, sizeof words, "%.100s", (const char *)name.bytes);
     status_clean(words);
     if (check_kind(source->path, words, 1, error) || read_header(&dump, &values, error) ||

@@ -44,7 +44,7 @@ static void take_header(const struct snapshot_source *source, struct phantom_hea
     for (int d = 0; d < 3; d++)
         header->boxed = hdf5_numbers(source, "header", ends[d][0], &header->lo[d], 1) >= 1 &&
                         hdf5_numbers(source, "header", ends[d][1], &header->hi[d], 1) >= 1 &&
-                        header->hi[d] > header->lo[d] && header->boxed;
+                        header->boxed;
 }
 
 static enum status read(const struct snapshot_source *source,

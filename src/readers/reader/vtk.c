@@ -57,7 +57,7 @@ static bool next_count(struct vtk *vtk, const char *what, size_t *count)
     char word[WORD];
     double value;
     if (!text_table_number(next_word(vtk, word), &value) || !(value >= 0) ||
-        value != floor(value) || value > (double)vtk->source->size || value > SNAPSHOT_ROWS_MAX)
+        value != floor(value) || value > fmin((double)vtk->source->size, SNAPSHOT_ROWS_MAX))
         return refuse(vtk, "no number that the file has room for stands behind ", what);
     *count = (size_t)value;
     return true;

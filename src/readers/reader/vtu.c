@@ -124,7 +124,7 @@ static bool fetch(const struct array *array, size_t n, unsigned char *to, const 
 {
     const size_t length = array->raw ? n : (n + 2) / 3 * 4;
     unsigned word = 0;
-    if (n > SIZE_MAX / 2 || length > (size_t)(array->end - array->at)) return false;
+    if (length > (size_t)(array->end - array->at)) return false;
     const char *at = array->at;
     if (behind) *behind = at + length;
     if (array->raw) {

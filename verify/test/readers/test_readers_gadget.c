@@ -84,6 +84,13 @@ TEST(truncated_files)
             refuses(size, "no beginning", "no snapshot that is read");
             put_all(&b);
         }
+        if (b.tagged) { /* with a header that is too short */
+            memmove(bytes + 272, bytes + 276, size - 276);
+            put_count(16, &b, 252);
+            put_count(272, &b, 252);
+            refuses(size - 4, "a short header", "the first of 252 bytes; allowed: a header of 256");
+            put_all(&b);
+        }
         refuses(head, "a header alone",
                 "1 records, the first of 256 bytes; allowed: a header of 256 bytes");
         for (size_t at = head - 4; at < size; at += at < head ? 1 : 1 + at % 97) {
@@ -149,6 +156,18 @@ TEST(headers)
         else
             refuses(put_all(&b), "a header", rows[k].says);
     }
+}
+
+TEST(no_gas)
+{
+    struct binary b = made(1);
+    for (int t = 0; t < TYPES; t++) b.count[t] = t == 4;
+    struct snapshot_file file;
+    struct error error;
+    assert_int_equal(read_bytes(put_all(&b), &file, &error), STATUS_BAD_INPUT);
+    const char *end = strstr(error.message, ": no gas: ");
+    assert_string_equal(end ? end : error.message, ": no gas: 1 particles of other types");
+    snapshot_file_free(&file);
 }
 
 /* Format 1 has no names: exactly one assignment of the blocks must be plausible. */
@@ -241,6 +260,15 @@ TEST(records)
     struct error error;
     assert_int_equal(read_bytes(all, &file, &error), STATUS_OK);
     assert_true(file.column[SNAPSHOT_RHO][3] == b.value[RHO][3] / 2);
+    snapshot_file_free(&file);
+    b = made(1); /* a message names as many blocks as it has room for */
+    b.there[MASS] = b.there[RHO] = false, b.extra = 40;
+    char names[300] = "no block 'RHO '; it has: 'POS ' 'VEL ' 'ID  '";
+    for (int k = 3; k < 28; k++) strcat(names, " 'MINE'");
+    for (int t = 0; t < TYPES; t++) b.table[t] = 1;
+    assert_int_equal(read_bytes(put_all(&b), &file, &error), STATUS_BAD_INPUT);
+    const char *block = strstr(error.message, "no block");
+    assert_string_equal(block ? block : error.message, names);
     snapshot_file_free(&file);
     /* a block may itself be 8 bytes long */
     bytes[put_count(0, &b, 7)] = 1;

@@ -215,6 +215,11 @@ TEST(damaged_columns)
             refuses(l, items, f->path, "12 x 4");
             items[k].shape[0] = 0;
             refuses(l, items, f->path, first ? "no particles" : "0 x 4");
+            items[k].shape[0] = N, items[k].shape[1] = 0;
+            refuses(l, items, f->path, "12 x 0");
+            items[k].shape[0] = ((hsize_t)1 << 28) + 1, items[k].shape[1] = 1;
+            refuses(l, items, f->path,
+                    first ? "268435457 particles; allowed: up to 268435456" : "has 268435457 x 1");
             items[k].rank = 3;
             items[k].shape[0] = N, items[k].shape[1] = items[k].shape[2] = 1;
             refuses(l, items, f->path, "no table of numbers, but numbers with 3 indices");
@@ -250,6 +255,83 @@ TEST(damaged_columns)
                     allows(items, l->count);
             }
         }
+    }
+}
+
+/* Changes the first byte of all compressed pieces of a file. */
+static void damage_pieces(const char *path)
+{
+    static unsigned char bytes[1 << 16];
+    FILE *of = fopen(path, "r+b");
+    assert_non_null(of);
+    const size_t n = fread(bytes, 1, sizeof bytes, of);
+    int damaged = 0;
+    for (size_t i = 0; i + 2 < n; i++)
+        if (bytes[i] == 0x78 && bytes[i + 1] == 0x5e) bytes[i + 2] ^= 7, damaged++;
+    rewind(of);
+    assert_true(damaged > 0 && fwrite(bytes, 1, n, of) == n && fclose(of) == 0);
+}
+
+/* Damaged columns are refused; numbers of the header that cannot be read count as missing. */
+TEST(damaged_pieces)
+{
+    for (int a = 0; a < LAYOUTS; a++)
+        for (size_t k = 0; k < layouts[a].count; k++) {
+            const struct field *f = &layouts[a].fields[k];
+            struct item items[ITEMS_MAX];
+            struct snapshot_file file;
+            struct error error = {0};
+            char says[120];
+            if (f->meaning != BOX && (!is_column(f) || f->meaning == IGNORED)) continue;
+            const size_t n = items_of(&layouts[a], items);
+            items[k].packed = true, items[k].attribute = false;
+            write_items(path_of("a.hdf5"), items, n);
+            damage_pieces(path_of("a.hdf5"));
+            const enum status status = snapshot_read(path_of("a.hdf5"), &here, &file, &error);
+            snprintf(says, sizeof says, "%s cannot be read: damaged, or packed by", f->path);
+            assert_int_equal(status, f->meaning == BOX ? STATUS_OK : STATUS_BAD_INPUT);
+            if (status)
+                assert_non_null(strstr(error.message, says));
+            else
+                assert_false(file.boxed);
+            snapshot_file_free(&file);
+        }
+}
+
+/* A text of the header is one text of less than 4096 letters, else it counts as missing. */
+TEST(texts)
+{
+    static const struct {
+        enum stored stored;
+        int rank;
+        hsize_t count;
+        const char *text;
+        size_t letters, length; /* length: of what is read */
+    } rows[] = {{TEXT, 0, 1, "Quartic", 0, 7},
+                {TEXT, 1, 1, "Quartic", 0, 7},
+                {TEXT, 1, 2, "Quartic", 0, 0},
+                {TEXT_VARIABLE, 0, 1, "Quartic", 0, 7},
+                {TEXT_VARIABLE, 0, 1, "", 0, 0},
+                {TEXT, 0, 1, "", 47, 47},
+                {TEXT, 0, 1, "", 4095, 47},
+                {TEXT, 0, 1, "", 4096, 0},
+                {F64, 0, 1, "", 0, 0}};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        struct item items[ITEMS_MAX];
+        struct snapshot_file file;
+        struct error error = {0};
+        const size_t n = items_of(&layouts[1], items);
+        for (size_t k = 0; k < n; k++)
+            if (layouts[1].fields[k].meaning == KERNEL) {
+                items[k].stored = rows[r].stored, items[k].rank = rows[r].rank;
+                items[k].shape[0] = rows[r].count, items[k].letters = rows[r].letters;
+                strcpy(items[k].text, rows[r].text);
+            }
+        write_items(path_of("a.hdf5"), items, n);
+        if (snapshot_read(path_of("a.hdf5"), &here, &file, &error)) fail_msg("%s", error.message);
+        assert_int_equal(strlen(file.kernel), rows[r].length);
+        assert_true(!rows[r].length || file.kernel[0] == (rows[r].letters ? 'k' : 'Q'));
+        snapshot_file_free(&file);
     }
 }
 

@@ -187,8 +187,8 @@ TEST(phantom)
     static const char *const ends[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
     for (int dead = 0; dead < 3; dead++)
         /* the end that is missing, or that lies within the gas; 12: none; 13: all ends are at
-         * particles */
-        for (int end = 0; end < 14; end++) {
+         * particles; 14: one is infinitely far */
+        for (int end = 0; end < 15; end++) {
             struct layout l = layouts[3];
             struct snapshot_file file;
             struct error error = {0};
@@ -204,13 +204,14 @@ TEST(phantom)
                 if (end == k) items[n].path[0] = '\0';
                 if (end == 6 + k) items[n].values[0] = 6;
                 if (end == 13) items[n].values[0] = k / 2 + (k % 2 ? 11 : 0);
+                if (end == 14 && k == 3) items[n].values[0] = (double)INFINITY;
                 n++;
             }
             write_items(path_of("p.h5"), items, n);
             if (snapshot_read(path_of("p.h5"), &here, &file, &error)) fail_msg("%s", error.message);
             assert_int_equal(file.n, dead ? N - 1 : N);
             assert_int_equal(file.gas, dead ? N - 4 : N - 3);
-            assert_true(file.boxed == (end >= 12) && file.placed == file.boxed);
+            assert_true(file.boxed == (end == 12 || end == 13) && file.placed == file.boxed);
             noted(&file, "dead particles", dead ? "1 of 12 rows left out" : NULL,
                   "their h is not above 0");
             for (int d = 0; d < 3 && file.boxed; d++)
@@ -237,12 +238,14 @@ TEST(corner_of_the_box)
             for (int i = 0; i < N * columns; i++) x->values[i] = (7 * i) % 13;
             item_called(items, "Header/Dimension")->path[0] = '\0';
             if (numbers == 4) item_called(items, "Header/BoxSize")->path[0] = '\0';
-            items[n] = (struct item){"Header/Origin", true, F64, 1, {3}, false, {-3, 40, 5}, ""};
+            items[n] = (struct item){"Header/Origin", true, F64, 1, {3}, false, {-3, 40, 5}, "", 0};
             items[n++].shape[0] = numbers && numbers < 4 ? (hsize_t)numbers : 3;
             if (!numbers) n--;
-            items[n++] = (struct item){"Header/Case", true, TEXT, 0, {0}, false, {0}, "sod"};
-            items[n++] = (struct item){"Header/Keys", true, TEXT, 0, {0}, false, {0}, "n=3; eta=4"};
-            items[n++] = (struct item){"Header/Boundary", true, TEXT, 0, {0}, false, {0}, "open"};
+            items[n++] = (struct item){"Header/Case", true, TEXT, 0, {0}, false, {0}, "sod", 0};
+            items[n++] =
+                (struct item){"Header/Keys", true, TEXT, 0, {0}, false, {0}, "n=3; eta=4", 0};
+            items[n++] =
+                (struct item){"Header/Boundary", true, TEXT, 0, {0}, false, {0}, "open", 0};
             write_items(path_of("o.hdf5"), items, n);
             if (snapshot_read(path_of("o.hdf5"), &here, &file, &error))
                 fail_msg("%s", error.message);
@@ -329,6 +332,20 @@ TEST(stated_dimensions)
         snprintf(says, sizeof says, "says that it has %d dimensions, but has no %c", said,
                  "xyz"[said - 1]);
         refuses(&layouts[0], items, "dimensions", says);
+    }
+    static const double others[] = {0, 4, (double)NAN}; /* none of these counts */
+    for (int k = 0; k < 4; k++) {
+        struct item items[ITEMS_MAX];
+        struct layout l = layouts[0];
+        items_of(&l, items);
+        item_called(items, "Header/Dimension")->values[0] = k ? others[k - 1] : 1;
+        for (size_t f = 0; f < l.count; f++)
+            if (l.fields[f].meaning == DIMENSION) l.fields[f].meaning = IGNORED;
+        if (k)
+            reads(&l, items, "another number of dimensions");
+        else
+            refuses(&l, items, "dimensions",
+                    "says that it has 1 dimensions, but positions differ along 3");
     }
 }
 

@@ -5,6 +5,7 @@
 
 #ifdef HAVE_HDF5
 #include <float.h>
+#include <unistd.h>
 
 #include "sample_layouts.h"
 
@@ -151,12 +152,46 @@ TEST(parts_with_different_items)
                 assert_int_equal(status, STATUS_OK);
                 continue;
             }
+            const bool counted = strstr(rows[k].says, "than");
+            if (counted && !strstr(error.message, which ? "has less " : "has more "))
+                fail_msg("%s", error.message);
             if (status != STATUS_BAD_INPUT || !strstr(error.message, rows[k].says))
                 fail_msg("%s of part %d: '%s' is not in: %s", rows[k].item, which, rows[k].says,
                          error.message);
             const bool own = strstr(rows[k].says, "cut off"); /* a fault of the file itself */
             assert_non_null(strstr(error.message, own && !which ? "s.0" : "s.1"));
         }
+}
+
+/* Parts with the corner of the box and the boundary that our own snapshots have, of which one may
+ * be another or missing. */
+TEST(parts_with_different_corners)
+{
+    static const char *const says[] = {
+        NULL,          "another box",      "another box",     "another box",
+        "another box", "another boundary", "another boundary"};
+    for (int fault = 0; fault < 7; fault++) {
+        struct snapshot_file file;
+        struct error error;
+        for (int p = 0; p < 2; p++) {
+            struct item items[ITEMS_MAX];
+            char name[32];
+            part(p, 2, items);
+            items[gadget->count] =
+                (struct item){"Header/Origin", true, F64, 1, {3}, false, {-3, 40, 5}, "", 0};
+            items[gadget->count + 1] =
+                (struct item){"Header/Boundary", true, TEXT, 0, {0}, false, {0}, "open", 0};
+            if (p && fault && fault < 4) items[gadget->count].values[fault - 1] += 1;
+            if (p && fault == 4) items[gadget->count].path[0] = '\0';
+            if (p && fault == 5) strcpy(items[gadget->count + 1].text, "fixed");
+            if (p && fault == 6) items[gadget->count + 1].path[0] = '\0';
+            snprintf(name, sizeof name, "o.%d", p);
+            write_items(path_of(name), items, gadget->count + 2);
+        }
+        assert_int_equal(read_parts("o.0", &file, &error), fault ? STATUS_BAD_INPUT : STATUS_OK);
+        if (fault) assert_non_null(strstr(error.message, says[fault]));
+        snapshot_file_free(&file);
+    }
 }
 
 /* Different boxes along each direction, and of the last part alone. */
@@ -235,6 +270,13 @@ TEST(names)
         if (!status) assert_int_equal(file.n, 2 * N - 1);
         snapshot_file_free(&file);
     }
+    char here_too[4096]; /* a path without folders */
+    struct snapshot_file file;
+    struct error error = {0};
+    assert_true(getcwd(here_too, sizeof here_too) && chdir(place) == 0);
+    assert_int_equal(snapshot_read("a.0", &here, &file, &error), STATUS_OK);
+    assert_true(file.n == 2 * N - 1 && chdir(here_too) == 0);
+    snapshot_file_free(&file);
 }
 
 #endif

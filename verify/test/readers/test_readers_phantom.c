@@ -39,6 +39,7 @@ struct dump {
     int kind[ARRAYS]; /* -1: missing */
     bool typed;
     int groups, rows; /* groups of arrays, the second of sinks; rows in the header */
+    int masses;       /* behind the other values of kind 5, of types that no particle has */
 };
 
 static struct dump made(void)
@@ -110,17 +111,21 @@ static void put_header(const struct dump *d)
 {
     for (int kind = 0; kind < KINDS; kind++) {
         int n = kind == 0; /* an integer that is not read */
+        const int masses = kind == 5 ? d->masses : 0;
         for (int k = 0; k < VALUES; k++) n += d->value[k].tag && d->value[k].kind == kind;
+        n += masses;
         begin(), put(d, n, 4, false), end(d);
         if (!n) continue;
         begin();
         if (kind == 0) tag("nparttot");
         for (int k = 0; k < VALUES; k++)
             if (d->value[k].tag && d->value[k].kind == kind) tag(d->value[k].tag);
+        for (int k = 0; k < masses; k++) tag("massoftype");
         end(d), begin();
         if (kind == 0) number(d, 99, kind);
         for (int k = 0; k < VALUES; k++)
             if (d->value[k].tag && d->value[k].kind == kind) number(d, d->value[k].value, kind);
+        for (int k = 0; k < masses; k++) number(d, 9, kind);
         end(d);
     }
 }
@@ -234,7 +239,7 @@ static void is_read(const struct dump *d)
     static const char *const ends[3][2] = {{"xmin", "xmax"}, {"ymin", "ymax"}, {"zmin", "zmax"}};
     for (int k = 0; k < 3; k++) boxed = boxed && value_of(d, ends[k][0]) && value_of(d, ends[k][1]);
     for (int k = 0; k < 3 && boxed; k++)
-        boxed = *value_of(d, ends[k][1]) > *value_of(d, ends[k][0]);
+        boxed = isfinite(*value_of(d, ends[k][1]) - *value_of(d, ends[k][0]));
     for (size_t i = 0; i < n && boxed; i++)
         for (int k = 0; k < 3 && boxed; k++)
             boxed = d->array[k][row[i]] >= *value_of(d, ends[k][0]) &&
@@ -260,6 +265,9 @@ TEST(every_form)
         if (drawn(3) == 0) d.kind[U + (int)drawn(2)] = -1;
         if (drawn(4) == 0) d.value[4 + drawn(8)].tag = NULL;
         if (drawn(4) == 0) d.value[6 + drawn(6)].value = 0.5; /* too small for the gas, or empty */
+        if (drawn(8) == 0) d.value[6 + 2 * drawn(3)].value = (double)-INFINITY;
+        if (drawn(8) == 0) d.value[7 + 2 * drawn(3)].value = (double)INFINITY;
+        if (drawn(8) == 0) d.masses = 70; /* more than are read */
         is_read(&d);
     }
 }
@@ -282,6 +290,11 @@ TEST(missing_items)
         else
             is_read(&d);
     }
+    for (int a = X; a <= H; a++) { /* integers of this name are no such array */
+        struct dump d = made();
+        d.kind[a] = 3;
+        refuses(put_all(&d), "need real arrays x, y, z and h; they have: itype ");
+    }
     for (int k = 0; k < 4; k++) {
         static const double wrong[] = {0, -1, (double)NAN};
         for (int w = 0; w < 3; w++) {
@@ -298,6 +311,13 @@ TEST(missing_items)
         refuses(put_all(&d), "massoftype is no number");
     }
     struct dump d = made();
+    const size_t size = put_all(&d); /* of two arrays of types the first counts */
+    memcpy(bytes + size - (8 * N + 8) - 20, "itype", 5); /* in place of alpha */
+    struct snapshot_file file;
+    struct error error;
+    assert_int_equal(read_bytes(size, &file, &error), STATUS_OK);
+    assert_int_equal(file.gas, 10);
+    snapshot_file_free(&file);
     d.kind[U] = d.kind[P] = -1;
     refuses(put_all(&d), "neither u nor P");
 }

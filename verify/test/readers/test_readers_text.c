@@ -217,14 +217,15 @@ TEST(values_in_comments)
         assert_true(file.boxed && file.box[1] == 2);
         snapshot_file_free(&file);
     }
-    static const char *const boxes[] = {"# box = 0\n", "# box = 0 1 1\n", "# box = -1\n",
-                                        "# box = 1 0\n", "# box = 1 2 -3\n"};
+    static const char *const boxes[] = {"# box = 0\n",      "# box = 0 1 1\n",
+                                        "# box = -1\n",     "# box = 1 0\n",
+                                        "# box = 1 2 -3\n", "# box = 0:1 0:1 -1e308:1e308\n"};
     for (size_t k = 0; k < sizeof boxes / sizeof *boxes;
          k++) { /* only the directions of the particles count */
         static char text[TEXT_MAX];
         struct table t = table_of(3, true);
         snprintf(t.head, sizeof t.head, "%s", boxes[k]);
-        refuses(text, text_of(&t, text, -1, -1, NULL), NULL, "; allowed: above 0");
+        refuses(text, text_of(&t, text, -1, -1, NULL), NULL, "; allowed: finite, above 0");
     }
     /* contradictions, with both lines, and values that our own snapshots never have */
     static const struct {
@@ -239,6 +240,7 @@ TEST(values_in_comments)
         {"# box = 2\n# box = 2 1\n", ":2: '# box = 2 1'; allowed: one value, but line 1"},
         {"# box = 0:2\n# box = 2\n", ":2: '# box = 2'; allowed: one value, but line 1"},
         {"# box = 0:2\n# box = -1:1\n", ":2: '# box = -1:1'; allowed: one value, but line 1"},
+        {"# box = 0:2 0:1\n# box = 2 1\n", ":2: '# box = 2 1'; allowed: one value, but line 1"},
         {"# case = sod\n# case = lax\n", ":2: '# case = lax'; allowed: one value, but line 1"},
         {"# boundary = open\n# boundary = fixed\n", ":2: '# boundary = fixed'; allowed: one value"},
         {"# keys = n=3\n# keys = n=4\n", ":2: '# keys = n=4'; allowed: one value, but line 1"},
@@ -327,6 +329,7 @@ TEST(files_of_splash)
     }
     static char text[TEXT_MAX];
     refuses("# created by SPLASH\n# x  vx\n1 hot\n", 33, NULL, ":3: column 2, 'vx'");
+    refuses("# created by SPLASH\n# x  vx \n1 hot\n", 34, NULL, ":3: column 2, 'vx'");
     size_t at = (size_t)sprintf(text, "# created by SPLASH\n#");
     for (int c = 0; c < 65; c++) at += (size_t)sprintf(text + at, "  c%d", c);
     at += (size_t)sprintf(text + at, "\n");

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Tests the messages about text tables with one fault, which name its position, about wrong
- * mappings of columns, and about legacy VTK files that are refused. */
+ * mappings of columns, and about legacy VTK files that are refused; and legacy VTK files that are
+ * read. */
 #include "test.h"
 
 #include <fcntl.h>
@@ -305,5 +306,88 @@ TEST(legacy_vtk)
         snapshot_file_free(&file);
         assert_string_equal(error.message, says);
         assert_int_equal(status, STATUS_BAD_INPUT);
+    }
+    refuses(THREE, strlen(THREE), "x=y", "--map is for text; this is vtk, whose names are known");
+}
+
+static void reads_vtk(const char *text, size_t size, struct snapshot_file *file)
+{
+    static const struct snapshot_options plain;
+    struct error error = {0};
+    put_file(text, size);
+    if (snapshot_read(path_of("a.txt"), &plain, file, &error)) fail_msg("%s", error.message);
+    for (int i = 0; i < 4; i++)
+        assert_true(file->column[SNAPSHOT_X][i] == i && file->column[SNAPSHOT_VX][i] == 3 * i &&
+                    file->column[SNAPSHOT_M][i] == 7 && file->column[SNAPSHOT_RHO][i] == 5 + i);
+}
+
+/* Sections that say nothing of the particles are skipped, wherever they stand; a FIELD may give the
+ * time. */
+TEST(legacy_vtk_sections)
+{
+    static const struct {
+        const char *before, *between, *behind; /* the points, and their data */
+        bool timed;
+    } rows[] = {
+        {"FIELD a 1\nTimeValue 1 1 double\n0.25\n", "", "", true},
+        {"FIELD a 1\nTIME 1 1 float\n0.25\n", "", "", true},
+        {"FIELD a 2\nTimeValue 1 2 double\n7 8\nTIME 1 1 double\n0.25\n", "", "", true},
+        {"FIELD a 1\nTimeValue 2 1 double\n7 8\n", "", "", false},
+        {"FIELD a 1\nTime 1 1 int\n3\n", "LINES 1 3\n2 0 1\n", "", false},
+        {"", "CELL_DATA 1\nFIELD a 1\nTIME 1 1 int\n3\n", "", false},
+        {"", "METADATA\nINFORMATION 1\nNAME a\n\n", "NORMALS n int\n0 0 1 0 0 1 0 0 1 0 0 1\n",
+         false},
+        {"", "", "SCALARS m int 2\nLOOKUP_TABLE a\n1 2 3 4 5 6 7 8\n", false},
+        {"", "", "SCALARS a int 4\nLOOKUP_TABLE a\n1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16\n",
+         false},
+        {"", "", "FIELD b 2\nvel 1 4 int\n1 2 3 4\nodd 9 1 int\n1 2 3 4 5 6 7 8 9\n", false},
+        {"", "", "METADATA\nat the end\n", false},
+        {"", "", "CELL_DATA 5\nwhatever", false}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        char text[1000];
+        struct snapshot_file file;
+        const int n =
+            snprintf(text, sizeof text,
+                     ASCII "%sDATASET POLYDATA\nPOINTS 4 int\n0 0 0 1 0 0 2 0 0 3 0 0\n%s"
+                           "POINT_DATA 4\nVECTORS v int\n0 0 0 3 0 0 6 0 0 9 0 0\nSCALARS rho int\n"
+                           "LOOKUP_TABLE a\n5 6 7 8\nFIELD a 1\nm 1 4 int\n7 7 7 7\n%s",
+                     rows[k].before, rows[k].between, rows[k].behind);
+        reads_vtk(text, (size_t)n, &file);
+        assert_true(file.time.known == rows[k].timed &&
+                    (!rows[k].timed || file.time.value == 0.25));
+        snapshot_file_free(&file);
+    }
+}
+
+/* Binary numbers of every type, by two of them: the one whose bits are all set, and 5. */
+TEST(legacy_vtk_types)
+{
+    static const struct {
+        const char *name;
+        size_t width;
+        double all_set;
+    } types[] = {{"char", 1, -1},         {"unsigned_char", 1, 255},
+                 {"short", 2, -1},        {"unsigned_short", 2, 65535},
+                 {"int", 4, -1},          {"unsigned_int", 4, 4294967295.},
+                 {"vtkIdType", 4, -1},    {"long", 8, -1},
+                 {"vtktypeint64", 8, -1}, {"unsigned_long", 8, 18446744073709551615.}};
+    for (size_t k = 0; k < sizeof types / sizeof *types; k++) {
+        char text[1000];
+        struct snapshot_file file;
+        size_t n = (size_t)sprintf(text, HEAD "BINARY\nDATASET POLYDATA\nPOINTS 4 char\n");
+        for (int i = 0; i < 12; i++) text[n++] = (char)(i % 3 ? 0 : i / 3);
+        n += (size_t)sprintf(text + n, "\nPOINT_DATA 4\nVECTORS v char\n");
+        for (int i = 0; i < 12; i++) text[n++] = (char)(i % 3 ? 0 : i);
+        n +=
+            (size_t)sprintf(text + n, "\nFIELD a 3\nrho 1 4 char\n%c%c%c%c\nm 1 4 char\n%c%c%c%c\n",
+                            5, 6, 7, 8, 7, 7, 7, 7);
+        n += (size_t)sprintf(text + n, "du 1 4 %s\n", types[k].name);
+        for (size_t i = 0; i < 4 * types[k].width; i++)
+            text[n++] = (char)(i < types[k].width ? 255 : (i + 1) % types[k].width ? 0 : 5);
+        reads_vtk(text, n, &file);
+        for (int i = 0; i < 4; i++)
+            assert_true(file.column[SNAPSHOT_DU][i] == (i ? 5 : types[k].all_set));
+        assert_true(file.precision[0] == 1.2e-16 && file.precision[1] == 1.2e-16);
+        snapshot_file_free(&file);
     }
 }

@@ -5,6 +5,9 @@
 #include "test.h"
 
 #include "drawn_table.h"
+#ifdef HAVE_ZLIB
+#include <zlib.h>
+#endif
 
 enum { ARRAYS = 6, BYTES_MAX = 1 << 14 };
 enum form { TEXT, BASE64, APPENDED, FORMS };
@@ -187,6 +190,103 @@ TEST(every_form)
     }
 }
 
+/* ---- forms that are written by hand ---- */
+
+/* Four particles whose array du is appended with an encoding; the other arrays are text. */
+static void reads_appended(const char *attributes, const char *type, const void *bytes, size_t size,
+                           const double *du)
+{
+    char text[2000];
+    struct snapshot_file file;
+    struct error error = {0};
+    const char *array = "<DataArray type=\"Float64\" format=\"ascii\" Name=";
+    int n = snprintf(text, sizeof text,
+                     "<VTKFile %s><Piece NumberOfPoints=\"4\">\n<Points>%s\"p\">0 1 2 3"
+                     "</DataArray></Points><PointData>%s\"v\">1 1 1 1</DataArray>%s\"m\">1 1 1 1"
+                     "</DataArray>%s\"rho\">1 1 1 1</DataArray><DataArray type=\"%s\" Name=\"du\" "
+                     "format=\"appended\" offset=\"0\"/></PointData></Piece>\n"
+                     "<AppendedData encoding=\"raw\"> < _",
+                     attributes, array, array, array, array, type);
+    memcpy(text + n, bytes, size);
+    const size_t length = (size_t)n + size;
+    strcpy(text + length, "</AppendedData></VTKFile>");
+    if (!du) {
+        refuses(text, length + 25, NULL, "the array 'du' is cut off or damaged; its points need 4");
+        return;
+    }
+    put_file(text, length + 25);
+    if (snapshot_read(path_of("a.txt"), &(struct snapshot_options){0}, &file, &error))
+        fail_msg("%s", error.message);
+    for (int i = 0; i < 4; i++) assert_true(file.column[SNAPSHOT_DU][i] == du[i]);
+    snapshot_file_free(&file);
+}
+
+/* Numbers of every type, by two of them: the one whose bits are all set, and 5. */
+TEST(types_of_numbers)
+{
+    static const struct {
+        const char *name;
+        size_t width;
+        double all_set;
+    } types[] = {{"Int8", 1, -1},  {"UInt8", 1, 255},
+                 {"Int16", 2, -1}, {"UInt16", 2, 65535},
+                 {"Int32", 4, -1}, {"UInt32", 4, 4294967295.},
+                 {"Int64", 8, -1}, {"UInt64", 8, 18446744073709551615.}};
+    for (size_t k = 0; k < sizeof types / sizeof *types; k++)
+        for (int big = 0; big < 2; big++) {
+            const size_t width = types[k].width;
+            unsigned char bytes[40] = {0};
+            bytes[big ? 3 : 0] = (unsigned char)(4 * width);
+            memset(bytes + 4, 255, width);
+            for (size_t i = 1; i < 4; i++) bytes[4 + i * width + (big ? width - 1 : 0)] = 5;
+            const double all = types[k].all_set, du[] = {all, 5, 5, 5};
+            reads_appended(big ? "byte_order='BigEndian'" : "byte_order='LittleEndian'",
+                           types[k].name, bytes, 4 + 4 * width, du);
+        }
+}
+
+#ifdef HAVE_ZLIB
+/* Compressed numbers in blocks of all sizes; one wrong size is a refusal. */
+TEST(compressed_blocks)
+{
+    static const double du[] = {1.25, -2.5, 3, 4};
+    static const struct {
+        size_t blocks, size;                   /* of all blocks but the last */
+        int said_blocks, said_size, said_last; /* added to what is said */
+        int said_packed;                       /* of the last block */
+        bool refused;
+    } rows[] = {
+        {1, 32, 0, 0, 0, 0, false},   {2, 16, 0, 0, 0, 0, false}, {2, 24, 0, 0, 0, 0, false},
+        {32, 1, 0, 0, 0, 0, false},   {2, 24, 0, 1, 0, 0, true},  {2, 24, 0, 0, 1, 0, true},
+        {2, 24, 0, 0, -8, 0, true},   {2, 24, -1, 0, 0, 0, true}, {2, 24, 31, 0, 0, 0, true},
+        {2, 24, 0, 0, 0, 1000, true}, {2, 24, 0, 0, 0, -1, true}, {3, 16, 0, 0, 0, 0, true}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        for (int wide = 0; wide < 2; wide++) {
+            unsigned char bytes[1400] = {0}, *at = bytes, packed[1000];
+            size_t all = 0;
+            uint64_t head[40] = {rows[k].blocks, rows[k].size, 32 % rows[k].size};
+            for (size_t b = 0; b < rows[k].blocks; b++) {
+                const size_t from = b * rows[k].size < 32 ? b * rows[k].size : 32,
+                             size = 32 - from < rows[k].size ? 32 - from : rows[k].size;
+                uLongf room = sizeof packed - all;
+                assert_int_equal(
+                    compress(packed + all, &room, (const unsigned char *)du + from, size), Z_OK);
+                head[3 + b] = room, all += room;
+            }
+            head[0] += (uint64_t)rows[k].said_blocks, head[1] += (uint64_t)rows[k].said_size;
+            head[2] += (uint64_t)rows[k].said_last;
+            head[2 + rows[k].blocks] += (uint64_t)rows[k].said_packed;
+            for (size_t b = 0; b < 3 + rows[k].blocks; b++, at += wide ? 8 : 4)
+                memcpy(at, &head[b], wide ? 8 : 4); /* the test's machines are little-endian */
+            memcpy(at, packed, all);
+            reads_appended(wide ? "compressor='vtkZLibDataCompressor' header_type='UInt64'"
+                                : "compressor='vtkZLibDataCompressor'",
+                           "Float64", bytes, (size_t)(at - bytes) + all,
+                           rows[k].refused ? NULL : du);
+        }
+}
+#endif
+
 /* ---- one fault ---- */
 
 #define ZEROS "000000000000000000000000000000000000000000000000000000000000" /* 60 of them */
@@ -217,6 +317,10 @@ static const struct {
      "'vtkLZ4DataCompressor'; allowed: vtkZLibDataCompressor"},
     {TEXT, "4000 -1 4000 -1", "-1 -1 4000 -1", "'box' goes from -1 to -1"},
     {TEXT, "4000 -1 4000 -1", "4000 5 3 -1", "'box' goes from 5 to 3"},
+    {TEXT, "4000 -1 4000 -1", "4000 -1e308 1e308 -1", "'box' goes from -1e+308 to 1e+308"},
+    {TEXT, "Components=\"3\"", "Components=\"10\"", "has no y"}, /* as one */
+    {TEXT, "Components=\"3\"", "Components=\"0\"", "has no y"},
+    {TEXT, "Components=\"3\"", "Components=\"9\"", "no x; found"},
     {TEXT, "\"box\" NumberOfTuples=\"6\"", "\"box\" NumberOfTuples=\"0\"",
      "'box' has 0 x 1 numbers; allowed: 1 to"},
     {TEXT, "\"box\" NumberOfTuples=\"6\"", "\"box\" NumberOfTuples=\"1200\"",
@@ -269,9 +373,33 @@ TEST(one_fault)
     }
 }
 
+/* Text is cut where it would not fit. */
+TEST(long_text)
+{
+    for (int more = -1; more < 2; more++) {
+        struct document d = made();
+        struct snapshot_file file;
+        struct error error = {0};
+        char new[400], want[80];
+        int n = sprintf(new, "\"%d\" format=\"ascii\">", 63 + more);
+        for (int i = 0; i < 63 + more; i++) n += sprintf(new + n, "%d ", 'a' + i % 26);
+        for (int i = 0; i < 63; i++) want[i] = (char)(i < 63 + more ? 'a' + i % 26 : 0);
+        want[63] = '\0';
+        d.form = TEXT;
+        write_out(&d);
+        replace(&d, "\"4\" format=\"ascii\">111 112 101 110", new);
+        put_file(d.text, d.length);
+        if (snapshot_read(path_of("a.txt"), &(struct snapshot_options){0}, &file, &error))
+            fail_msg("%s", error.message);
+        assert_string_equal(file.boundary, want);
+        snapshot_file_free(&file);
+    }
+}
+
 /* A document may end anywhere. */
 TEST(truncated_documents)
 {
+    refuses("<VTKFile", 8, NULL, "is cut off: does not end with </VTKFile>");
     for (int draw = 0; draw < 100; draw++) {
         struct document d = made();
         write_out(&d);
