@@ -518,13 +518,13 @@ static enum status check_fields(struct parser *parser, const struct problem *pro
     return STATUS_OK;
 }
 
-/* Adds the path, and the line of the key if the reason begins with KEY or "key KEY". */
+/* Adds the path, and the line of the key: a reason begins with KEY or "key KEY". */
 static enum status refuse(const struct parser *parser, const struct error *reason)
 {
     const char *word = reason->message;
     char name[32], line[16] = "";
     if (strncmp(word, "key ", 4) == 0) word += 4;
-    snprintf(name, sizeof name, "%.*s", (int)strcspn(word, " ="), word);
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(word, " =:,"), word);
     const int key = setting_find(name);
     if (key >= 0 && parser->seen_settings[key])
         snprintf(line, sizeof line, ":%d", parser->seen_settings[key]);

@@ -314,40 +314,23 @@ static bool has_parameter(int viscosity, enum setting key)
     return false;
 }
 
-/* The key whose value decides whether this key is read; SETTINGS: none. */
-static enum setting decides(enum setting key)
-{
-    switch (key) {
-    case SETTING_sinc_n:
-        return SETTING_kernel;
-    case SETTING_alpha:
-    case SETTING_beta:
-    case SETTING_alpha_min:
-    case SETTING_alpha_max:
-    case SETTING_noise:
-    case SETTING_balsara:
-    case SETTING_viscosity_form:
-        return SETTING_viscosity;
-    case SETTING_balsara_floor:
-        return SETTING_balsara;
-    case SETTING_grade_ratio:
-        return SETTING_grade;
-    case SETTING_seed:
-        return SETTING_lattice;
-    default:
-        return SETTINGS;
-    }
-}
+/* The key whose value decides whether a key is read; 0: none. */
+static const enum setting decided_by[SETTINGS] = {
+    [SETTING_sinc_n] = SETTING_kernel,         [SETTING_alpha] = SETTING_viscosity,
+    [SETTING_beta] = SETTING_viscosity,        [SETTING_alpha_min] = SETTING_viscosity,
+    [SETTING_alpha_max] = SETTING_viscosity,   [SETTING_noise] = SETTING_viscosity,
+    [SETTING_balsara] = SETTING_viscosity,     [SETTING_viscosity_form] = SETTING_viscosity,
+    [SETTING_balsara_floor] = SETTING_balsara, [SETTING_grade_ratio] = SETTING_grade,
+    [SETTING_seed] = SETTING_lattice};
 
 /* True if the key is read with this choice of the key that decides. */
 static bool is_read_with(enum setting key, int choice)
 {
-    switch (decides(key)) {
+    switch (decided_by[key]) {
     case SETTING_kernel:
         return strcmp(kernel_family.members[choice]->name, "sinc") == 0;
     case SETTING_viscosity:
-        return key == SETTING_balsara || key == SETTING_viscosity_form ? !viscosity_of[choice].none
-                                                                       : has_parameter(choice, key);
+        return has_parameter(choice, key);
     case SETTING_lattice:
         return choice >= LATTICE_JITTERED;
     default:
@@ -365,8 +348,8 @@ bool settings_random_start(const struct settings *settings)
 
 bool settings_uses(const struct settings *settings, enum setting key)
 {
-    const enum setting other = decides(key);
-    if (other == SETTINGS) return true;
+    const enum setting other = decided_by[key];
+    if (!other) return true;
     if (other == SETTING_grade) return settings_real(settings, SETTING_grade) < 1;
     if (other == SETTING_lattice) return !settings->file[0] && settings_random_start(settings);
     return settings_uses(settings, other) && is_read_with(key, settings_choice(settings, other));
@@ -384,9 +367,8 @@ enum status settings_refuse_unused(const struct settings *settings, struct error
         const enum setting key = (enum setting)i;
         enum setting idle = key; /* the key itself, or an unused key that it depends on */
         if (settings->value[key].source != SOURCE_USER || settings_uses(settings, key)) continue;
-        while (decides(idle) != SETTINGS && !settings_uses(settings, decides(idle)))
-            idle = decides(idle);
-        const enum setting other = decides(idle);
+        while (!settings_uses(settings, decided_by[idle])) idle = decided_by[idle];
+        const enum setting other = decided_by[idle];
         char given[SETTING_TEXT_MAX], excludes[SETTING_TEXT_MAX], allowed[SETTING_TEXT_MAX] = "";
         const struct family *family = setting_keys[other].family;
         size_t used = 0;

@@ -19,4 +19,4 @@ ALWAYS_INLINE struct viscosity_terms constant_viscous(const struct pair_numbers 
 
 #endif
 VISCOSITY(constant, .member = {"constant", "fixed alpha and beta", "Monaghan 1992"}, .least_dim = 1,
-          .parameters = "alpha beta")
+          .parameters = "alpha beta viscosity_form balsara")

@@ -47,4 +47,5 @@ static inline struct viscosity_goal cullen_dehnen_goal(const struct viscosity_fl
 VISCOSITY(cullen_dehnen,
           .member = {"cullen_dehnen", "alpha jumps up where div v falls, decays behind",
                      "Cullen & Dehnen 2010"},
-          .least_dim = 2, .parameters = "beta alpha_min alpha_max", .find_goal = cullen_dehnen_goal)
+          .least_dim = 2, .parameters = "beta alpha_min alpha_max viscosity_form balsara",
+          .find_goal = cullen_dehnen_goal)

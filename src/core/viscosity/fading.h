@@ -26,4 +26,4 @@ ALWAYS_INLINE struct viscosity_terms fading_viscous(const struct pair_numbers *n
 VISCOSITY(fading,
           .member = {"fading", "constant, but quadratic in compression below 0.01 c a pair",
                      "von Neumann & Richtmyer 1950"},
-          .least_dim = 1, .parameters = "alpha beta")
+          .least_dim = 1, .parameters = "alpha beta viscosity_form balsara")

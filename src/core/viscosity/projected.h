@@ -55,5 +55,6 @@ ALWAYS_INLINE void projected_projector(int dim, const double *L, double *project
 VISCOSITY(projected,
           .member = {"projected",
                      "reconstructed in shocks; noise damped, but not along the local shear", ""},
-          .least_dim = 2, .parameters = "alpha beta noise", .midpoint = true, .noise = true,
+          .least_dim = 2, .parameters = "alpha beta noise viscosity_form balsara", .midpoint = true,
+          .noise = true,
           .defaults = {VOLUME_NUMBER, BALSARA_ON, VISCOSITY_FORM_SIGNAL, PAIR_WIDTH_MEAN})

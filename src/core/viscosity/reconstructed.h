@@ -47,5 +47,5 @@ ALWAYS_INLINE struct viscosity_terms reconstructed_viscous(const struct pair_num
 VISCOSITY(reconstructed,
           .member = {"reconstructed", "velocities extrapolated to the midpoint, limited",
                      "Rosswog 2020"},
-          .least_dim = 1, .parameters = "alpha beta", .midpoint = true,
+          .least_dim = 1, .parameters = "alpha beta viscosity_form balsara", .midpoint = true,
           .defaults = {.cloud_form = VISCOSITY_FORM_SIGNAL, .predicted = PAIR_WIDTH_HARMONIC})

@@ -32,4 +32,5 @@ static inline void time_dependent_evolve(const struct particles *a, ptrdiff_t fi
 VISCOSITY(time_dependent,
           .member = {"time_dependent", "alpha grows in compression, decays behind",
                      "Morris & Monaghan 1997"},
-          .least_dim = 1, .parameters = "beta alpha_min alpha_max", .evolve = time_dependent_evolve)
+          .least_dim = 1, .parameters = "beta alpha_min alpha_max viscosity_form balsara",
+          .evolve = time_dependent_evolve)

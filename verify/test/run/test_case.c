@@ -319,6 +319,9 @@ TEST(whole_files)
     refused(HEAD "[initial]\nseed = 2\n", AT("13") "seed=2 and lattice=uniform exclude each other: "
                                                    "seed needs lattice jittered random "
                                                    "glass, or jitter above 0");
+    refused("[case]\ntitle = a\ndimension = 2\nreference = kelvin_helmholtz\n[domain]\nlo = 0\n"
+            "hi = 1 2\n[initial]\nkind = kelvin_helmholtz\n[run]\nt_end = 1\n",
+            AT("6") "lo, hi: the layers lie in a square box, and this one has sides of 1 and 2");
     refused("[case]\ntitle = a\ndimension = 1\nreference = simple_wave\n[initial]\nkind = riemann\n"
             "left = 1 0 1\nright = 1 0 2\n[run]\nt_end = 1\n",
             AT("4") "reference = simple_wave; allowed: riemann");
