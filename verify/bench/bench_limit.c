@@ -22,9 +22,10 @@ enum { CORRECTED = PAIR_VECTORS };
 #ifdef KERNEL_FILE /* one kernel's, see specialise.c.in */
 
 ALWAYS_INLINE void sum_up(const struct kernel *kernel, kernel_shape *w, kernel_shape *dw,
-                          int vector, bool matrix, int dim, const struct bench_neighbours *list,
+                          int vector, int dim, const struct bench_neighbours *list,
                           double *restrict sums)
 {
+    const bool matrix = vector != VECTOR_GRADIENT;
     const double *restrict x0 = list->x[0], *restrict x1 = list->x[1], *restrict x2 = list->x[2],
                            *restrict volume = list->volume, *restrict f = list->f;
     enum { LANES = 8 };
@@ -64,8 +65,7 @@ ALWAYS_INLINE void sum_up(const struct kernel *kernel, kernel_shape *w, kernel_s
     CLONES static void name##_##tag##_##dim(const struct kernel *kernel,                           \
                                             const struct bench_neighbours *list, double *sums)     \
     {                                                                                              \
-        sum_up(kernel, name##_w, name##_dw, (int)vector, (int)vector != (int)VECTOR_GRADIENT, dim, \
-               list, sums);                                                                        \
+        sum_up(kernel, name##_w, name##_dw, vector, dim, list, sums);                              \
     }
 
 #define ENTRY(name, tag, vector, dim) [vector][dim - 1] = name##_##tag##_##dim,
@@ -87,9 +87,8 @@ bench_limit_loop *bench_limit_find(const struct kernel *kernel, const struct ope
                                    int dim)
 {
     const int specialisation = kernel_specialisation(kernel);
-    const int kind = form->corrected && form->pair_vector == VECTOR_GRADIENT
-                         ? (int)CORRECTED
-                         : (int)form->pair_vector;
+    size_t kind = form->pair_vector;
+    if (form->corrected && kind == VECTOR_GRADIENT) kind = CORRECTED;
     return specialisation < 0 ? NULL : loops[specialisation][kind][dim - 1];
 }
 
