@@ -4,23 +4,23 @@
 
 #include "serialiser.h"
 
-struct made_bytes {
+struct byte_buffer {
     unsigned char bytes[1 << 21];
     size_t used, read;
 };
 
-static inline bool made_put(void *context, void *bytes, size_t n)
+static inline bool buffer_put(void *context, void *bytes, size_t n)
 {
-    struct made_bytes *kept = context;
+    struct byte_buffer *kept = context;
     if (n > sizeof kept->bytes - kept->used) return false;
     memcpy(kept->bytes + kept->used, bytes, n);
     kept->used += n;
     return true;
 }
 
-static inline bool made_take(void *context, void *bytes, size_t n)
+static inline bool buffer_take(void *context, void *bytes, size_t n)
 {
-    struct made_bytes *kept = context;
+    struct byte_buffer *kept = context;
     if (n > kept->used - kept->read) return false;
     memcpy(bytes, kept->bytes + kept->read, n);
     kept->read += n;

@@ -32,7 +32,7 @@ static inline void set_size(struct pool_job *job)
     json_object_set_new(job->document, "spacing", json_real(1 / n));
 }
 
-static inline void made_pieces(struct made_draw *draw, struct pool *pool, size_t sound)
+static inline void drawn_pieces(struct drawing *draw, struct pool *pool, size_t sound)
 {
     pool->found = 3;
     for (size_t i = 0; i < pool->count; i++) {
@@ -40,11 +40,11 @@ static inline void made_pieces(struct made_draw *draw, struct pool *pool, size_t
         const json_t *kind = template_of(draw->template, job->name);
         const bool checks = kind == json_object_get(draw->template, "verify");
         job->done = true;
-        if (!made_below(draw, sound) && !checks) {
+        if (!drawn_below(draw, sound) && !checks) {
             error_set(&job->error, STATUS_BROKE_DOWN, "job %zu broke down", i);
             job->crashed = true;
         } else {
-            job->document = made_document(draw, kind);
+            job->document = drawn_document(draw, kind);
             set_size(job);
         }
     }

@@ -15,7 +15,7 @@
 #include "clock.h"
 #include "pool.h"
 
-enum { MADE_TASKS = 40, MADE_TRIES = 4, MADE_SHARES = 14 };
+enum { FAKE_TASKS = 40, FAKE_TRIES = 4, FAKE_SHARES = 14 };
 
 /* What happens to a task. */
 enum fate {
@@ -42,7 +42,7 @@ enum fate {
     FATES
 };
 
-struct made_task {
+struct fake_task {
     long job;
     int index;
     enum fate fate;
@@ -50,13 +50,13 @@ struct made_task {
     bool stored, cancelled;
 };
 
-static struct made_slurm {
+static struct fake_slurm {
     double now;
     const struct pool *pool;
     const struct cache *cache;
-    enum fate fates[MADE_SHARES + 1][MADE_TRIES]; /* by share, and by submission */
-    int tries[MADE_SHARES + 1];
-    struct made_task tasks[MADE_TASKS];
+    enum fate fates[FAKE_SHARES + 1][FAKE_TRIES]; /* by share, and by submission */
+    int tries[FAKE_SHARES + 1];
+    struct fake_task tasks[FAKE_TASKS];
     size_t count, submissions, questions;
     char arrays[200];    /* the argument of --array of each submission, with a space after it */
     char cancelled[200]; /* the arguments of scancel, likewise */
@@ -70,24 +70,24 @@ static struct made_slurm {
     double interrupt;    /* time of Ctrl-C; 0: never */
     bool terminal;
     void (*meanwhile)(void); /* called at every squeue */
-} made;
+} slurm;
 
 double __wrap_clock_wall(void);
 double __wrap_clock_wall(void)
 {
-    return made.now;
+    return slurm.now;
 }
 
 int __wrap_nanosleep(const struct timespec *time, struct timespec *left);
 int __wrap_nanosleep(const struct timespec *time, struct timespec *left)
 {
     (void)left;
-    const double before = made.now;
-    made.now += (double)time->tv_sec + 1e-9 * (double)time->tv_nsec;
+    const double before = slurm.now;
+    slurm.now += (double)time->tv_sec + 1e-9 * (double)time->tv_nsec;
     assert_true(time->tv_sec >= 0 && time->tv_nsec >= 0 && time->tv_nsec < 1000000000);
-    assert_true(made.now > before && made.now < 5000); /* polls end, and are rare */
-    if (made.interrupt > 0 && made.now >= made.interrupt) {
-        made.interrupt = 0;
+    assert_true(slurm.now > before && slurm.now < 5000); /* polls end, and are rare */
+    if (slurm.interrupt > 0 && slurm.now >= slurm.interrupt) {
+        slurm.interrupt = 0;
         raise(SIGINT);
     }
     return 0;
@@ -96,7 +96,7 @@ int __wrap_nanosleep(const struct timespec *time, struct timespec *left)
 int __wrap_isatty(int file);
 int __wrap_isatty(int file)
 {
-    return file == STDIN_FILENO && made.terminal;
+    return file == STDIN_FILENO && slurm.terminal;
 }
 
 static inline bool begins(const char *word, const char *with)
@@ -115,14 +115,14 @@ static inline enum status answer(struct child_said *said, int code, const char *
 /* Stores the results of the share's computations. */
 static inline void store_share(int share, int of)
 {
-    int *shares = calloc(made.pool->count + 1, sizeof *shares);
+    int *shares = calloc(slurm.pool->count + 1, sizeof *shares);
     struct error error = {0};
-    assert_int_equal(pool_divide(made.pool, of, shares, &error), STATUS_OK);
-    for (size_t i = 0; i < made.pool->count; i++) {
+    assert_int_equal(pool_divide(slurm.pool, of, shares, &error), STATUS_OK);
+    for (size_t i = 0; i < slurm.pool->count; i++) {
         json_t *reply = json_pack("{s:i, s:s, s:{s:i}}", "status", 0, "message", "", "document",
                                   "number", (int)i);
         if (shares[i] == share)
-            assert_int_equal(cache_store(made.cache, made.pool->jobs[i].key, reply, &error),
+            assert_int_equal(cache_store(slurm.cache, slurm.pool->jobs[i].key, reply, &error),
                              STATUS_OK);
         json_decref(reply);
     }
@@ -130,7 +130,7 @@ static inline void store_share(int share, int of)
 }
 
 /* A task is pending for a second, runs for two, and then ends as planned. */
-static inline void task_state(const struct made_task *task, const char **state, const char **reason)
+static inline void task_state(const struct fake_task *task, const char **state, const char **reason)
 {
     static const struct {
         const char *state, *reason;
@@ -158,7 +158,7 @@ static inline void task_state(const struct made_task *task, const char **state, 
     };
     const bool at_once =
         task->fate == HELD || task->fate == CANCELLED_AT_ONCE || task->fate == NEVER_SEEN;
-    const double age = at_once ? (double)INFINITY : made.now - task->submitted;
+    const double age = at_once ? (double)INFINITY : slurm.now - task->submitted;
     *state = ends[task->fate].state, *reason = ends[task->fate].reason;
     if (task->cancelled) {
         *state = "CANCELLED", *reason = "None";
@@ -175,18 +175,18 @@ static inline void task_state(const struct made_task *task, const char **state, 
 
 static inline void pass_time(int of)
 {
-    for (size_t i = 0; i < made.count; i++) {
-        struct made_task *task = &made.tasks[i];
+    for (size_t i = 0; i < slurm.count; i++) {
+        struct fake_task *task = &slurm.tasks[i];
         const char *state, *reason;
         task_state(task, &state, &reason);
         if (task->stored || !state || strcmp(state, "COMPLETED") || task->fate == USELESS) continue;
-        if (task->fate == LATE && made.now < task->submitted + 15) continue;
+        if (task->fate == LATE && slurm.now < task->submitted + 15) continue;
         store_share(task->index, of);
         task->stored = true;
     }
 }
 
-static int made_of; /* number of shares in the last command line */
+static int share_count; /* number of shares in the last command line */
 
 static inline enum status fake_squeue(const char *const *words, struct child_said *said)
 {
@@ -197,19 +197,19 @@ static inline enum status fake_squeue(const char *const *words, struct child_sai
     assert_true(begins(words[4], "--name="));
     assert_string_equal(words[5], "--format=%F %K %T %r");
     assert_null(words[6]);
-    made.questions++;
-    if (made.now >= made.away_from && made.now < made.away_to)
+    slurm.questions++;
+    if (slurm.now >= slurm.away_from && slurm.now < slurm.away_to)
         return answer(said, 1, "",
                       "slurm_load_jobs error: Unable to contact slurm controller (connect "
                       "failure)");
-    pass_time(made_of);
+    pass_time(share_count);
     long nameless = 0; /* the array whose cancelled pending tasks are listed, in one record */
-    for (size_t i = 0; i < made.count; i++) {
-        const struct made_task *task = &made.tasks[made.backwards ? made.count - 1 - i : i];
+    for (size_t i = 0; i < slurm.count; i++) {
+        const struct fake_task *task = &slurm.tasks[slurm.backwards ? slurm.count - 1 - i : i];
         const char *state, *reason;
         char index[16] = "N/A";
         task_state(task, &state, &reason);
-        if (!state || strcmp(words[4] + 7, made.name)) continue;
+        if (!state || strcmp(words[4] + 7, slurm.name)) continue;
         if (strcmp(reason, "Resources"))
             snprintf(index, sizeof index, "%d", task->index);
         else if (nameless == task->job)
@@ -219,7 +219,7 @@ static inline enum status fake_squeue(const char *const *words, struct child_sai
         length += (size_t)snprintf(text + length, sizeof text - length, "%ld %s %s %s\n", task->job,
                                    index, state, reason);
     }
-    if (made.meanwhile) made.meanwhile();
+    if (slurm.meanwhile) slurm.meanwhile();
     return answer(said, 0, text, "");
 }
 
@@ -237,13 +237,13 @@ static inline void add_tasks(const char *text, long job)
             assert_true(last > first);
         }
         for (int k = first; k <= last; k++) {
-            assert_true(k >= 1 && k <= MADE_SHARES && made.tries[k] < MADE_TRIES);
-            assert_true(made.count < MADE_TASKS);
-            made.tasks[made.count++] = (struct made_task){
+            assert_true(k >= 1 && k <= FAKE_SHARES && slurm.tries[k] < FAKE_TRIES);
+            assert_true(slurm.count < FAKE_TASKS);
+            slurm.tasks[slurm.count++] = (struct fake_task){
                 .job = job,
                 .index = k,
-                .fate = made.fates[k][made.tries[k]++],
-                .submitted = made.now,
+                .fate = slurm.fates[k][slurm.tries[k]++],
+                .submitted = slurm.now,
             };
         }
         if (*text) assert_int_equal(*text++, ',');
@@ -256,47 +256,47 @@ static inline enum status fake_sbatch(const char *const *words, struct child_sai
     const char *array = NULL, *wrap = NULL;
     bool parsable = false;
     char text[80];
-    if (made.no_sbatch)
+    if (slurm.no_sbatch)
         return error_set(error, STATUS_ENVIRONMENT, "sbatch: No such file or directory");
-    if (made.refuses) return answer(said, 1, "", made.refuses);
+    if (slurm.refuses) return answer(said, 1, "", slurm.refuses);
     for (size_t i = 1; words[i]; i++) {
         assert_true(i < 80);
-        snprintf(made.words[i - 1], sizeof made.words[0], "%s", words[i]);
+        snprintf(slurm.words[i - 1], sizeof slurm.words[0], "%s", words[i]);
         if (begins(words[i], "--array=")) array = words[i] + 8;
         if (begins(words[i], "--job-name="))
-            snprintf(made.name, sizeof made.name, "%s", words[i] + 11);
+            snprintf(slurm.name, sizeof slurm.name, "%s", words[i] + 11);
         if (begins(words[i], "--output="))
-            snprintf(made.output, sizeof made.output, "%s", words[i] + 9);
+            snprintf(slurm.output, sizeof slurm.output, "%s", words[i] + 9);
         if (strcmp(words[i], "--parsable") == 0) parsable = true;
         if (strcmp(words[i], "--wrap") == 0) wrap = words[++i];
     }
     assert_true(array && wrap && parsable && begins(wrap, "exec '"));
-    snprintf(made.wrap, sizeof made.wrap, "%s", wrap);
+    snprintf(slurm.wrap, sizeof slurm.wrap, "%s", wrap);
     const char *of = strstr(wrap, "--shard $SLURM_ARRAY_TASK_ID/");
-    assert_true(of && sscanf(of, "--shard $SLURM_ARRAY_TASK_ID/%d", &made_of) == 1);
-    const size_t length = strlen(made.arrays);
-    snprintf(made.arrays + length, sizeof made.arrays - length, "%s ", array);
-    add_tasks(array, 7 + (long)made.submissions);
-    snprintf(text, sizeof text, "%ld%s\n", 7 + (long)made.submissions++,
-             made.answers ? made.answers : "");
+    assert_true(of && sscanf(of, "--shard $SLURM_ARRAY_TASK_ID/%d", &share_count) == 1);
+    const size_t length = strlen(slurm.arrays);
+    snprintf(slurm.arrays + length, sizeof slurm.arrays - length, "%s ", array);
+    add_tasks(array, 7 + (long)slurm.submissions);
+    snprintf(text, sizeof text, "%ld%s\n", 7 + (long)slurm.submissions++,
+             slurm.answers ? slurm.answers : "");
     return answer(said, 0, text, "");
 }
 
 static inline enum status fake_scancel(const char *const *words, struct child_said *said)
 {
-    const size_t length = strlen(made.cancelled);
+    const size_t length = strlen(slurm.cancelled);
     long job = 0;
     int index = 0;
     assert_true(words[1] && !words[2]);
-    snprintf(made.cancelled + length, sizeof made.cancelled - length, "%s ", words[1]);
-    if (made.refuses_cancel)
+    snprintf(slurm.cancelled + length, sizeof slurm.cancelled - length, "%s ", words[1]);
+    if (slurm.refuses_cancel)
         return answer(said, 1, "",
                       "scancel: error: Kill job error on job id 7: Access/permission denied");
-    const bool all = begins(words[1], "--name=") && strcmp(words[1] + 7, made.name) == 0;
+    const bool all = begins(words[1], "--name=") && strcmp(words[1] + 7, slurm.name) == 0;
     if (!all) assert_int_equal(sscanf(words[1], "%ld_%d", &job, &index), 2);
-    for (size_t i = 0; i < made.count; i++)
-        if (all || (made.tasks[i].job == job && made.tasks[i].index == index))
-            made.tasks[i].cancelled = true;
+    for (size_t i = 0; i < slurm.count; i++)
+        if (all || (slurm.tasks[i].job == job && slurm.tasks[i].index == index))
+            slurm.tasks[i].cancelled = true;
     return answer(said, 0, "", "");
 }
 

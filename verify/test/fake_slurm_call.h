@@ -46,7 +46,7 @@ static inline int begin(void **state)
     call = (struct call){.options = {.command = &command, .threads = 1, .values = call.values}};
     place_make(&call.place);
     fill(&call.pool, call.tasks, &call.place, N);
-    made = (struct made_slurm){.now = 100, .pool = &call.pool, .cache = &call.place.cache};
+    slurm = (struct fake_slurm){.now = 100, .pool = &call.pool, .cache = &call.place.cache};
     call.arguments[0] = (char *)"sod";
     call.options.arguments = call.arguments;
     call.options.count = 1;

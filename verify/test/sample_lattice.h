@@ -8,7 +8,7 @@
 
 /* Textbook SPH with Newton's method for h: cubic spline at eta 2, standard gradient, constant
  * viscosity. */
-static inline struct scheme made_scheme(void)
+static inline struct scheme plain_scheme(void)
 {
     struct scheme scheme = {
         .gradient = GRADIENT_STANDARD,
@@ -27,7 +27,7 @@ static inline struct scheme made_scheme(void)
 }
 
 /* The caller frees it with simulation_destroy. */
-static inline struct simulation *made_of(const struct setup *setup)
+static inline struct simulation *simulation_of(const struct setup *setup)
 {
     struct simulation *simulation = NULL;
     struct error error = {0};

@@ -6,7 +6,7 @@
 #include "keyed.h"
 
 /* n particles on [0, 1]. The caller frees it with simulation_destroy. */
-static inline struct simulation *made_simulation(size_t n)
+static inline struct simulation *sample_simulation(size_t n)
 {
     double *storage = malloc(4 * n * sizeof *storage);
     double *place = storage, *velocity = place + n, *mass = velocity + n, *energy = mass + n;
@@ -36,8 +36,8 @@ static inline struct simulation *made_simulation(size_t n)
 }
 
 /* progress: NULL, or a function that is called with the simulation as its context. */
-static inline void made_run(struct simulation *simulation, double t_end,
-                            simulation_progress *progress)
+static inline void run_until(struct simulation *simulation, double t_end,
+                             simulation_progress *progress)
 {
     struct error error;
     if (simulation_run(simulation, t_end, progress, simulation, &error))
@@ -45,7 +45,7 @@ static inline void made_run(struct simulation *simulation, double t_end,
 }
 
 /* True if both have the same state, to the last bit. */
-static inline bool made_alike(const struct simulation *a, const struct simulation *b)
+static inline bool same_state(const struct simulation *a, const struct simulation *b)
 {
     struct snapshot s, t;
     simulation_snapshot(a, &s);

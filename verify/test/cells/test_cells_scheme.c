@@ -21,12 +21,12 @@ TEST(test_beta)
     static double F[N], de[N];
     for (int dim = 2; dim <= 3; dim++)
         for (int k = 0; k < 4; k++) {
-            struct scheme scheme = made_scheme();
+            struct scheme scheme = plain_scheme();
             scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
             scheme.alpha = numbers[k][0], scheme.beta = numbers[k][1];
             struct setup setup = lattice_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
             for (size_t i = 0; i < setup.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
-            struct simulation *simulation = made_of(&setup);
+            struct simulation *simulation = simulation_of(&setup);
             const struct particles *p = &simulation->particles;
             for (size_t i = 0; i < setup.n; i++) p->alpha[i] = 0.7;
             find_forces(simulation);

@@ -26,10 +26,10 @@ TEST(test_search_widens_63_times)
 {
     struct error error;
     for (int dim = 2; dim <= 3; dim++) {
-        const struct scheme scheme = made_scheme();
+        const struct scheme scheme = plain_scheme();
         struct setup setup = setup_of(dim, dim == 2 ? 8 : 5, &scheme);
         for (int a = 0; a < dim; a++) setup.boundary[a] = BOUNDARY_OPEN;
-        struct simulation *simulation = made_of(&setup);
+        struct simulation *simulation = simulation_of(&setup);
         struct snapshot s;
         double h[N];
         simulation_snapshot(simulation, &s);
@@ -65,9 +65,9 @@ static bool ten_steps(void *context, double time, uint64_t steps)
  * sorted at the same steps. */
 TEST(test_restored_state_continues)
 {
-    static struct made_bytes kept;
+    static struct byte_buffer kept;
     for (int kind = 0; kind < 3; kind++) { /* inactive particles; predicted widths; all moving */
-        struct scheme scheme = made_scheme();
+        struct scheme scheme = plain_scheme();
         const bool moving = kind == 2;
         if (kind == 1) {
             scheme.integrator =
@@ -77,11 +77,11 @@ TEST(test_restored_state_continues)
         const struct setup setup = long_box_of(&scheme);
         u[0] = 3;
         for (size_t i = 0; moving && i < setup.n; i++) v[0][i] = 1.5, v[1][i] = 0.7;
-        struct simulation *first = made_of(&setup), *second = made_of(&setup);
+        struct simulation *first = simulation_of(&setup), *second = simulation_of(&setup);
         uint64_t from = moving ? 30 : 0; /* after one more sort */
         assert_int_equal(simulation_run(first, 1, ten_steps, &from, NULL), STATUS_OK);
-        struct serialiser out = {.bytes = made_put, .context = &kept},
-                          back = {.bytes = made_take, .context = &kept, .back = true};
+        struct serialiser out = {.bytes = buffer_put, .context = &kept},
+                          back = {.bytes = buffer_take, .context = &kept, .back = true};
         kept.used = kept.read = 0;
         simulation_serialise(first, &out);
         assert_false(out.failed);
@@ -121,7 +121,7 @@ static void count_neighbours(void *context, size_t particle, const struct descri
 /* The description of inactive particles, in a box whose far end no signal has reached. */
 TEST(test_description_of_inactive_particles)
 {
-    struct scheme scheme = made_scheme();
+    struct scheme scheme = plain_scheme();
     scheme.gradient = GRADIENT_IA;
     for (int dim = 2; dim <= 3; dim++) {
         const size_t side = dim == 2 ? 8 : 5;
@@ -136,7 +136,7 @@ TEST(test_description_of_inactive_particles)
                 x[a][i] = ((double)k + 0.5) / (double)side, v[a][i] = 0;
             }
         }
-        struct simulation *simulation = made_of(&setup);
+        struct simulation *simulation = simulation_of(&setup);
         assert_int_equal(simulation_run(simulation, 0.05, NULL, NULL, NULL), STATUS_OK);
         size_t counts[2] = {0};
         description_each(simulation, count_neighbours, counts);
@@ -154,7 +154,7 @@ TEST(test_width_too_large_for_the_box)
     struct simulation *simulation = NULL;
     struct error error;
     for (int dim = 2; dim <= 3; dim++) {
-        struct scheme scheme = made_scheme();
+        struct scheme scheme = plain_scheme();
         struct setup setup = setup_of(dim, 4, &scheme);
         setup.scheme.eta = 2.4;
         assert_int_equal(simulation_create(&setup, &simulation, &error), STATUS_BAD_INPUT);
@@ -166,7 +166,7 @@ TEST(test_width_too_large_for_the_box)
         setup.hi[1] = 4;
         for (size_t i = 0; i < setup.n; i++) x[1][i] *= 4;
         setup.boundary[0] = setup.boundary[2] = BOUNDARY_REFLECTING;
-        simulation = made_of(&setup);
+        simulation = simulation_of(&setup);
         simulation_destroy(simulation);
         simulation = NULL;
     }
@@ -179,7 +179,7 @@ TEST(test_mass_too_large_for_a_root)
     for (int dim = 2; dim <= 3; dim++) {
         struct simulation *simulation = NULL;
         struct error error = {0};
-        struct scheme scheme = made_scheme();
+        struct scheme scheme = plain_scheme();
         struct setup setup = setup_of(dim, 4, &scheme);
         for (int a = 0; a < dim; a++) setup.boundary[a] = BOUNDARY_OPEN;
         m[5] *= 1000;
@@ -199,7 +199,7 @@ TEST(test_mass_too_large_for_a_root)
 TEST(test_width_grows_too_large)
 {
     for (int predicted = 0; predicted < 2; predicted++) {
-        struct scheme scheme = made_scheme();
+        struct scheme scheme = plain_scheme();
         if (predicted) {
             scheme.integrator =
                 (const struct integrator *)family_find(&integrator_family, "predicted_midpoint");
@@ -211,7 +211,7 @@ TEST(test_width_grows_too_large)
             u[i] = 1e-3;
             for (int a = 0; a < 2; a++) v[a][i] = sin(2 * M_PI * x[a][i]);
         }
-        struct simulation *simulation = made_of(&setup);
+        struct simulation *simulation = simulation_of(&setup);
         struct error error = {0};
         assert_int_equal(simulation_run(simulation, 1, NULL, NULL, &error), STATUS_BROKE_DOWN);
         struct snapshot s;
@@ -244,9 +244,9 @@ TEST(test_position_that_is_not_a_number)
     for (int dim = 2; dim <= 3; dim++)
         for (int a = 0; a < dim; a++)
             for (int last = 0; last < 2; last++) {
-                const struct scheme scheme = made_scheme();
+                const struct scheme scheme = plain_scheme();
                 const struct setup setup = setup_of(dim, 5, &scheme);
-                struct simulation *simulation = made_of(&setup);
+                struct simulation *simulation = simulation_of(&setup);
                 struct particles *p = &simulation->particles;
                 const size_t i = last ? setup.n - 1 : 0;
                 struct error error = {0};
@@ -285,7 +285,7 @@ TEST(test_bytes_per_particle)
 {
     for (int dim = 2; dim <= 3; dim++) {
         const bool plane = dim == 2;
-        struct scheme scheme = made_scheme();
+        struct scheme scheme = plain_scheme();
         scheme.viscosity = VISCOSITY_NONE;
         expect_bytes(dim, &scheme, 3, plane ? 8 : 12); /* 8, 10 */
         scheme.viscosity = VISCOSITY_CONSTANT;
@@ -310,7 +310,7 @@ TEST(test_bytes_per_particle)
         expect_bytes(dim, &scheme, plane ? 15 : 23, plane ? 28 : 40); /* slope, P: 26, 39 */
         scheme.alpha_u = 0;
         expect_bytes(dim, &scheme, plane ? 15 : 23, plane ? 28 : 40); /* 25, 38 */
-        scheme = made_scheme();
+        scheme = plain_scheme();
         scheme.eta = 3.6;
         expect_bytes(dim, &scheme, 3, 12);
     }

@@ -49,7 +49,7 @@ static struct setup setup_of(int dim, size_t side, double jitter, double heat, b
 /* Enforces blocks of local steps, which save too little work with so few particles. */
 static struct simulation *blocks_of(const struct setup *setup)
 {
-    struct simulation *simulation = made_of(setup);
+    struct simulation *simulation = simulation_of(setup);
     simulation->steps.worth = 0.9;
     return simulation;
 }
@@ -78,7 +78,7 @@ TEST(keeps_momentum_and_energy)
         struct conservation before, after;
         struct simulation_cost cost;
         simulation_conservation(simulation, &before);
-        made_run(simulation, 1 / sqrt(heat[k / 2]), NULL);
+        run_until(simulation, 1 / sqrt(heat[k / 2]), NULL);
         simulation_conservation(simulation, &after);
         simulation_cost(simulation, &cost);
         for (int a = 0; a < dim; a++)
@@ -102,12 +102,12 @@ TEST(threads_do_not_matter)
     seed = 7;
     struct setup setup = setup_of(2, 32, 0.2, 300, false, &scheme);
     struct simulation *one = blocks_of(&setup);
-    made_run(one, 0.016, NULL);
+    run_until(one, 0.016, NULL);
     for (int threads = 2; threads <= 3; threads++) {
         setup.threads = threads;
         struct simulation *more = blocks_of(&setup);
-        made_run(more, 0.016, NULL);
-        assert_true(made_alike(one, more));
+        run_until(more, 0.016, NULL);
+        assert_true(same_state(one, more));
         simulation_destroy(more);
     }
     simulation_destroy(one);
@@ -125,22 +125,22 @@ TEST(one_level_is_global)
             seed = 5;
             const struct setup setup = setup_of(2, 16, 0.02, 0, true, &scheme);
             both[local] = blocks_of(&setup);
-            made_run(both[local], 0.2, NULL);
+            run_until(both[local], 0.2, NULL);
         }
         assert_int_equal(both[0]->cost.steps, both[1]->cost.steps);
         assert_true(both[0]->cost.steps > 4);
         assert_int_equal(both[1]->cost.skipped_particle_updates, 0);
-        assert_true(made_alike(both[0], both[1]));
+        assert_true(same_state(both[0], both[1]));
         for (int local = 0; local < 2; local++) simulation_destroy(both[local]);
     }
 }
 
-static struct made_bytes bag;
+static struct byte_buffer bag;
 static int blocks;
 
 static bool keep_the_fifth(void *context, double time, uint64_t steps)
 {
-    struct serialiser out = {.bytes = made_put, .context = &bag};
+    struct serialiser out = {.bytes = buffer_put, .context = &bag};
     (void)time, (void)steps;
     if (++blocks == 5) simulation_serialise(context, &out);
     assert_false(out.failed);
@@ -153,13 +153,13 @@ TEST(restored_run_continues_to_the_last_bit)
     seed = 11;
     const struct setup setup = setup_of(2, 24, 0.2, 300, false, &scheme);
     struct simulation *kept = blocks_of(&setup), *restored = blocks_of(&setup);
-    struct serialiser back = {.bytes = made_take, .context = &bag, .back = true};
-    made_run(kept, 0.06, keep_the_fifth);
+    struct serialiser back = {.bytes = buffer_take, .context = &bag, .back = true};
+    run_until(kept, 0.06, keep_the_fifth);
     assert_true(blocks > 6);
     simulation_serialise(restored, &back);
     assert_true(!back.failed && restored->time > 0 && restored->steps.depth > 0);
-    made_run(restored, 0.06, NULL);
-    assert_true(made_alike(kept, restored));
+    run_until(restored, 0.06, NULL);
+    assert_true(same_state(kept, restored));
     simulation_destroy(kept);
     simulation_destroy(restored);
 }
@@ -193,7 +193,7 @@ static struct simulation *smooth_run(int dim, double cfl, enum time_steps steps)
     seed = 3;
     const struct setup setup = setup_of(dim, dim == 2 ? 28 : 9, 0, 100, true, &scheme);
     struct simulation *simulation = blocks_of(&setup);
-    made_run(simulation, 0.06, NULL);
+    run_until(simulation, 0.06, NULL);
     return simulation;
 }
 
@@ -251,7 +251,7 @@ TEST(levels_of_neighbours_differ_by_at_most_2)
         looking.forces = look_at_levels;
         simulation->plan.sums = &looking;
         too_coarse = looked = 0;
-        made_run(simulation, 8e-3, NULL);
+        run_until(simulation, 8e-3, NULL);
         assert_true(looked > (dim == 2 ? 1000 : 0));
         woken += simulation->steps.woken;
         assert_int_equal(too_coarse, 0);

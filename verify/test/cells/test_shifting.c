@@ -55,11 +55,11 @@ TEST(keeps_mass_momentum_and_energy)
         struct setup setup = setup_of(dim, dim == 2 ? 26 : 9, 0.3, 0.2);
         const bool walled = k >= 6;
         if (walled) setup.boundary[1] = BOUNDARY_REFLECTING;
-        struct simulation *simulation = made_of(&setup);
+        struct simulation *simulation = simulation_of(&setup);
         struct conservation before, after;
         struct snapshot s;
         simulation_conservation(simulation, &before);
-        made_run(simulation, dim == 2 ? 0.15 : 0.1, NULL);
+        run_until(simulation, dim == 2 ? 0.15 : 0.1, NULL);
         simulation_conservation(simulation, &after);
         simulation_snapshot(simulation, &s);
         near_relative(after.mass, before.mass, 1e-14);
@@ -92,7 +92,7 @@ TEST(exchange_keeps_both_energies)
             u[i] = 1.9;
             for (int a = 0; a < dim; a++) v[a][i] = 0.3 * a - 0.7;
         }
-        struct simulation *simulation = made_of(&setup);
+        struct simulation *simulation = simulation_of(&setup);
         const struct particles *a = &simulation->particles;
         double mass = 0, energy = 0, kinetic = 0, scale = 0, energy_scale = 0;
         for (ptrdiff_t i = 0; i < a->n; i++) {
@@ -129,7 +129,7 @@ TEST(rates_are_galilean_invariant)
     draw_state = 3;
     member = "closed";
     const struct setup setup = setup_of(3, 9, 0.3, 0.2);
-    struct simulation *still = made_of(&setup);
+    struct simulation *still = simulation_of(&setup);
     const struct particles *s = &still->particles;
     for (ptrdiff_t i = 0; i < s->n; i++) {
         const size_t id = s->id[i];
@@ -138,7 +138,7 @@ TEST(rates_are_galilean_invariant)
     }
     for (size_t i = 0; i < setup.n; i++)
         for (int a = 0; a < 3; a++) v[a][i] += b[a];
-    struct simulation *moving = made_of(&setup);
+    struct simulation *moving = simulation_of(&setup);
     const struct particles *t = &moving->particles;
     for (ptrdiff_t i = 0; i < t->n; i++) {
         const size_t id = t->id[i];
@@ -170,14 +170,14 @@ TEST(spreads_particles)
     for (int dim = 2; dim <= 3; dim++) {
         draw_state = 5;
         struct setup setup = setup_of(dim, dim == 2 ? 24 : 9, 0, 0);
-        struct simulation *simulation = made_of(&setup);
+        struct simulation *simulation = simulation_of(&setup);
         near_below(disorder(simulation), 1e-13);
         simulation_destroy(simulation);
         setup = setup_of(dim, dim == 2 ? 24 : 9, 0.3, 0);
-        simulation = made_of(&setup);
+        simulation = simulation_of(&setup);
         const double before = disorder(simulation);
         assert_true(before > 0.01 && before < 0.1 + 1e-9);
-        made_run(simulation, 1, NULL);
+        run_until(simulation, 1, NULL);
         near_below(disorder(simulation), 0.25 * before);
         simulation_destroy(simulation);
     }
@@ -189,7 +189,7 @@ TEST(remembers_its_last_shift)
     for (int dim = 2; dim <= 3; dim++) {
         draw_state = 31;
         const struct setup setup = setup_of(dim, dim == 2 ? 24 : 9, 0.02, 0);
-        struct simulation *simulation = made_of(&setup);
+        struct simulation *simulation = simulation_of(&setup);
         const struct particles *a = &simulation->particles;
         double first[3][N], most = 0;
         for (int b = 0; b < dim; b++) memcpy(first[b], a->shift[b], (size_t)a->n * sizeof(double));
@@ -213,7 +213,7 @@ static double of_constant(int dim, const char *kind)
     draw_state = 23;
     struct setup setup = setup_of(dim, dim == 2 ? 24 : 9, 0.02, 0);
     for (int once = 0; once < 2; once++) {
-        struct simulation *simulation = made_of(&setup);
+        struct simulation *simulation = simulation_of(&setup);
         const struct particles *a = &simulation->particles;
         for (ptrdiff_t i = 0; i < a->n; i++) {
             u[a->id[i]] = a->V[i] / (0.4 * a->m[i]);
@@ -232,11 +232,11 @@ TEST(closed_gradient_of_a_constant_is_small)
     }
 }
 
-static struct made_bytes bag;
+static struct byte_buffer bag;
 
 static bool keep_the_third(void *context, double time, uint64_t steps)
 {
-    struct serialiser out = {.bytes = made_put, .context = &bag};
+    struct serialiser out = {.bytes = buffer_put, .context = &bag};
     (void)time;
     if (steps == 3) simulation_serialise(context, &out);
     assert_false(out.failed);
@@ -248,13 +248,13 @@ TEST(restored_run_continues_to_the_last_bit)
     draw_state = 17;
     member = "closed";
     const struct setup setup = setup_of(2, 24, 0.3, 0.2);
-    struct simulation *kept = made_of(&setup), *restored = made_of(&setup);
-    struct serialiser back = {.bytes = made_take, .context = &bag, .back = true};
-    made_run(kept, 0.12, keep_the_third);
+    struct simulation *kept = simulation_of(&setup), *restored = simulation_of(&setup);
+    struct serialiser back = {.bytes = buffer_take, .context = &bag, .back = true};
+    run_until(kept, 0.12, keep_the_third);
     simulation_serialise(restored, &back);
     assert_true(!back.failed && restored->time > 0 && restored->time < 0.12);
-    made_run(restored, 0.12, NULL);
-    assert_true(made_alike(kept, restored));
+    run_until(restored, 0.12, NULL);
+    assert_true(same_state(kept, restored));
     simulation_destroy(kept);
     simulation_destroy(restored);
 }
@@ -283,7 +283,7 @@ TEST(schemes_that_exclude_shifting)
         if (!strstr(error.message, "shifting=closed and ")) fail_msg("%s", error.message);
         setup.scheme.shifting = SHIFTING_NONE;
         if (k == 2) { /* a scheme without shifting has no arrays for it */
-            simulation = made_of(&setup);
+            simulation = simulation_of(&setup);
             struct rates rates;
             simulation_rates(simulation, &rates);
             assert_true(!rates.shift.mass && !(simulation->particles.uses & USE_SHIFT));

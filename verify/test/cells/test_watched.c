@@ -171,7 +171,7 @@ static enum status flow(int dim, const struct scheme *scheme, enum boundary ends
 
 static enum status flow_of_all(int dim, size_t n, struct error *error)
 {
-    struct scheme scheme = made_scheme();
+    struct scheme scheme = plain_scheme();
     scheme.gradient = GRADIENT_BLENDED;
     scheme.viscosity = VISCOSITY_CULLEN_DEHNEN;
     scheme.balsara = BALSARA_ON;
@@ -184,7 +184,7 @@ static enum status flow_of_all(int dim, size_t n, struct error *error)
 
 static enum status flow_of_little(int dim, size_t n, struct error *error)
 {
-    struct scheme scheme = made_scheme();
+    struct scheme scheme = plain_scheme();
     scheme.viscosity = VISCOSITY_PROJECTED;
     scheme.noise = 0.4;
     (void)n;

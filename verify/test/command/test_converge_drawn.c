@@ -14,25 +14,25 @@
 enum { STUDIES = 60, TEXT = 1 << 16 };
 
 /* One in five is not a number. */
-static double figure(struct made_draw *draw)
+static double figure(struct drawing *draw)
 {
-    return made_below(draw, 5) ? made_real(draw) : (double)NAN;
+    return drawn_below(draw, 5) ? drawn_real(draw) : (double)NAN;
 }
 
-static void draw_gate(struct made_draw *draw, struct study_order *order)
+static void draw_gate(struct drawing *draw, struct study_order *order)
 {
-    order->status = (enum finding_status)made_below(draw, FINDING_SKIP + 1);
-    order->gate = (struct order_gate){figure(draw), made_real(draw), made_real(draw)};
-    order->least = made_below(draw, 2) ? made_real(draw) : 0;
+    order->status = (enum finding_status)drawn_below(draw, FINDING_SKIP + 1);
+    order->gate = (struct order_gate){figure(draw), drawn_real(draw), drawn_real(draw)};
+    order->least = drawn_below(draw, 2) ? drawn_real(draw) : 0;
     order->known = "a reason";
-    snprintf(order->why, sizeof order->why, "%s", made_below(draw, 2) ? "it is so" : "");
+    snprintf(order->why, sizeof order->why, "%s", drawn_below(draw, 2) ? "it is so" : "");
 }
 
-static void draw_result(struct made_draw *draw, struct study_result *result)
+static void draw_result(struct drawing *draw, struct study_result *result)
 {
     static const double floors[] = {0, 9e-11, 1.1e-10, -9e-11, -1.1e-10, 0.01};
     for (int f = 0; f < FIELDS; f++) {
-        const size_t only = made_below(draw, 3 * LEVELS); /* the one level with an error */
+        const size_t only = drawn_below(draw, 3 * LEVELS); /* the one level with an error */
         for (size_t l = 0; l < result->level_count && only < LEVELS + 1; l++)
             if (l != only) result->levels[l].errors[f][NORM_L1] = (double)NAN;
         for (int m = 0; m < NORMS; m++) draw_gate(draw, &result->orders[f][m]);
@@ -42,43 +42,43 @@ static void draw_result(struct made_draw *draw, struct study_result *result)
         draw_gate(draw, &result->functional_errors[i]);
     }
     for (size_t k = 0; k < TRACE_FIGURES; k++) draw_gate(draw, &result->kept[k]);
-    for (int k = 0; k < 2; k++) result->regions[k].n = made_below(draw, 2);
-    result->floor_density = floors[made_below(draw, 6)];
-    result->floor_gradient = floors[made_below(draw, 6)];
-    result->floor_explains = made_below(draw, 2);
-    result->scheme.kernel.unity_width = (double)made_below(draw, 3);
+    for (int k = 0; k < 2; k++) result->regions[k].n = drawn_below(draw, 2);
+    result->floor_density = floors[drawn_below(draw, 6)];
+    result->floor_gradient = floors[drawn_below(draw, 6)];
+    result->floor_explains = drawn_below(draw, 2);
+    result->scheme.kernel.unity_width = (double)drawn_below(draw, 3);
     result->still = figure(draw);
-    result->still_status = (enum finding_status)made_below(draw, FINDING_FAIL + 1);
+    result->still_status = (enum finding_status)drawn_below(draw, FINDING_FAIL + 1);
     for (int f = 0; f < FIELDS; f++)
-        result->interpolation[f] = made_below(draw, 2) ? 0.01 * f : (double)NAN;
-    strcpy(result->suspicion, made_below(draw, 3) ? "" : "too good");
+        result->interpolation[f] = drawn_below(draw, 2) ? 0.01 * f : (double)NAN;
+    strcpy(result->suspicion, drawn_below(draw, 3) ? "" : "too good");
     strcpy(result->message, "it is so");
-    result->excluded = !made_below(draw, 6);
-    if (!made_below(draw, 6)) result->status = STATUS_BROKE_DOWN;
+    result->excluded = !drawn_below(draw, 6);
+    if (!drawn_below(draw, 6)) result->status = STATUS_BROKE_DOWN;
 }
 
 TEST(printed_studies)
 {
     static const char *const cases[] = {"sod", "gresho", "sound_wave", "noh_2d"};
     static char text[TEXT];
-    struct made_kept kept;
-    made_open(&kept, test_word(1), "converge.txt");
+    struct digests kept;
+    digests_open(&kept, test_word(1), "converge.txt");
     for (size_t k = 0; k < STUDIES; k++) {
-        struct made_draw draw = {k, NULL};
+        struct drawing draw = {k, NULL};
         struct code_external external = {0};
         const struct options options = {.color = k % 3 == 0};
         char name[32];
         struct study study =
             made(cases[k % 4], k % 5 ? NULL : "kernel=cubic_spline,wendland_c2", 1 + k % 2, NULL);
         for (size_t c = 0; c < study.sweep.count; c++) draw_result(&draw, &study.results[c]);
-        if (!made_below(&draw, 4)) study.settings.external = &external.base;
-        strcpy(study.suspicion, made_below(&draw, 4) ? "" : "without effect");
+        if (!drawn_below(&draw, 4)) study.settings.external = &external.base;
+        strcpy(study.suspicion, drawn_below(&draw, 4) ? "" : "without effect");
         const struct printed printed = printed_begin();
         print_all(&study, &options);
         printed_end(&printed, text, sizeof text);
         snprintf(name, sizeof name, "study-%zu", k);
-        made_compare(&kept, name, text);
+        digests_compare(&kept, name, text);
         study_free(&study);
     }
-    made_close(&kept);
+    digests_close(&kept);
 }

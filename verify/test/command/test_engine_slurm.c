@@ -43,19 +43,19 @@ TEST(share_that_fails_once)
         const int r = i % ROWS, share = 1 + i / ROWS;
         char note[200], cancelled[16], arrays[16];
         again();
-        made.fates[share][0] = rows[r].fate;
+        slurm.fates[share][0] = rows[r].fate;
         const enum status status = compute_all();
         if (rows[r].given_up) {
             assert_int_equal(status, STATUS_ENVIRONMENT);
-            assert_string_equal(made.arrays, "1-3 ");
+            assert_string_equal(slurm.arrays, "1-3 ");
             continue;
         }
         assert_int_equal(status, STATUS_OK);
         all_is_left_behind_in_order();
         snprintf(cancelled, sizeof cancelled, "7_%d ", share);
         snprintf(arrays, sizeof arrays, "1-3 %d ", share);
-        assert_string_equal(made.cancelled, rows[r].fate == HELD ? cancelled : "");
-        assert_string_equal(made.arrays, rows[r].state ? arrays : "1-3 ");
+        assert_string_equal(slurm.cancelled, rows[r].fate == HELD ? cancelled : "");
+        assert_string_equal(slurm.arrays, rows[r].state ? arrays : "1-3 ");
         if (!rows[r].state) {
             assert_string_equal(call.said, "");
             continue;
@@ -76,9 +76,9 @@ TEST(share_that_fails_three_times)
         if (!rows[r].state) continue;
         char text[400], what[200], name[64] = "";
         again();
-        for (int t = 0; t < 3; t++) made.fates[2][t] = rows[r].fate;
+        for (int t = 0; t < 3; t++) slurm.fates[2][t] = rows[r].fate;
         assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
-        assert_string_equal(made.arrays, rows[r].given_up ? "1-3 " : "1-3 2 2 ");
+        assert_string_equal(slurm.arrays, rows[r].given_up ? "1-3 " : "1-3 2 2 ");
         assert_int_equal(lacking(), shares_computations(2));
         snprintf(what, sizeof what,
                  "--engine slurm: %zu computations are missing; what is done is kept in",
@@ -104,10 +104,10 @@ TEST(share_that_fails_three_times)
         assert_int_equal(files("*.json"), 0);
         /* a new call starts from the beginning, even while the queue still shows what was cancelled
          */
-        made.arrays[0] = '\0';
-        made.tries[2] = 3;
+        slurm.arrays[0] = '\0';
+        slurm.tries[2] = 3;
         assert_int_equal(compute_all(), STATUS_OK);
-        assert_int_equal(made.submissions, rows[r].given_up ? 2 : 4);
+        assert_int_equal(slurm.submissions, rows[r].given_up ? 2 : 4);
         assert_int_equal(lacking(), 0);
     }
 }
@@ -120,7 +120,7 @@ TEST(many_are_missing)
         call.work.tasks = shares;
         for (int i = 0; i < N; i++) call.pool.jobs[i].weight = 1;
         for (int s = 1; s <= shares; s++)
-            for (int t = 0; t < 3; t++) made.fates[s][t] = ENDS_BADLY;
+            for (int t = 0; t < 3; t++) slurm.fates[s][t] = ENDS_BADLY;
         assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
         for (int i = 0; i < N; i++) {
             char name[64];
@@ -139,7 +139,7 @@ TEST(many_are_missing)
 TEST(messages_describe_the_last_task)
 {
     again();
-    made.fates[2][0] = ENDS_BADLY, made.fates[2][1] = NEVER_SEEN, made.fates[2][2] = TIMES_OUT;
+    slurm.fates[2][0] = ENDS_BADLY, slurm.fates[2][1] = NEVER_SEEN, slurm.fates[2][2] = TIMES_OUT;
     assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
     says("share 2 ended (FAILED)");
     says("share 2 ended (not in the queue)");
@@ -148,7 +148,7 @@ TEST(messages_describe_the_last_task)
 
 static void submit_share_2(void)
 {
-    if (made.tries[2] == 1) add_tasks("2", 90);
+    if (slurm.tries[2] == 1) add_tasks("2", 90);
 }
 
 /* Two tasks compute one share: the one that is still alive counts, in whichever order they are
@@ -158,15 +158,15 @@ TEST(two_tasks_of_a_share)
     for (int backwards = 0; backwards < 2; backwards++)
         for (int older = 0; older < 2; older++) {
             again();
-            made.backwards = backwards;
-            made.fates[2][0] = older ? STAYS : ENDS_BADLY;
-            made.fates[2][1] = older ? ENDS_BADLY : STAYS;
-            made.interrupt = 110;
-            made.meanwhile = older ? submit_share_2 : NULL;
+            slurm.backwards = backwards;
+            slurm.fates[2][0] = older ? STAYS : ENDS_BADLY;
+            slurm.fates[2][1] = older ? ENDS_BADLY : STAYS;
+            slurm.interrupt = 110;
+            slurm.meanwhile = older ? submit_share_2 : NULL;
             assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
             says_error("interrupted; 1 tasks go on");
-            assert_string_equal(made.arrays, older ? "1-3 " : "1-3 2 ");
-            assert_int_equal(made.tries[2], 2);
+            assert_string_equal(slurm.arrays, older ? "1-3 " : "1-3 2 ");
+            assert_int_equal(slurm.tries[2], 2);
         }
 }
 
@@ -175,13 +175,13 @@ TEST(two_tasks_of_a_share)
 TEST(late_results_are_waited_for)
 {
     again();
-    made.fates[2][0] = USELESS;
+    slurm.fates[2][0] = USELESS;
     assert_int_equal(compute_all(), STATUS_OK);
-    assert_true(made.tasks[3].submitted >= 100 + 3 + 30 && made.tasks[3].submitted < 100 + 3 + 35);
+    assert_true(slurm.tasks[3].submitted >= 100 + 3 + 30 && slurm.tasks[3].submitted < 100 + 3 + 35);
     again();
-    made.fates[2][0] = ENDS_BADLY;
+    slurm.fates[2][0] = ENDS_BADLY;
     assert_int_equal(compute_all(), STATUS_OK);
-    assert_true(made.tasks[3].submitted >= 103 && made.tasks[3].submitted < 104);
+    assert_true(slurm.tasks[3].submitted >= 103 && slurm.tasks[3].submitted < 104);
 }
 
 /* ---- what is submitted ---- */
@@ -196,13 +196,13 @@ TEST(only_what_is_missing)
         again();
         if (there[i].there) store_share(there[i].there, SHARES);
         assert_int_equal(compute_all(), STATUS_OK);
-        assert_string_equal(made.arrays, there[i].array);
+        assert_string_equal(slurm.arrays, there[i].array);
     }
     again();
     for (int s = 1; s <= SHARES; s++) store_share(s, SHARES);
-    made.no_sbatch = true, made.away_to = 1e9; /* sbatch is not called */
+    slurm.no_sbatch = true, slurm.away_to = 1e9; /* sbatch is not called */
     assert_int_equal(compute_all(), STATUS_OK);
-    assert_int_equal(made.questions, 0);
+    assert_int_equal(slurm.questions, 0);
 }
 
 /* Each task has ten minutes of work, and there are no more tasks than computations. */
@@ -224,8 +224,8 @@ TEST(number_of_shares)
         call.work.tasks = cases[i].tasks;
         assert_int_equal(compute_all(), STATUS_OK);
         snprintf(of, sizeof of, "TASK_ID/%d --only-build", cases[i].shares);
-        assert_non_null(strstr(made.wrap, of));
-        assert_string_equal(made.arrays, cases[i].array);
+        assert_non_null(strstr(slurm.wrap, of));
+        assert_string_equal(slurm.arrays, cases[i].array);
     }
 }
 
@@ -253,15 +253,15 @@ TEST(command_line_of_a_share)
              "2 '--n=1,2,3' '--words=it'\\''s \"$HOME\" `x`\n2' '--flag' '--cache=a b' -- 'sod' "
              "'-1'\\'''",
              program, call.place.cache.build);
-    assert_string_equal(made.wrap, text);
+    assert_string_equal(slurm.wrap, text);
     static const char *const words[] = {
         "--requeue",   "--open-mode=append", "--cpus-per-task=6", "--partition=main",
         "--time=1:00", "--mem=1G",           "--parsable"};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-        assert_string_equal(made.words[i], words[i]);
-    snprintf(text, sizeof text, "/slurm/%s-%%A_%%a.log", made.name);
-    assert_non_null(strstr(made.output, text));
-    assert_true(made.output[0] == '/'); /* an absolute path, because tasks may start elsewhere */
+        assert_string_equal(slurm.words[i], words[i]);
+    snprintf(text, sizeof text, "/slurm/%s-%%A_%%a.log", slurm.name);
+    assert_non_null(strstr(slurm.output, text));
+    assert_true(slurm.output[0] == '/'); /* an absolute path, because tasks may start elsewhere */
 }
 
 /* A command without the option --jobs does not get it. */
@@ -278,7 +278,7 @@ TEST(a_command_without_jobs)
              "' bench --shard $SLURM_ARRAY_TASK_ID/3 --only-build %s --threads "
              "1 '--n=7' -- 'sod'",
              call.place.cache.build);
-    assert_non_null(strstr(made.wrap, text));
+    assert_non_null(strstr(slurm.wrap, text));
 }
 
 TEST(command_line_too_long)
@@ -293,7 +293,7 @@ TEST(command_line_too_long)
     set("engine-options", words);
     assert_int_equal(compute_all(), STATUS_BAD_INPUT);
     says_error("--engine-options: more than 54 words");
-    assert_int_equal(made.submissions, 0);
+    assert_int_equal(slurm.submissions, 0);
 }
 
 /* The same study in the same folder has the same name; another study or folder has another name. */
@@ -302,11 +302,11 @@ TEST(name_of_a_study)
     char name[64];
     again();
     assert_int_equal(compute_all(), STATUS_OK);
-    assert_true(begins(made.name, "sphproof-") && strlen(made.name) == 9 + 16);
-    snprintf(name, sizeof name, "%s", made.name);
+    assert_true(begins(slurm.name, "sphproof-") && strlen(slurm.name) == 9 + 16);
+    snprintf(name, sizeof name, "%s", slurm.name);
     call.pool.jobs[3].key[0] = 'T';
     assert_int_equal(compute_all(), STATUS_OK);
-    assert_string_not_equal(made.name, name);
+    assert_string_not_equal(slurm.name, name);
     call.pool.jobs[3].key[0] = 't';
     char path[CACHE_PATH_MAX];
     cache_path(&call.place.cache, "task 1", path);
@@ -314,15 +314,15 @@ TEST(name_of_a_study)
     snprintf(call.place.cache.folder, sizeof call.place.cache.folder, "./%s",
              call.place.cache_folder);
     assert_int_equal(compute_all(), STATUS_OK);
-    assert_string_equal(made.name, name);
+    assert_string_equal(slurm.name, name);
     again();
     assert_int_equal(compute_all(), STATUS_OK);
-    assert_string_not_equal(made.name, name);
+    assert_string_not_equal(slurm.name, name);
     again();
     strcat(call.place.cache.folder, "_none");
     assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
     says_error("_none: No such file or directory");
-    assert_int_equal(made.submissions, 0);
+    assert_int_equal(slurm.submissions, 0);
 }
 
 TEST_BETWEEN(begin, end);

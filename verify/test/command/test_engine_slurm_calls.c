@@ -11,22 +11,22 @@
 TEST(answers_of_sbatch)
 {
     again();
-    made.answers = ";elsewhere"; /* as sbatch prints if there are several clusters */
+    slurm.answers = ";elsewhere"; /* as sbatch prints if there are several clusters */
     assert_int_equal(compute_all(), STATUS_OK);
     again();
-    made.no_sbatch = true;
+    slurm.no_sbatch = true;
     assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
     says_error("no command sbatch: No such file or directory (sbatch, squeue and scancel are "
                "needed, on a machine that may submit jobs)");
     again();
-    made.refuses = "sbatch: error: invalid partition specified: none";
+    slurm.refuses = "sbatch: error: invalid partition specified: none";
     assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
     says_error("--engine slurm: sbatch failed (exit status 1): sbatch: error: invalid partition");
     /* a refused submission does not count as a try */
-    made.refuses = NULL;
-    for (int t = 0; t < 3; t++) made.fates[2][t] = t < 2 ? ENDS_BADLY : COMPLETES;
+    slurm.refuses = NULL;
+    for (int t = 0; t < 3; t++) slurm.fates[2][t] = t < 2 ? ENDS_BADLY : COMPLETES;
     assert_int_equal(compute_all(), STATUS_OK);
-    assert_string_equal(made.arrays, "1-3 2 2 ");
+    assert_string_equal(slurm.arrays, "1-3 2 2 ");
 }
 
 TEST(controller_that_does_not_answer)
@@ -43,7 +43,7 @@ TEST(controller_that_does_not_answer)
         for (int quiet = 0; quiet < 2; quiet++) {
             again();
             call.options.quiet = quiet;
-            made.away_from = times[i].from, made.away_to = times[i].to;
+            slurm.away_from = times[i].from, slurm.away_to = times[i].to;
             assert_int_equal(compute_all(), times[i].status);
             const char *note = strstr(call.said, "; trying again\n");
             assert_int_equal(note != NULL, !quiet);
@@ -51,34 +51,34 @@ TEST(controller_that_does_not_answer)
             if (times[i].status) {
                 says_error("squeue failed (exit status 1): slurm_load_jobs error: Unable to "
                            "contact slurm controller");
-                assert_true(made.now < (times[i].from > 0 ? 102 + 140 : 101));
+                assert_true(slurm.now < (times[i].from > 0 ? 102 + 140 : 101));
             }
-            assert_int_equal(made.submissions, times[i].from > 0);
+            assert_int_equal(slurm.submissions, times[i].from > 0);
         }
     /* absent once, and not for too long */
     again();
-    made.fates[2][0] = STAYS;
-    made.away_from = 101, made.away_to = 211;
-    made.interrupt = 1000;
+    slurm.fates[2][0] = STAYS;
+    slurm.away_from = 101, slurm.away_to = 211;
+    slurm.interrupt = 1000;
     assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
     says_error("interrupted");
 }
 
 static void go_away_again(void)
 {
-    if (made.now > 300 && made.now < 310) made.away_from = 320, made.away_to = 430;
+    if (slurm.now > 300 && slurm.now < 310) slurm.away_from = 320, slurm.away_to = 430;
 }
 
 TEST(controller_absent_twice)
 {
     again();
-    made.fates[2][0] = STAYS;
-    made.away_from = 101, made.away_to = 211;
-    made.interrupt = 600;
-    made.meanwhile = go_away_again;
+    slurm.fates[2][0] = STAYS;
+    slurm.away_from = 101, slurm.away_to = 211;
+    slurm.interrupt = 600;
+    slurm.meanwhile = go_away_again;
     assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
     says_error("interrupted");
-    assert_true(made.away_from > 300);
+    assert_true(slurm.away_from > 300);
     const char *first = strstr(call.said, "trying again");
     assert_non_null(first);
     assert_non_null(strstr(first + 1, "trying again"));
@@ -88,7 +88,7 @@ TEST(controller_absent_twice)
 
 static void results_appear(void)
 {
-    if (made.now > 110) store_share(2, SHARES);
+    if (slurm.now > 110) store_share(2, SHARES);
 }
 
 /* If the results of a running task are there already, the task is cancelled, if Slurm permits
@@ -98,12 +98,12 @@ TEST(superfluous_tasks_are_cancelled)
     for (int refused = 0; refused < 2; refused++) {
         char text[100];
         again();
-        made.fates[2][0] = STAYS;
-        made.meanwhile = results_appear;
-        made.refuses_cancel = refused;
+        slurm.fates[2][0] = STAYS;
+        slurm.meanwhile = results_appear;
+        slurm.refuses_cancel = refused;
         assert_int_equal(compute_all(), STATUS_OK);
-        snprintf(text, sizeof text, "--name=%s ", made.name);
-        assert_string_equal(made.cancelled, text);
+        snprintf(text, sizeof text, "--name=%s ", slurm.name);
+        assert_string_equal(slurm.cancelled, text);
         all_is_left_behind_in_order();
     }
 }
@@ -112,12 +112,12 @@ TEST(superfluous_tasks_are_cancelled)
 TEST(held_tasks_are_waited_for)
 {
     again();
-    made.fates[2][0] = HELD;
-    made.refuses_cancel = true;
-    made.interrupt = 120;
+    slurm.fates[2][0] = HELD;
+    slurm.refuses_cancel = true;
+    slurm.interrupt = 120;
     assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
     says_error("interrupted; 1 tasks go on");
-    assert_string_equal(made.arrays, "1-3 ");
+    assert_string_equal(slurm.arrays, "1-3 ");
 }
 
 /* After Ctrl-C without a terminal or without a yes, the tasks continue, and the next call attaches
@@ -133,11 +133,11 @@ TEST(interrupted)
         for (int refused = 0; refused < 2; refused++) {
             char text[200], path[200];
             again();
-            made.fates[2][0] = STAYS;
-            made.fates[3][0] = STAYS;
-            made.interrupt = 120;
-            made.refuses_cancel = refused;
-            made.terminal = answers[i].answer != NULL;
+            slurm.fates[2][0] = STAYS;
+            slurm.fates[3][0] = STAYS;
+            slurm.interrupt = 120;
+            slurm.refuses_cancel = refused;
+            slurm.terminal = answers[i].answer != NULL;
             snprintf(path, sizeof path, "%s/answer", call.place.cache_folder);
             FILE *file = fopen(path, "w");
             fputs(answers[i].answer ? answers[i].answer : "y\n", file);
@@ -145,10 +145,10 @@ TEST(interrupted)
             assert_non_null(freopen(path, "r", stdin));
             assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
             snprintf(text, sizeof text, "Cancel the 2 tasks of %s? They go on otherwise. [y/N] ",
-                     made.name);
-            assert_int_equal(strstr(call.said, text) != NULL, made.terminal);
-            snprintf(text, sizeof text, "--name=%s ", made.name);
-            assert_string_equal(made.cancelled, answers[i].cancelled ? text : "");
+                     slurm.name);
+            assert_int_equal(strstr(call.said, text) != NULL, slurm.terminal);
+            snprintf(text, sizeof text, "--name=%s ", slurm.name);
+            assert_string_equal(slurm.cancelled, answers[i].cancelled ? text : "");
             if (!answers[i].cancelled) {
                 says_error("interrupted; 2 tasks go on: the same command attaches to them again, "
                            "scancel --name=sphproof-");
@@ -162,11 +162,11 @@ TEST(interrupted)
             }
             /* the next call does not submit running tasks a second time, but submits cancelled
              * ones */
-            made.meanwhile = NULL;
-            for (size_t k = 0; k < made.count; k++)
-                if (made.tasks[k].fate == STAYS) made.tasks[k].fate = COMPLETES;
+            slurm.meanwhile = NULL;
+            for (size_t k = 0; k < slurm.count; k++)
+                if (slurm.tasks[k].fate == STAYS) slurm.tasks[k].fate = COMPLETES;
             assert_int_equal(compute_all(), STATUS_OK);
-            assert_string_equal(made.arrays,
+            assert_string_equal(slurm.arrays,
                                 answers[i].cancelled && !refused ? "1-3 2-3 " : "1-3 ");
             all_is_left_behind_in_order();
         }
@@ -190,16 +190,16 @@ TEST(submitted_tasks_are_found_again)
         const int share = 1 + i / 2, fate = i % 2;
         char arrays[32];
         again();
-        made.fates[share][0] = STAYS;
-        made.interrupt = 120;
+        slurm.fates[share][0] = STAYS;
+        slurm.interrupt = 120;
         assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
-        for (size_t k = 0; k < made.count; k++)
-            if (made.tasks[k].fate == STAYS) made.tasks[k].fate = ENDS_BADLY;
-        made.fates[share][1] = ENDS_BADLY;
-        made.fates[share][2] = fate ? COMPLETES : ENDS_BADLY;
+        for (size_t k = 0; k < slurm.count; k++)
+            if (slurm.tasks[k].fate == STAYS) slurm.tasks[k].fate = ENDS_BADLY;
+        slurm.fates[share][1] = ENDS_BADLY;
+        slurm.fates[share][2] = fate ? COMPLETES : ENDS_BADLY;
         assert_int_equal(compute_all(), fate ? STATUS_OK : STATUS_ENVIRONMENT);
         snprintf(arrays, sizeof arrays, "1-3 %d %d ", share, share);
-        assert_string_equal(made.arrays, arrays);
+        assert_string_equal(slurm.arrays, arrays);
         says("submitted again (1 of 2)"), says("submitted again (2 of 2)");
     }
 }
@@ -209,7 +209,7 @@ static const char *planted; /* what another process writes into the state file *
 static void write_state(void)
 {
     char path[300];
-    if (!planted || made.now < 110) return;
+    if (!planted || slurm.now < 110) return;
     state_path(path);
     FILE *file = fopen(path, "w");
     fputs(planted, file);
@@ -234,21 +234,21 @@ TEST(state_file)
     };
     for (size_t i = 0; i < sizeof states / sizeof *states; i++) {
         again();
-        made.fates[2][0] = STAYS;
-        made.fates[2][1] = i ? COMPLETES : ENDS_BADLY;
-        made.interrupt = 130;
-        made.meanwhile = write_state;
+        slurm.fates[2][0] = STAYS;
+        slurm.fates[2][1] = i ? COMPLETES : ENDS_BADLY;
+        slurm.interrupt = 130;
+        slurm.meanwhile = write_state;
         planted = states[i].text;
         assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
         if (i > 2) {
             says_error("another call has divided this study anew: call again to attach to it");
             continue;
         }
-        for (size_t k = 0; k < made.count; k++)
-            if (made.tasks[k].fate == STAYS) made.tasks[k].fate = ENDS_BADLY;
-        made.meanwhile = NULL;
+        for (size_t k = 0; k < slurm.count; k++)
+            if (slurm.tasks[k].fate == STAYS) slurm.tasks[k].fate = ENDS_BADLY;
+        slurm.meanwhile = NULL;
         assert_int_equal(compute_all(), states[i].status);
-        assert_string_equal(made.arrays, states[i].arrays);
+        assert_string_equal(slurm.arrays, states[i].arrays);
     }
     /* the least and the greatest number of shares, and one too many */
     for (int tasks = 1; tasks <= ENGINE_TASKS_MAX + 1; tasks += tasks > 1 ? 1 : 999) {
@@ -284,17 +284,17 @@ TEST(state_file)
     for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
         char path[300];
         again();
-        made.fates[2][0] = STAYS;
-        made.interrupt = 130;
+        slurm.fates[2][0] = STAYS;
+        slurm.interrupt = 130;
         assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
         state_path(path);
         FILE *file = fopen(path, "w");
         fputs(none[i], file);
         fclose(file);
-        for (size_t k = 0; k < made.count; k++) made.tasks[k].fate = FORGOTTEN;
+        for (size_t k = 0; k < slurm.count; k++) slurm.tasks[k].fate = FORGOTTEN;
         call.work.tasks = 2;
         assert_int_equal(compute_all(), STATUS_OK);
-        assert_non_null(strstr(made.wrap, "TASK_ID/2 "));
+        assert_non_null(strstr(slurm.wrap, "TASK_ID/2 "));
     }
 }
 
@@ -302,15 +302,15 @@ TEST(state_file)
 TEST(number_of_shares_is_kept)
 {
     again();
-    made.fates[2][0] = STAYS;
-    made.interrupt = 120;
+    slurm.fates[2][0] = STAYS;
+    slurm.interrupt = 120;
     assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
-    for (size_t k = 0; k < made.count; k++)
-        if (made.tasks[k].fate == STAYS) made.tasks[k].fate = ENDS_BADLY;
+    for (size_t k = 0; k < slurm.count; k++)
+        if (slurm.tasks[k].fate == STAYS) slurm.tasks[k].fate = ENDS_BADLY;
     call.work.tasks = 2;
     assert_int_equal(compute_all(), STATUS_OK);
-    assert_string_equal(made.arrays, "1-3 2 ");
-    assert_non_null(strstr(made.wrap, "TASK_ID/3 "));
+    assert_string_equal(slurm.arrays, "1-3 2 ");
+    assert_non_null(strstr(slurm.wrap, "TASK_ID/3 "));
 }
 
 /* If a share is given up, the message has the last nonempty line of its log, and the log is
@@ -327,15 +327,15 @@ TEST(last_line_of_the_log)
     for (size_t i = 0; i < sizeof logs / sizeof *logs; i++) {
         char path[400], text[200];
         again();
-        made.fates[2][0] = STAYS;
-        made.interrupt = 120;
+        slurm.fates[2][0] = STAYS;
+        slurm.interrupt = 120;
         assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
-        snprintf(path, sizeof path, "%s/slurm/%s-7_2.log", call.place.cache_folder, made.name);
+        snprintf(path, sizeof path, "%s/slurm/%s-7_2.log", call.place.cache_folder, slurm.name);
         FILE *file = fopen(path, "w");
         fputs(logs[i].text, file);
         fclose(file);
-        for (size_t k = 0; k < made.count; k++)
-            if (made.tasks[k].fate == STAYS) made.tasks[k].fate = CANCELLED_RUNNING;
+        for (size_t k = 0; k < slurm.count; k++)
+            if (slurm.tasks[k].fate == STAYS) slurm.tasks[k].fate = CANCELLED_RUNNING;
         assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
         snprintf(text, sizeof text, "-7_2.log: %s", logs[i].line);
         says(text);
@@ -349,17 +349,17 @@ TEST(last_line_of_the_log)
 TEST(logs_of_completed_shares_are_removed)
 {
     again();
-    made.fates[2][0] = STAYS;
-    made.interrupt = 120;
+    slurm.fates[2][0] = STAYS;
+    slurm.interrupt = 120;
     assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
     for (int s = 1; s <= SHARES; s++) {
         char path[400];
-        snprintf(path, sizeof path, "%s/slurm/%s-7_%d.log", call.place.cache_folder, made.name, s);
+        snprintf(path, sizeof path, "%s/slurm/%s-7_%d.log", call.place.cache_folder, slurm.name, s);
         FILE *file = fopen(path, "w");
         fclose(file);
     }
-    for (size_t k = 0; k < made.count; k++)
-        if (made.tasks[k].fate == STAYS) made.tasks[k].fate = COMPLETES;
+    for (size_t k = 0; k < slurm.count; k++)
+        if (slurm.tasks[k].fate == STAYS) slurm.tasks[k].fate = COMPLETES;
     assert_int_equal(compute_all(), STATUS_OK);
     all_is_left_behind_in_order();
 }
@@ -368,13 +368,13 @@ TEST(logs_of_completed_shares_are_removed)
 TEST(polling_intervals)
 {
     again();
-    made.fates[2][0] = STAYS;
-    made.interrupt = 1100;
+    slurm.fates[2][0] = STAYS;
+    slurm.interrupt = 1100;
     assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
     size_t looks = 0; /* the interval is a twentieth of the time passed */
     for (double passed = 0; passed < 1000; looks++)
         passed += passed < 10.1 ? 0.505 : passed < 300 ? passed / 20 : 15;
-    assert_int_equal(made.questions, looks);
+    assert_int_equal(slurm.questions, looks);
 }
 
 TEST_BETWEEN(begin, end);

@@ -269,7 +269,7 @@ static void add_output(struct buffer *to, FILE *whole, const char *text)
     for (const char *c = text; *c; c++) lines += *c == '\n';
     if (whole) fputs(same, whole);
     if (lines > SHORT)
-        buffer_format(to, "[%zu lines, %016" PRIx64 "]\n", lines, made_digest(0, same));
+        buffer_format(to, "[%zu lines, %016" PRIx64 "]\n", lines, text_digest(0, same));
     else
         buffer_add(to, same);
     free(same);
@@ -282,11 +282,11 @@ static void compute_report(const char *into)
     struct report *report;
     struct cache cache;
     snprintf(drawn, sizeof drawn, "%.2000s/../drawn", folder);
-    json_t *template = made_template(drawn, "pieces.json");
-    struct made_draw draw = {0, template};
+    json_t *template = read_template(drawn, "pieces.json");
+    struct drawing draw = {0, template};
     assert_int_equal(report_create(REPORT_QUICK, &report, &error), STATUS_OK);
     assert_int_equal(cache_open(&cache, into, false, &error), STATUS_OK);
-    made_pieces(&draw, report_pool(report), 20);
+    drawn_pieces(&draw, report_pool(report), 20);
     for (size_t i = 0; i < report_pool(report)->count; i++) {
         const struct pool_job *job = &report_pool(report)->jobs[i];
         json_t *reply = json_pack("{s:i, s:s, s:o?}", "status", (int)job->error.status, "message",

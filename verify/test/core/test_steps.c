@@ -81,7 +81,7 @@ static struct sums still_sums;
 /* A simulation whose particles do not move, with steps of 1/8 until t = 1. */
 static struct simulation *standing(void)
 {
-    struct simulation *s = made_simulation(40);
+    struct simulation *s = sample_simulation(40);
     still_sums = *s->plan.sums;
     still_sums.signal = still_signal;
     still_sums.apply_switch = still_switch;
@@ -313,11 +313,11 @@ TEST(half_of_the_energy)
 /* The clocks of a restored simulation continue from those of the saved one. */
 TEST(clocks_go_on)
 {
-    static struct made_bytes bag;
-    struct simulation *kept = made_simulation(40), *restored = made_simulation(40);
-    struct serialiser out = {.bytes = made_put, .context = &bag},
-                      back = {.bytes = made_take, .context = &bag, .back = true};
-    made_run(kept, 0.02, NULL);
+    static struct byte_buffer bag;
+    struct simulation *kept = sample_simulation(40), *restored = sample_simulation(40);
+    struct serialiser out = {.bytes = buffer_put, .context = &bag},
+                      back = {.bytes = buffer_take, .context = &bag, .back = true};
+    run_until(kept, 0.02, NULL);
     kept->wall_start -= 1e6, kept->cpu_start -= 2e6;
     const double wall = kept->wall_start, cpu = kept->cpu_start;
     simulation_serialise(kept, &out);
@@ -329,9 +329,9 @@ TEST(clocks_go_on)
     assert_false(back.failed);
     assert_int_equal(bag.read, bag.used);
     assert_true(restored->cost.wall_s == kept->cost.wall_s);
-    made_run(kept, 0.04, NULL);
-    made_run(restored, 0.04, NULL);
-    assert_true(made_alike(kept, restored));
+    run_until(kept, 0.04, NULL);
+    run_until(restored, 0.04, NULL);
+    assert_true(same_state(kept, restored));
     near_inside(restored->cost.wall_s, 1e6, 1e6 + 100);
     near_inside(restored->cost.cpu_s, 2e6, 2e6 + 100);
     assert_int_equal(restored->cost.steps, kept->cost.steps);
@@ -346,11 +346,11 @@ TEST(clocks_go_on)
 /* Saved state of the integrator, the sums and inactive particles. */
 TEST(all_state_is_restored)
 {
-    static struct made_bytes bag;
+    static struct byte_buffer bag;
     bag.used = bag.read = 0;
-    struct simulation *kept = made_simulation(40), *restored = made_simulation(40);
-    struct serialiser out = {.bytes = made_put, .context = &bag},
-                      back = {.bytes = made_take, .context = &bag, .back = true};
+    struct simulation *kept = sample_simulation(40), *restored = sample_simulation(40);
+    struct serialiser out = {.bytes = buffer_put, .context = &bag},
+                      back = {.bytes = buffer_take, .context = &bag, .back = true};
     const size_t keeps = kept->scheme.integrator->keeps;
     assert_true(keeps > 0 && kept->sleep.span_count == 1);
     memset(kept->integrator_state, 0x3f, keeps);

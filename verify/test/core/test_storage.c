@@ -106,7 +106,7 @@ TEST(capacity_for_more_ghosts)
 /* Only the arrays in use are serialised; the others stay as they are. */
 TEST(serialised_arrays)
 {
-    static struct made_bytes bag;
+    static struct byte_buffer bag;
     for (int dim = 1; dim <= 3; dim++)
         for (ptrdiff_t n = 3; n < 300; n += 59)
             for (unsigned uses = USE_ALWAYS; uses < USE_ALL; uses = 5 * uses + 2) {
@@ -117,8 +117,8 @@ TEST(serialised_arrays)
                 const size_t count = list(&a, from);
                 assert_int_equal(count, particles_arrays(dim, uses));
                 for (ptrdiff_t i = 0; i < n; i++) a.id[i] = (size_t)(2 * i + 1);
-                struct serialiser out = {.bytes = made_put, .context = &bag},
-                                  back = {.bytes = made_take, .context = &bag, .back = true};
+                struct serialiser out = {.bytes = buffer_put, .context = &bag},
+                                  back = {.bytes = buffer_take, .context = &bag, .back = true};
                 bag.used = bag.read = 0;
                 particles_serialise(&a, &out);
                 assert_false(out.failed);

@@ -214,7 +214,7 @@ static const struct {
     {"sod", "1 0 1", "1", 1, 1.4, 0.14, "the time is 0.2 in made and 0.14 in other"},
 };
 
-static struct judged made_of(size_t k, size_t n)
+static struct judged judged_of(size_t k, size_t n)
 {
     struct judged judged = made(n, problems[k].time, problems[k].dim);
     struct settings *settings = &judged.run.asked.settings;
@@ -241,7 +241,7 @@ TEST(other_problems)
             struct trace_drift drift;
             size_t pair[2];
             char why[JUDGE_WHY] = "";
-            for (size_t i = 0; i < 4; i++) judged[i] = made_of(i == other ? k : 0, 100u << i);
+            for (size_t i = 0; i < 4; i++) judged[i] = judged_of(i == other ? k : 0, 100u << i);
             assert_true(judge_one_ladder(judged, 4, why) == !problems[k].says);
             assert_string_equal(why, problems[k].says ? problems[k].says : "");
             json_t *orders = judge_orders(judged, 4);

@@ -168,7 +168,7 @@ TEST(order_of_inactive_particles)
 TEST(particles_are_divided_into_ranges)
 {
     for (size_t n = 20; n<330; n += n % 64> 61 || n % 64 < 3 ? 1 : 7) {
-        struct simulation *s = made_simulation(n);
+        struct simulation *s = sample_simulation(n);
         const struct line *line = line_of(s);
         assert_true(line->range_count * BATCH_MAX >= (ptrdiff_t)n);
         assert_true((line->range_count - 1) * BATCH_MAX < (ptrdiff_t)n);

@@ -95,7 +95,7 @@ TEST(first_particle_without_a_root_is_named)
                                           {70, 68}, {2200, 67}, {67, 2200}, {1300, 1200}};
     for (size_t k = 0; k < sizeof places / sizeof *places; k++)
         for (int size = 1; size <= 2; size++) {
-            struct simulation *s = made_simulation(2561);
+            struct simulation *s = sample_simulation(2561);
             struct error error;
             char said[160];
             s->team.size = s->team.most = size;
@@ -118,7 +118,7 @@ TEST(reaches_are_lowered_every_eighth_step)
 {
     for (int newton = 0; newton < 2; newton++)
         for (uint64_t step = 0; step < 18; step++) {
-            struct simulation *s = made_simulation(200);
+            struct simulation *s = sample_simulation(200);
             struct error error;
             struct line *line = line_of(s);
             ptrdiff_t needed[4];
@@ -140,7 +140,7 @@ TEST(reaches_are_lowered_every_eighth_step)
  * the pressure is corrected along the adiabat for the prediction's error. */
 TEST(state_after_sums)
 {
-    struct simulation *s = made_simulation(200);
+    struct simulation *s = sample_simulation(200);
     const struct particles *a = &s->particles;
     struct error error;
     double h[200], rho[200];
@@ -177,7 +177,7 @@ TEST(state_after_sums)
  * computed again; the message about a predicted width that is too large names its particle. */
 TEST(ghosts_suffice_for_wide_kernels)
 {
-    struct simulation *s = made_simulation(20);
+    struct simulation *s = sample_simulation(20);
     struct error error;
     char said[120];
     const uint64_t passes = line_of(s)->density_passes;
@@ -195,7 +195,7 @@ TEST(ghosts_suffice_for_wide_kernels)
         ptrdiff_t at, also, filled;
     } rows[] = {{1.5, 3, 3, 256}, {0.6, 0, 19, 256}, {0.6 - 2.5e-7, 19, 19, 128}, {0.6, 1, 6, 256}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        s = made_simulation(20);
+        s = sample_simulation(20);
         const struct particles *a = &s->particles;
         const ptrdiff_t at = rows[k].at, also = rows[k].also;
         s->scheme.eta = rows[k].eta;
@@ -219,7 +219,7 @@ TEST(ghosts_are_kept_filled)
         ptrdiff_t filled, reach, then;
     } rows[] = {{0, 1, 8}, {7, 1, 8}, {8, 1, 8}, {9, 1, 9}, {9, 7, 9}, {9, 8, 10}, {0, 20, 22}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        struct simulation *s = made_simulation(200);
+        struct simulation *s = sample_simulation(200);
         struct error error;
         struct line *line = line_of(s);
         line->ghosts_filled = rows[k].filled, line->reach = rows[k].reach;
@@ -244,7 +244,7 @@ TEST(ghosts_are_kept_filled)
 TEST(capacity_for_eight_times_the_reach)
 {
     for (ptrdiff_t reach = 5; reach < 12; reach++) {
-        struct simulation *s = made_simulation(100);
+        struct simulation *s = sample_simulation(100);
         struct error error;
         struct line *line = line_of(s);
         assert_true(s->particles.ghosts == 64 && line->reach < 5);
@@ -308,7 +308,7 @@ static void asked_matrix(const struct kernel *kernel, const struct particles *pa
 TEST(forces_of_every_range)
 {
     for (int way = 0; way < 8; way++) {
-        struct simulation *s = made_simulation(34 * BATCH_MAX + 5);
+        struct simulation *s = sample_simulation(34 * BATCH_MAX + 5);
         struct line *line = line_of(s);
         struct error error;
         uint64_t pairs = 0;
@@ -350,7 +350,7 @@ TEST(forces_of_every_range)
 TEST(matrices_of_every_range)
 {
     for (int slope = 0; slope < 2; slope++) {
-        struct simulation *s = made_simulation(200);
+        struct simulation *s = sample_simulation(200);
         struct line *line = line_of(s);
         const struct particles *a = &s->particles;
         line->loops.matrix = asked_matrix;

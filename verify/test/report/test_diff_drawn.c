@@ -19,12 +19,12 @@
 
 enum { DOCUMENTS = 150, HISTORIES = 12, SERIES = 400, KEPT_TOGETHER = 10 };
 
-static void keep(struct made_kept *kept, const char *what, size_t number, struct buffer *text)
+static void keep(struct digests *kept, const char *what, size_t number, struct buffer *text)
 {
     char name[64], *all = buffer_take(text);
     assert_non_null(all);
     snprintf(name, sizeof name, "%s-%zu", what, number);
-    made_compare(kept, name, all);
+    digests_compare(kept, name, all);
     free(all);
 }
 
@@ -38,7 +38,7 @@ static void add_json(struct buffer *to, json_t *document)
 
 /* A changed copy of a document: figures change not at all, little or much, words are replaced,
  * members removed. */
-static json_t *changed(struct made_draw *draw, const json_t *of, const char *name)
+static json_t *changed(struct drawing *draw, const json_t *of, const char *name)
 {
     static const double factors[] = {1,         1,      1,      1,    1,   1.0000000005,
                                      1.0000005, 1.0005, 1.0015, 1.04, 1.3, 0.9985,
@@ -51,25 +51,25 @@ static json_t *changed(struct made_draw *draw, const json_t *of, const char *nam
     if (json_is_array(of)) {
         made = json_array();
         json_array_foreach(of, i, member)
-            if (made_below(draw, 20)) json_array_append_new(made, changed(draw, member, name));
+            if (drawn_below(draw, 20)) json_array_append_new(made, changed(draw, member, name));
         return made;
     }
     if (json_is_object(of)) {
         made = json_object();
         json_object_foreach((json_t *)of, key, member)
-            if (made_below(draw, 40)) json_object_set_new(made, key, changed(draw, member, key));
+            if (drawn_below(draw, 40)) json_object_set_new(made, key, changed(draw, member, key));
         return made;
     }
-    if (json_is_real(of) && !made_below(draw, 3))
+    if (json_is_real(of) && !drawn_below(draw, 3))
         return json_real(json_real_value(of) *
-                         factors[made_below(draw, sizeof factors / sizeof *factors)]);
-    if (json_is_integer(of) && !made_below(draw, 8) && strcmp(name, "n") && strcmp(name, "dim"))
+                         factors[drawn_below(draw, sizeof factors / sizeof *factors)]);
+    if (json_is_integer(of) && !drawn_below(draw, 8) && strcmp(name, "n") && strcmp(name, "dim"))
         return json_integer(json_integer_value(of) + 1);
     if (json_is_string(of) &&
         (!strcmp(name, "status") || !strcmp(name, "outcome") || !strcmp(name, "state") ||
          !strcmp(name, "processor")) &&
-        !made_below(draw, 4))
-        return json_string(words[made_below(draw, sizeof words / sizeof *words)]);
+        !drawn_below(draw, 4))
+        return json_string(words[drawn_below(draw, sizeof words / sizeof *words)]);
     return json_deep_copy(of);
 }
 
@@ -108,18 +108,18 @@ static void add_readings(struct buffer *to, const json_t *document)
 TEST(diffs)
 {
     static const char *const kinds[] = {"report", "report", "other", "other", "anything_else"};
-    json_t *template = made_template(test_word(1), "figures.json");
-    struct made_kept kept;
+    json_t *template = read_template(test_word(1), "figures.json");
+    struct digests kept;
     struct buffer text = {0};
-    made_open(&kept, test_word(1), "diffs.txt");
+    digests_open(&kept, test_word(1), "diffs.txt");
     for (size_t k = 0; k < DOCUMENTS; k++) {
-        struct made_draw draw = {k, template};
+        struct drawing draw = {k, template};
         struct error error = {0};
         struct diff diff;
-        const json_t *kind = json_object_get(template, kinds[made_below(&draw, 5)]);
-        json_t *old = made_document(&draw, kind),
-               *new = made_below(&draw, 6) ? changed(&draw, old, "") : made_document(&draw, kind);
-        if (!made_below(&draw, 15)) json_object_set_new(new, "command", json_string("kernel"));
+        const json_t *kind = json_object_get(template, kinds[drawn_below(&draw, 5)]);
+        json_t *old = drawn_document(&draw, kind),
+               *new = drawn_below(&draw, 6) ? changed(&draw, old, "") : drawn_document(&draw, kind);
+        if (!drawn_below(&draw, 15)) json_object_set_new(new, "command", json_string("kernel"));
         add_readings(&text, old);
         const enum status status = diff_documents(old, new, DIFF_THRESHOLD, &diff, &error);
         buffer_format(&text, "%d %s\n", status, error.message);
@@ -135,41 +135,41 @@ TEST(diffs)
         json_decref(new);
         if (k % KEPT_TOGETHER == KEPT_TOGETHER - 1) keep(&kept, "diffs", k / KEPT_TOGETHER, &text);
     }
-    made_close(&kept);
+    digests_close(&kept);
     json_decref(template);
 }
 
 /* Nights of one document that changes gradually; other modes and damaged lines between them. */
 TEST(histories)
 {
-    json_t *template = made_template(test_word(1), "figures.json");
-    struct made_kept kept;
+    json_t *template = read_template(test_word(1), "figures.json");
+    struct digests kept;
     struct buffer text = {0};
-    made_open(&kept, test_word(1), "histories.txt");
+    digests_open(&kept, test_word(1), "histories.txt");
     for (size_t k = 0; k < HISTORIES; k++) {
         static const char *const damage[] = {"\n", "damaged\n", "{\"schema\": \"other\"}\n",
                                              "{\"schema\": \"sphproof-his"};
-        struct made_draw draw = {k, template};
+        struct drawing draw = {k, template};
         struct error error = {0};
         char path[4096];
         snprintf(path, sizeof path, "%s", path_of("nights"));
         remove(path);
-        const size_t nights = k % 3 ? 2 + made_below(&draw, 12)
-                              : k   ? 119 + made_below(&draw, 4)
+        const size_t nights = k % 3 ? 2 + drawn_below(&draw, 12)
+                              : k   ? 119 + drawn_below(&draw, 4)
                                     : 0;
-        json_t *results = made_document(&draw, json_object_get(template, "report")), *history;
+        json_t *results = drawn_document(&draw, json_object_get(template, "report")), *history;
         for (size_t i = 0; i < nights; i++) {
-            if (!made_below(&draw, 3)) {
+            if (!drawn_below(&draw, 3)) {
                 json_t *next = changed(&draw, results, "");
                 json_decref(results);
                 results = next;
             }
             json_object_set_new(results, "mode",
-                                json_string(made_below(&draw, 6) ? "quick" : "nightly"));
+                                json_string(drawn_below(&draw, 6) ? "quick" : "nightly"));
             assert_int_equal(history_append(results, path, &error), STATUS_OK);
-            if (made_below(&draw, 12)) continue;
+            if (drawn_below(&draw, 12)) continue;
             FILE *file = fopen(path, "a");
-            fputs(damage[made_below(&draw, 4)], file);
+            fputs(damage[drawn_below(&draw, 4)], file);
             fclose(file);
         }
         assert_int_equal(history_tell(results, path, &history, &error), STATUS_OK);
@@ -182,56 +182,56 @@ TEST(histories)
         if (file) fclose(file);
         keep(&kept, "histories", k, &text);
     }
-    made_close(&kept);
+    digests_close(&kept);
     json_decref(template);
 }
 
 /* Levels with scatter, outliers and steps. */
 TEST(series)
 {
-    struct made_kept kept;
+    struct digests kept;
     struct buffer text = {0};
-    made_open(&kept, test_word(1), "series.txt");
+    digests_open(&kept, test_word(1), "series.txt");
     for (size_t k = 0; k < SERIES; k++) {
-        struct made_draw draw = {k, NULL};
+        struct drawing draw = {k, NULL};
         struct trend_change changes[8];
         double value[64], level = 0;
-        const size_t n = made_below(&draw, k % 2 ? 12 : 64),
-                     most = k % 7 ? 8 : made_below(&draw, 3);
-        const double scatter = (double)made_below(&draw, 3) / 64;
+        const size_t n = drawn_below(&draw, k % 2 ? 12 : 64),
+                     most = k % 7 ? 8 : drawn_below(&draw, 3);
+        const double scatter = (double)drawn_below(&draw, 3) / 64;
         for (size_t i = 0; i < n; i++) {
-            if (!made_below(&draw, 6)) level += (double)made_below(&draw, 33) / 16 - 1;
-            value[i] = level + scatter * (double)made_below(&draw, 9);
-            if (!made_below(&draw, 15)) value[i] += 1;
+            if (!drawn_below(&draw, 6)) level += (double)drawn_below(&draw, 33) / 16 - 1;
+            value[i] = level + scatter * (double)drawn_below(&draw, 9);
+            if (!drawn_below(&draw, 15)) value[i] += 1;
         }
         const size_t count =
-            trend_changes(n, value, (double)made_below(&draw, 4) / 8, changes, most);
+            trend_changes(n, value, (double)drawn_below(&draw, 4) / 8, changes, most);
         for (size_t c = 0; c < count; c++)
             buffer_format(&text, "%zu %.10g %.10g\n", changes[c].at, changes[c].before,
                           changes[c].after);
         buffer_format(&text, "%zu\n", count);
         if (k % 50 == 49) keep(&kept, "series", k / 50, &text);
     }
-    made_close(&kept);
+    digests_close(&kept);
 }
 
 /* Parts of the checks, joined in any order of their mutants. */
 TEST(joined)
 {
-    struct made_kept kept;
+    struct digests kept;
     struct buffer text = {0};
     static const char *const names[] = {"a", "b", "c"};
-    made_open(&kept, test_word(1), "joined.txt");
+    digests_open(&kept, test_word(1), "joined.txt");
     for (size_t k = 0; k < 20; k++) {
-        struct made_draw draw = {k, NULL};
+        struct drawing draw = {k, NULL};
         json_t *all = json_object();
-        for (size_t parts = made_below(&draw, 4); parts > 0; parts--) {
-            const int passed = (int)made_below(&draw, 5), failed = (int)made_below(&draw, 3);
+        for (size_t parts = drawn_below(&draw, 4); parts > 0; parts--) {
+            const int passed = (int)drawn_below(&draw, 5), failed = (int)drawn_below(&draw, 3);
             json_t *part = json_pack("{s:[i], s:[], s:{s:i, s:i}}", "checks", (int)parts, "mutants",
                                      "summary", "passed", passed, "failed", failed);
-            for (size_t m = made_below(&draw, 4); m > 0; m--) {
-                const char *name = names[made_below(&draw, 3)];
-                const int detected = made_below(&draw, 4) > 0;
+            for (size_t m = drawn_below(&draw, 4); m > 0; m--) {
+                const char *name = names[drawn_below(&draw, 3)];
+                const int detected = drawn_below(&draw, 4) > 0;
                 json_array_append_new(
                     json_object_get(part, "mutants"),
                     json_pack("{s:s, s:b}", "mutant", name, "detected", detected));
@@ -242,5 +242,5 @@ TEST(joined)
         add_json(&text, all);
     }
     keep(&kept, "joined", 0, &text);
-    made_close(&kept);
+    digests_close(&kept);
 }

@@ -20,12 +20,12 @@
 #include "result.h"
 #include "value.h"
 
-static void compare(struct made_kept *kept, const char *what, size_t number, struct buffer *text)
+static void compare(struct digests *kept, const char *what, size_t number, struct buffer *text)
 {
     char name[64], *all = buffer_take(text);
     assert_non_null(all);
     snprintf(name, sizeof name, "%s-%zu", what, number);
-    made_compare(kept, name, all);
+    digests_compare(kept, name, all);
     free(all);
 }
 
@@ -200,7 +200,7 @@ static void add_settings(struct buffer *to, const struct pool_job *job)
     json_decref(key);
 }
 
-static struct report *planned(struct made_kept *kept, enum report_mode mode)
+static struct report *planned(struct digests *kept, enum report_mode mode)
 {
     struct error error = {0};
     struct buffer text = {0};
@@ -226,19 +226,19 @@ static void refuse(struct pool *pool, const char *name)
 
 TEST(reports)
 {
-    json_t *template = made_template(test_word(1), "pieces.json"), *results;
-    struct made_kept kept;
-    struct made_draw draw = {0, template};
+    json_t *template = read_template(test_word(1), "pieces.json"), *results;
+    struct digests kept;
+    struct drawing draw = {0, template};
     struct buffer text = {0};
     struct error error = {0};
-    made_open(&kept, test_word(1), "reports.txt");
+    digests_open(&kept, test_word(1), "reports.txt");
     write_text("faults.json",
                "{\"schema\": \"sphproof/1\", \"command\": \"faults\", \"faults\": []}");
     write_text("score.json", "{");
     struct report *report = planned(&kept, REPORT_QUICK);
     struct pool *pool = report_pool(report);
     compute_some(pool);
-    made_pieces(&draw, pool, 150);
+    drawn_pieces(&draw, pool, 150);
     if (report_judge(report, place, &results, &error)) fail_msg("%s", error.message);
     add_document(&text, results);
     compare(&kept, "report", 0, &text);
@@ -262,7 +262,7 @@ TEST(reports)
     assert_null(results);
     report_destroy(report);
     report_destroy(planned(&kept, REPORT_NIGHTLY)); /* judged as the daily one */
-    made_close(&kept);
+    digests_close(&kept);
     json_decref(template);
 }
 

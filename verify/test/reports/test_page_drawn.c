@@ -30,12 +30,12 @@ static char *whole(struct page *page)
     return buffer_take(&text);
 }
 
-static void compare(struct made_kept *kept, const char *what, size_t number, char *text)
+static void compare(struct digests *kept, const char *what, size_t number, char *text)
 {
     char name[64];
     assert_non_null(text);
     snprintf(name, sizeof name, "%s-%zu", what, number);
-    made_compare(kept, name, text);
+    digests_compare(kept, name, text);
     free(text);
 }
 
@@ -55,30 +55,30 @@ static char *verdict_in_words(const json_t *results)
 
 TEST(pages)
 {
-    json_t *template = made_template(test_word(1), "report.json");
+    json_t *template = read_template(test_word(1), "report.json");
     char *path = strdup(getenv("PATH") ? getenv("PATH") : "");
-    struct made_kept kept;
+    struct digests kept;
     struct page page;
-    made_open(&kept, test_word(1), "pages.txt");
+    digests_open(&kept, test_word(1), "pages.txt");
     setenv("PATH", "/nowhere", 1);
     for (size_t k = 0; k < PAGES; k++) {
-        struct made_draw draw = {k, template};
-        json_t *results = made_document(&draw, json_object_get(template, "report"));
+        struct drawing draw = {k, template};
+        json_t *results = drawn_document(&draw, json_object_get(template, "report"));
         json_object_set_new(results, "verdict", verdict_make(results));
         assert_true(page_make(&page, results));
         compare(&kept, "page", k, whole(&page));
         compare(&kept, "verdict", k, verdict_in_words(results));
         json_decref(results);
-        json_t *judged = made_document(&draw, json_object_get(template, "judge"));
+        json_t *judged = drawn_document(&draw, json_object_get(template, "judge"));
         assert_true(page_make_judge(&page, judged));
         compare(&kept, "judge", k, whole(&page));
         json_decref(judged);
         if (k % 4) continue;
-        json_t *compared = made_document(&draw, json_object_get(template, "compare"));
+        json_t *compared = drawn_document(&draw, json_object_get(template, "compare"));
         assert_true(page_make_compare(&page, compared));
         compare(&kept, "compare", k, whole(&page));
         json_decref(compared);
-        json_t *codes = made_document(&draw, json_object_get(template, "codes"));
+        json_t *codes = drawn_document(&draw, json_object_get(template, "codes"));
         json_object_set_new(codes, "verdict", verdict_make(codes));
         assert_true(page_make(&page, codes));
         compare(&kept, "codes", k, whole(&page));
@@ -87,25 +87,25 @@ TEST(pages)
     setenv("PATH", path, 1);
     free(path);
     json_decref(template);
-    made_close(&kept);
+    digests_close(&kept);
 }
 
 /* Verdict, list of failures and JUnit file agree for any results; failures are in the order of
  * ranks, with each check once. */
 TEST(one_verdict)
 {
-    json_t *template = made_template(test_word(1), "report.json");
+    json_t *template = read_template(test_word(1), "report.json");
     size_t well = 0, bad = 0;
     for (size_t k = 0; k < 4 * PAGES; k++) {
-        struct made_draw draw = {1000 + k, template};
-        json_t *results = made_document(&draw, json_object_get(template, "report"));
+        struct drawing draw = {1000 + k, template};
+        json_t *results = drawn_document(&draw, json_object_get(template, "report"));
         static const char *const words[] = {"none",  "pass",         "fail", "known",
                                             "smoke", "undetermined", "skip", "odd"};
         if (k % 2) { /* so few results that none may fail */
             json_decref(results);
             results = json_pack("{s:[{s:s, s:s, s:[{s:s}]}]}", "runs", "case", "a", "status",
                                 k % 3 ? "ok" : "broke_down", "gates", "status",
-                                words[made_below(&draw, 8)]);
+                                words[drawn_below(&draw, 8)]);
         }
         json_t *verdict = verdict_make(results);
         const json_t *failures = json_object_get(verdict, "failures");

@@ -19,44 +19,45 @@ struct drawn {
     struct plot_panel panels[PANELS];
 };
 
-static bool toss(struct made_draw *draw, size_t n)
+static bool toss(struct drawing *draw, size_t n)
 {
-    return !made_below(draw, n);
+    return !drawn_below(draw, n);
 }
 
-static const char *words(struct made_draw *draw)
+static const char *words(struct drawing *draw)
 {
     static const char *const texts[] = {
         "", "x", "it's \x01 'W'", "Δ ρ ≥ 0", "a rather long name", "plain"};
-    return toss(draw, 5) ? NULL : texts[made_below(draw, sizeof texts / sizeof *texts)];
+    return toss(draw, 5) ? NULL : texts[drawn_below(draw, sizeof texts / sizeof *texts)];
 }
 
 /* Numbers of a magnitude that differs between panels; some are not finite, equal, or nearly so. */
-static void numbers(struct made_draw *draw, double *values, size_t n)
+static void numbers(struct drawing *draw, double *values, size_t n)
 {
     static const double sizes[] = {1, 1, 1, 1e-3, 300, 1e4, 1e-9};
-    const double size = sizes[made_below(draw, sizeof sizes / sizeof *sizes)];
+    const double size = sizes[drawn_below(draw, sizeof sizes / sizeof *sizes)];
     const bool flat = toss(draw, 8), odd = toss(draw, 3), below = toss(draw, 4);
     for (size_t i = 0; i < n; i++) {
-        values[i] = size * (flat ? 1 + 1e-12 * (double)(i % 2) : made_real(draw) - (below ? 1 : 0));
+        values[i] =
+            size * (flat ? 1 + 1e-12 * (double)(i % 2) : drawn_real(draw) - (below ? 1 : 0));
         if (odd && toss(draw, 6)) values[i] = toss(draw, 2) ? (double)NAN : (double)INFINITY;
     }
 }
 
 /* Ascending positive numbers, evenly spaced or not. */
-static void centres(struct made_draw *draw, double *values, size_t n)
+static void centres(struct drawing *draw, double *values, size_t n)
 {
-    const double step = (double)(1 + made_below(draw, 16)) / 4;
+    const double step = (double)(1 + drawn_below(draw, 16)) / 4;
     const bool even = toss(draw, 2);
     values[0] = step / 2;
     for (size_t i = 1; i < n; i++) values[i] = values[i - 1] + (even ? step : step * (double)i);
 }
 
-static void draw_heat(struct made_draw *draw, struct drawn *d, size_t p)
+static void draw_heat(struct drawing *draw, struct drawn *d, size_t p)
 {
     static const char *const names[] = {"good", "it's bad", "ünklar"};
     struct plot_heat *heat = &d->heat[p];
-    *heat = (struct plot_heat){.nx = 1 + made_below(draw, 4), .ny = 1 + made_below(draw, 4)};
+    *heat = (struct plot_heat){.nx = 1 + drawn_below(draw, 4), .ny = 1 + drawn_below(draw, 4)};
     double *x = d->values[p][SERIES][0], *y = d->values[p][SERIES][1];
     centres(draw, x, heat->nx);
     centres(draw, y, heat->ny);
@@ -64,41 +65,41 @@ static void draw_heat(struct made_draw *draw, struct drawn *d, size_t p)
     heat->x = x, heat->y = y, heat->z = d->z[p];
     heat->label = words(draw);
     heat->log = toss(draw, 4), heat->image = toss(draw, 2), heat->diverging = toss(draw, 4);
-    if (toss(draw, 3)) heat->low = -made_real(draw), heat->high = made_real(draw);
-    if (toss(draw, 3)) heat->categories = names, heat->category_count = 1 + made_below(draw, 3);
+    if (toss(draw, 3)) heat->low = -drawn_real(draw), heat->high = drawn_real(draw);
+    if (toss(draw, 3)) heat->categories = names, heat->category_count = 1 + drawn_below(draw, 3);
 }
 
-static void draw_series(struct made_draw *draw, struct drawn *d, size_t p, size_t k)
+static void draw_series(struct drawing *draw, struct drawn *d, size_t p, size_t k)
 {
     static const double dot_sizes[] = {0, 0.5, 0.4, 1, 2};
     double(*values)[POINTS] = d->values[p][k];
-    const size_t n = made_below(draw, POINTS + 1);
+    const size_t n = drawn_below(draw, POINTS + 1);
     for (int v = 0; v < 4; v++) numbers(draw, values[v], POINTS);
     d->series[p][k] = (struct plot_series){.label = words(draw),
-                                           .kind = (enum plot_kind)made_below(draw, 5),
+                                           .kind = (enum plot_kind)drawn_below(draw, 5),
                                            .n = n,
                                            .x = values[0],
                                            .y = values[1],
                                            .low = values[2],
                                            .high = values[3],
-                                           .color = (int)made_below(draw, 10) - 1,
+                                           .color = (int)drawn_below(draw, 10) - 1,
                                            .dashed = toss(draw, 3),
-                                           .size = dot_sizes[made_below(draw, 5)]};
+                                           .size = dot_sizes[drawn_below(draw, 5)]};
     if (d->series[p][k].kind == PLOT_BAND && toss(draw, 2)) d->series[p][k].y = NULL;
     if (d->series[p][k].color > PLOT_COLORS) d->series[p][k].color = PLOT_AUTO;
 }
 
-static void draw_plot(struct made_draw *draw, struct drawn *d, struct plot *plot)
+static void draw_plot(struct drawing *draw, struct drawn *d, struct plot *plot)
 {
     const bool x_log = toss(draw, 2); /* stacked panels share their x axis */
     *d = (struct drawn){.ticks = {0.5, 200}};
     *plot = (struct plot){.name = toss(draw, 9) ? "it's" : "drawn",
                           .title = words(draw),
                           .show_title = toss(draw, 3),
-                          .width = toss(draw, 3) ? 300 + (int)made_below(draw, 400) : 0,
-                          .height = toss(draw, 3) ? 150 + (int)made_below(draw, 500) : 0,
+                          .width = toss(draw, 3) ? 300 + (int)drawn_below(draw, 400) : 0,
+                          .height = toss(draw, 3) ? 150 + (int)drawn_below(draw, 500) : 0,
                           .panels = d->panels,
-                          .panel_count = 1 + made_below(draw, PANELS),
+                          .panel_count = 1 + drawn_below(draw, PANELS),
                           .beside = toss(draw, 4)};
     for (size_t p = 0; p < plot->panel_count; p++) {
         struct plot_panel *panel = &d->panels[p];
@@ -109,37 +110,37 @@ static void draw_plot(struct made_draw *draw, struct drawn *d, struct plot *plot
                                      .equal = toss(draw, 6),
                                      .x_log = x_log,
                                      .y_log = toss(draw, 2),
-                                     .key = (enum plot_key)made_below(draw, 3),
+                                     .key = (enum plot_key)drawn_below(draw, 3),
                                      .series = d->series[p],
-                                     .series_count = made_below(draw, SERIES + 1),
+                                     .series_count = drawn_below(draw, SERIES + 1),
                                      .slopes = d->slopes[p],
                                      .marks = d->marks[p],
-                                     .mark_count = made_below(draw, 3)};
+                                     .mark_count = drawn_below(draw, 3)};
         if (toss(draw, 3)) panel->x_ticks = d->ticks, panel->x_tick_count = 2;
-        if (toss(draw, 4)) panel->x_min = 0.25, panel->x_max = panel->x_min + made_real(draw) / 2;
+        if (toss(draw, 4)) panel->x_min = 0.25, panel->x_max = panel->x_min + drawn_real(draw) / 2;
         if (toss(draw, 4))
-            panel->y_min = 0.125, panel->y_max = 0.125 + (double)made_below(draw, 200);
-        if (panel->x_log && panel->y_log) panel->slope_count = made_below(draw, 3);
+            panel->y_min = 0.125, panel->y_max = 0.125 + (double)drawn_below(draw, 200);
+        if (panel->x_log && panel->y_log) panel->slope_count = drawn_below(draw, 3);
         for (size_t k = 0; k < panel->series_count; k++) draw_series(draw, d, p, k);
         for (size_t k = 0; k < panel->slope_count; k++)
             d->slopes[p][k] = (struct plot_slope){
-                1 + (double)k, 16, (double)(1 + made_below(draw, 9)), -1 - (double)k, words(draw)};
+                1 + (double)k, 16, (double)(1 + drawn_below(draw, 9)), -1 - (double)k, words(draw)};
         for (size_t k = 0; k < panel->mark_count; k++)
-            d->marks[p][k] = (struct plot_mark){made_real(draw), toss(draw, 2), words(draw)};
+            d->marks[p][k] = (struct plot_mark){drawn_real(draw), toss(draw, 2), words(draw)};
         if (toss(draw, 3)) draw_heat(draw, d, p), panel->heat = &d->heat[p];
     }
 }
 
 TEST(scripts)
 {
-    struct made_kept kept;
+    struct digests kept;
     struct drawn d;
     struct plot plot;
     struct buffer text = {0};
     char *script, *data, name[64];
-    made_open(&kept, test_word(1), "plots.txt");
+    digests_open(&kept, test_word(1), "plots.txt");
     for (size_t k = 0; k < PLOTS; k++) {
-        struct made_draw draw = {k, NULL};
+        struct drawing draw = {k, NULL};
         draw_plot(&draw, &d, &plot);
         assert_true(plot_source(&plot, &script, &data));
         buffer_format(&text, "%s%s", script, data);
@@ -149,16 +150,16 @@ TEST(scripts)
         if (k % KEPT_TOGETHER != KEPT_TOGETHER - 1) continue;
         snprintf(name, sizeof name, "plots-%zu", k / KEPT_TOGETHER);
         script = buffer_take(&text);
-        made_compare(&kept, name, script);
+        digests_compare(&kept, name, script);
         free(script);
     }
-    made_close(&kept);
+    digests_close(&kept);
 }
 
 /* ---- SVG ---- */
 
 /* A tag with attributes as in gnuplot's output, sometimes malformed. */
-static void draw_tag(struct made_draw *draw, struct buffer *to, const char *name)
+static void draw_tag(struct drawing *draw, struct buffer *to, const char *name)
 {
     static const char *const attributes[] = {"fill='black'",
                                              "fill = \"none\"",
@@ -187,22 +188,22 @@ static void draw_tag(struct made_draw *draw, struct buffer *to, const char *name
                                              "href=''",
                                              "xlink:href=''"};
     static const char *const bad[] = {"fill", "fill=none", "fill='none", "a='1' b", "/"};
-    size_t n = toss(draw, 60) ? 23 + made_below(draw, 4) : made_below(draw, 5);
+    size_t n = toss(draw, 60) ? 23 + drawn_below(draw, 4) : drawn_below(draw, 5);
     buffer_format(to, "<%s", name);
     for (; n > 0; n--) {
         buffer_add(to, toss(draw, 3) ? "\n\t" : " ");
-        buffer_add(to, attributes[made_below(draw, sizeof attributes / sizeof *attributes)]);
+        buffer_add(to, attributes[drawn_below(draw, sizeof attributes / sizeof *attributes)]);
     }
-    if (toss(draw, 150)) buffer_format(to, " %s", bad[made_below(draw, sizeof bad / sizeof *bad)]);
+    if (toss(draw, 150)) buffer_format(to, " %s", bad[drawn_below(draw, sizeof bad / sizeof *bad)]);
 }
 
-static void draw_particles(struct made_draw *draw, struct buffer *to)
+static void draw_particles(struct drawing *draw, struct buffer *to)
 {
     static const char *const colors[] = {"rgb(0,114,178)", "rgb(213,94,0)", "black"};
-    for (size_t n = made_below(draw, 5); n > 0; n--) { /* arguments have no order */
-        const size_t x = made_below(draw, 90), y = made_below(draw, 100);
+    for (size_t n = drawn_below(draw, 5); n > 0; n--) { /* arguments have no order */
+        const size_t x = drawn_below(draw, 90), y = drawn_below(draw, 100);
         const char *size = toss(draw, 3) ? "1.5" : "0.75";
-        const char *color = colors[made_below(draw, toss(draw, 2) ? 3 : 1)];
+        const char *color = colors[drawn_below(draw, toss(draw, 2) ? 3 : 1)];
         buffer_format(to,
                       "<use xlink:href='#gpPt6' transform='translate(%zu.25,7.%zu) scale(%s)' "
                       "color='%s'/>\n",
@@ -210,17 +211,17 @@ static void draw_particles(struct made_draw *draw, struct buffer *to)
     }
 }
 
-static void draw_elements(struct made_draw *draw, struct buffer *to, size_t depth)
+static void draw_elements(struct drawing *draw, struct buffer *to, size_t depth)
 {
     static const char *const leaves[] = {"path", "use", "circle", "image", "g"};
     static const char *const nodes[] = {"g",     "g",      "text",           "desc",
                                         "title", "filter", "linearGradient", "xlink:a"};
-    for (size_t n = made_below(draw, depth ? 4 : 7); n > 0; n--) {
-        const char *node = nodes[made_below(draw, sizeof nodes / sizeof *nodes)];
+    for (size_t n = drawn_below(draw, depth ? 4 : 7); n > 0; n--) {
+        const char *node = nodes[drawn_below(draw, sizeof nodes / sizeof *nodes)];
         if (toss(draw, 4)) draw_particles(draw, to);
         if (toss(draw, 3)) buffer_add(to, toss(draw, 2) ? "\n " : "text &amp; more");
         if (depth > 3 || toss(draw, 2)) {
-            draw_tag(draw, to, leaves[made_below(draw, 4)]);
+            draw_tag(draw, to, leaves[drawn_below(draw, 4)]);
             buffer_add(to, toss(draw, 2) ? "/>" : " />\n");
             continue;
         }
@@ -233,16 +234,16 @@ static void draw_elements(struct made_draw *draw, struct buffer *to, size_t dept
 
 TEST(pictures)
 {
-    struct made_kept kept;
+    struct digests kept;
     struct buffer text = {0};
     char name[64];
-    made_open(&kept, test_word(1), "pictures.txt");
+    digests_open(&kept, test_word(1), "pictures.txt");
     for (size_t k = 0; k < PICTURES; k++) {
-        struct made_draw draw = {k, NULL};
+        struct drawing draw = {k, NULL};
         struct buffer raw = {0}, to = {0};
         if (!toss(&draw, 20)) buffer_add(&raw, "<?xml version='1.0'?>\n");
         /* groups may be nested 32 deep */
-        const size_t deep = toss(&draw, 20) ? 31 + made_below(&draw, 3) : 0;
+        const size_t deep = toss(&draw, 20) ? 31 + drawn_below(&draw, 3) : 0;
         draw_tag(&draw, &raw, toss(&draw, 40) ? "sgv" : "svg");
         buffer_add(&raw, ">");
         for (size_t i = 0; i < deep; i++) buffer_add(&raw, "<g>");
@@ -258,8 +259,8 @@ TEST(pictures)
         if (k % KEPT_TOGETHER != KEPT_TOGETHER - 1) continue;
         snprintf(name, sizeof name, "pictures-%zu", k / KEPT_TOGETHER);
         char *all = buffer_take(&text);
-        made_compare(&kept, name, all);
+        digests_compare(&kept, name, all);
         free(all);
     }
-    made_close(&kept);
+    digests_close(&kept);
 }

@@ -82,19 +82,19 @@ static enum status loaded(struct checkpoint *checkpoint, struct simulation *simu
 
 TEST(restored_run_continues)
 {
-    struct simulation *self = made_simulation(40), *other = made_simulation(40);
+    struct simulation *self = sample_simulation(40), *other = sample_simulation(40);
     struct checkpoint checkpoint = usual();
     struct error error = {0};
     unlink(path); /* without a file nothing happens */
     assert_int_equal(loaded(&checkpoint, other, &error), STATUS_OK);
-    made_run(self, 0.05, NULL);
+    run_until(self, 0.05, NULL);
     saved(self);
     checkpoint.snapshot = -1;
     assert_int_equal(loaded(&checkpoint, other, &error), STATUS_OK);
-    assert_true(made_alike(self, other));
-    made_run(self, 0.2, NULL);
-    made_run(other, 0.2, NULL);
-    assert_true(made_alike(self, other));
+    assert_true(same_state(self, other));
+    run_until(self, 0.2, NULL);
+    run_until(other, 0.2, NULL);
+    assert_true(same_state(self, other));
     simulation_destroy(self);
     simulation_destroy(other);
 }
@@ -120,7 +120,7 @@ static void write_all(const char *bytes, size_t n)
 /* Asserts that a run, the usual one unless another is given, does not start from the file. */
 static void refused(struct checkpoint checkpoint, const char *why)
 {
-    struct simulation *simulation = made_simulation(40);
+    struct simulation *simulation = sample_simulation(40);
     struct error error = {0};
     char text[400];
     snprintf(text, sizeof text, "--resume '%s': %s", path, why);
@@ -133,7 +133,7 @@ static void refused(struct checkpoint checkpoint, const char *why)
 TEST(damaged)
 {
     static char bytes[1 << 16];
-    struct simulation *self = made_simulation(40);
+    struct simulation *self = sample_simulation(40);
     char head[200];
     saved(self);
     simulation_destroy(self);
@@ -168,7 +168,7 @@ TEST(damaged)
     write_all(bytes, n);
     struct checkpoint again = usual();
     struct error error = {0};
-    self = made_simulation(40);
+    self = sample_simulation(40);
     assert_int_equal(loaded(&again, self, &error), STATUS_OK);
     simulation_destroy(self);
 }
@@ -178,7 +178,7 @@ TEST(forged)
 {
     enum { LINE = (1 << 16) - 1 };
     static char bytes[1 << 18];
-    struct simulation *self = made_simulation(40);
+    struct simulation *self = sample_simulation(40);
     char head[200];
     saved(self);
     const size_t n = read_all(bytes, sizeof bytes);
@@ -209,16 +209,16 @@ TEST(forged)
 TEST(large_checkpoints)
 {
     static char bytes[1 << 23];
-    struct simulation *self = made_simulation(8000);
+    struct simulation *self = sample_simulation(8000);
     struct checkpoint checkpoint = usual();
     struct error error = {0};
-    made_run(self, 1e-6, NULL);
+    run_until(self, 1e-6, NULL);
     saved(self);
     const size_t n = read_all(bytes, sizeof bytes);
     assert_true(n > (1 << 20) + 1000);
-    struct simulation *other = made_simulation(8000);
+    struct simulation *other = sample_simulation(8000);
     assert_int_equal(loaded(&checkpoint, other, &error), STATUS_OK);
-    assert_true(made_alike(self, other));
+    assert_true(same_state(self, other));
     simulation_destroy(self);
     simulation_destroy(other);
     for (int k = 0; k < 2; k++) {
@@ -241,7 +241,7 @@ TEST(checkpoints_of_other_runs)
         {"{\"case\": 1, \"settings\": {\"n\": 40}}", "its 'case' differs"},
         {"{\"case\": 1, \"settings\": {\"n\": 41}}", "n is 40 there, 41 here"},
     };
-    struct simulation *self = made_simulation(40);
+    struct simulation *self = sample_simulation(40);
     struct checkpoint checkpoint = usual();
     char why[200];
     saved(self);
@@ -254,12 +254,12 @@ TEST(checkpoints_of_other_runs)
     /* if a key is repeated, the last value counts */
     checkpoint.run = "{\"settings\": {\"n\": 1, \"n\": 50}}";
     refused(checkpoint, "is of another run: n is 40 there, 50 here");
-    self = made_simulation(40);
+    self = sample_simulation(40);
     checkpoint_save(&checkpoint, self, &(struct growth){0});
     simulation_destroy(self);
     checkpoint.run = usual().run;
     refused(checkpoint, "is of another run: n is 50 there, 40 here");
-    self = made_simulation(40);
+    self = sample_simulation(40);
     saved(self);
     simulation_destroy(self);
     checkpoint.run = "{}"; /* with fewer settings */
@@ -279,7 +279,7 @@ TEST(long_runs)
     enum { MOST = (1 << 16) - 2 }; /* the line's end and the terminating zero excluded */
     static char text[MOST + 2];
     for (size_t more = 0; more < 2; more++) {
-        struct simulation *self = made_simulation(40);
+        struct simulation *self = sample_simulation(40);
         struct checkpoint checkpoint = usual();
         struct growth growth = {.n = 3, .t = 0.5, .y = 2, .tt = 0.75, .ty = 4};
         struct error error = {0};
@@ -300,7 +300,7 @@ TEST(long_runs)
  * cannot be opened is refused. */
 TEST(checkpoints_that_cannot_be_written)
 {
-    struct simulation *self = made_simulation(40);
+    struct simulation *self = sample_simulation(40);
     struct checkpoint checkpoint = usual();
     struct growth growth = {0};
     struct error error = {0};

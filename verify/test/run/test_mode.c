@@ -93,12 +93,12 @@ enum { N = 700, BINS = 32 };
 
 /* A state of arbitrary points with arbitrary volumes, whose velocity is the sum of the mode,
  * another flow and a boost. One of 32 parts of the height has no point. */
-struct made_state {
+struct mode_state {
     double x[2][N + 1], v[2][N + 1], volume[N + 1]; /* one more after the last */
     struct snapshot snapshot;
 };
 
-static void make_state(struct made_state *made, const struct prepared *p, double scatter)
+static void make_state(struct mode_state *made, const struct prepared *p, double scatter)
 {
     const struct mode_start *start = start_of(p);
     /* on either side of the end of the layer's half; outside of the box and at its end */
@@ -126,7 +126,7 @@ static void make_state(struct made_state *made, const struct prepared *p, double
 }
 
 /* The four functionals from their definitions. */
-static void measure(const struct prepared *p, const struct made_state *made, double found[4])
+static void measure(const struct prepared *p, const struct mode_state *made, double found[4])
 {
     const struct mode_start *start = start_of(p);
     double complex up[2] = {0}, measured[BINS] = {0}, mode[BINS] = {0};
@@ -166,17 +166,17 @@ TEST(measured_as_defined)
 {
     static const struct functional *const f[] = {&mode_amplitude, &mode_error, &mode_noise,
                                                  &mode_other_parity};
-    static struct made_state made_state;
+    static struct mode_state mode_state;
     for (int k = 0; k < 2; k++) {
         const struct prepared p = made(k ? heavy_keys : shear_keys);
         for (int scattered = 0; scattered < 2; scattered++) {
             double want[4];
-            make_state(&made_state, &p, 0.05 * scattered);
-            measure(&p, &made_state, want);
+            make_state(&mode_state, &p, 0.05 * scattered);
+            measure(&p, &mode_state, want);
             near_relative(want[0], hypot(0.3, 0.2), 0.1); /* the mode's amplitude */
             assert_true(want[1] > 0.01 && want[2] > 0.01);
             for (int i = 0; i < 4; i++)
-                near_relative(f[i]->measure(&p, &made_state.snapshot), want[i], 1e-10);
+                near_relative(f[i]->measure(&p, &mode_state.snapshot), want[i], 1e-10);
             for (int i = 1; i < 4; i++) assert_true(f[i]->exact(&p, 0.5) == 0);
         }
     }

@@ -111,10 +111,10 @@ static double step_of(const struct simulation *simulation)
  * restored to the last bit any number of times. */
 TEST(state_is_set_aside_and_restored)
 {
-    struct simulation *self = made_simulation(40), *other = made_simulation(40);
+    struct simulation *self = sample_simulation(40), *other = sample_simulation(40);
     struct snapshots snapshots = {.path = "a.csv", .every = 1};
-    made_run(self, 0.05, NULL);
-    made_run(other, 0.05, NULL);
+    run_until(self, 0.05, NULL);
+    run_until(other, 0.05, NULL);
     const double reach = 0.05 + 4 * step_of(self);
     snapshots_begin(&snapshots, 0.05, -1, 10);
     assert_int_equal(snapshots.next, 1);
@@ -130,16 +130,16 @@ TEST(state_is_set_aside_and_restored)
     assert_true(snapshots.reach == reach && snapshots.state && snapshots.size > 0);
     assert_int_equal(snapshots.next, 1);
     for (int k = 0; k < 2; k++) {
-        made_run(self, 0.08 + 0.01 * k, NULL);
-        assert_false(made_alike(self, other));
+        run_until(self, 0.08 + 0.01 * k, NULL);
+        assert_false(same_state(self, other));
         snapshots_return(&snapshots, self);
-        assert_true(made_alike(self, other));
+        assert_true(same_state(self, other));
     }
     snapshots_go_on(&snapshots);
     assert_null(snapshots.state);
-    made_run(self, 0.2, NULL);
-    made_run(other, 0.2, NULL);
-    assert_true(made_alike(self, other));
+    run_until(self, 0.2, NULL);
+    run_until(other, 0.2, NULL);
+    assert_true(same_state(self, other));
     simulation_destroy(self);
     simulation_destroy(other);
 }
