@@ -21,7 +21,7 @@ static const struct command command = {.name = "converge", .options = list};
 
 /* One call of the engine. */
 static struct call {
-    struct place place;
+    struct job_folder folder;
     struct pool pool;
     struct task tasks[N];
     struct options options;
@@ -44,15 +44,15 @@ static inline int begin(void **state)
 {
     (void)state;
     call = (struct call){.options = {.command = &command, .threads = 1, .values = call.values}};
-    place_make(&call.place);
-    fill(&call.pool, call.tasks, &call.place, N);
-    slurm = (struct fake_slurm){.now = 100, .pool = &call.pool, .cache = &call.place.cache};
+    job_folder_make(&call.folder);
+    fill(&call.pool, call.tasks, &call.folder, N);
+    slurm = (struct fake_slurm){.now = 100, .pool = &call.pool, .cache = &call.folder.cache};
     call.arguments[0] = (char *)"sod";
     call.options.arguments = call.arguments;
     call.options.count = 1;
     call.work = (struct engine_work){.options = &call.options,
                                      .pool = &call.pool,
-                                     .cache = &call.place.cache,
+                                     .cache = &call.folder.cache,
                                      .jobs = 1,
                                      .tasks = SHARES,
                                      .progress = &call.progress};
@@ -63,7 +63,7 @@ static inline int end(void **state)
 {
     (void)state;
     pool_free(&call.pool);
-    place_clear(&call.place);
+    job_folder_clear(&call.folder);
     return 0;
 }
 
@@ -76,7 +76,7 @@ static inline void again(void)
 static inline enum status compute_all(void)
 {
     char path[200];
-    snprintf(path, sizeof path, "%s/said", call.place.cache_folder);
+    snprintf(path, sizeof path, "%s/said", call.folder.cache_folder);
     fflush(stderr);
     const int usual = dup(STDERR_FILENO), file = open(path, O_RDWR | O_CREAT | O_TRUNC, 0600);
     assert_true(usual >= 0 && file >= 0);
@@ -97,7 +97,7 @@ static inline size_t lacking(void)
 {
     size_t n = 0;
     for (size_t i = 0; i < call.pool.count; i++)
-        n += !cache_has(&call.place.cache, call.pool.jobs[i].key);
+        n += !cache_has(&call.folder.cache, call.pool.jobs[i].key);
     return n;
 }
 
@@ -106,7 +106,7 @@ static inline size_t files(const char *pattern)
 {
     char path[200];
     glob_t found;
-    snprintf(path, sizeof path, "%s/slurm/%s", call.place.cache_folder, pattern);
+    snprintf(path, sizeof path, "%s/slurm/%s", call.folder.cache_folder, pattern);
     const int none = glob(path, 0, NULL, &found);
     const size_t n = none ? 0 : found.gl_pathc;
     if (!none) globfree(&found);
@@ -122,7 +122,7 @@ static inline void all_is_left_behind_in_order(void)
 static inline void state_path(char path[300])
 {
     glob_t found;
-    snprintf(path, 300, "%s/slurm/*.json", call.place.cache_folder);
+    snprintf(path, 300, "%s/slurm/*.json", call.folder.cache_folder);
     assert_int_equal(glob(path, 0, NULL, &found), 0);
     assert_int_equal(found.gl_pathc, 1);
     snprintf(path, 300, "%s", found.gl_pathv[0]);

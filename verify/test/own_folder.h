@@ -7,30 +7,30 @@
 
 #include "output.h"
 
-static char place[] = "sphproof_place_XXXXXX";
+static char own_folder[] = "sphproof_tests_XXXXXX";
 
-static inline int make_place(void **state)
+static inline int make_own_folder(void **state)
 {
     (void)state;
     output_prepare_process(); /* no file gets the descriptor of a standard stream */
-    return !mkdtemp(place);
+    return !mkdtemp(own_folder);
 }
 
-static inline int remove_place(void **state)
+static inline int remove_own_folder(void **state)
 {
     char command[64];
     (void)state;
-    snprintf(command, sizeof command, "/bin/rm -r %s", place);
+    snprintf(command, sizeof command, "/bin/rm -r %s", own_folder);
     return system(command);
 }
 
-TEST_BETWEEN(make_place, remove_place);
+TEST_BETWEEN(make_own_folder, remove_own_folder);
 
 /* The path of a file in the folder; the next call overwrites it. */
 static inline char *path_of(const char *name)
 {
     static char path[256];
-    snprintf(path, sizeof path, "%s/%s", place, name);
+    snprintf(path, sizeof path, "%s/%s", own_folder, name);
     return path;
 }
 

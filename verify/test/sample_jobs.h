@@ -14,13 +14,13 @@
 enum { JOBS = 7 };
 
 /* The folder of one test: the cache, and a file that grows by a byte with each computation. */
-struct place {
-    char folder[64], count[80], cache_folder[80];
+struct job_folder {
+    char path[64], count[80], cache_folder[80];
     struct cache cache;
 };
 
 struct task {
-    const struct place *place;
+    const struct job_folder *folder;
     int number;
     enum { SOUND, BROKEN, CRASHES, SLOW } kind;
 };
@@ -28,7 +28,7 @@ struct task {
 static inline enum status compute(const void *context, json_t **document, struct error *error)
 {
     const struct task *task = context;
-    FILE *count = fopen(task->place->count, "a");
+    FILE *count = fopen(task->folder->count, "a");
     fputc('.', count);
     fclose(count);
     if (task->kind == CRASHES) raise(SIGKILL);
@@ -45,14 +45,14 @@ static inline enum status compute(const void *context, json_t **document, struct
     return task->kind == BROKEN ? error_set(error, STATUS_BROKE_DOWN, "particle 3") : STATUS_OK;
 }
 
-static inline void place_make(struct place *place)
+static inline void job_folder_make(struct job_folder *folder)
 {
     struct error error = {0};
-    strcpy(place->folder, "pool.XXXXXX");
-    assert_non_null(mkdtemp(place->folder));
-    snprintf(place->count, sizeof place->count, "%s/count", place->folder);
-    snprintf(place->cache_folder, sizeof place->cache_folder, "%s/cache", place->folder);
-    assert_int_equal(cache_open(&place->cache, place->cache_folder, false, &error), STATUS_OK);
+    strcpy(folder->path, "pool.XXXXXX");
+    assert_non_null(mkdtemp(folder->path));
+    snprintf(folder->count, sizeof folder->count, "%s/count", folder->path);
+    snprintf(folder->cache_folder, sizeof folder->cache_folder, "%s/cache", folder->path);
+    assert_int_equal(cache_open(&folder->cache, folder->cache_folder, false, &error), STATUS_OK);
 }
 
 static inline int remove_one(const char *path, const struct stat *is, int type, struct FTW *depth)
@@ -61,25 +61,26 @@ static inline int remove_one(const char *path, const struct stat *is, int type, 
     return remove(path);
 }
 
-static inline void place_clear(const struct place *place)
+static inline void job_folder_clear(const struct job_folder *folder)
 {
-    nftw(place->cache_folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
-    unlink(place->count);
-    rmdir(place->folder);
+    nftw(folder->cache_folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
+    unlink(folder->count);
+    rmdir(folder->path);
 }
 
-static inline long computed(const struct place *place)
+static inline long computed(const struct job_folder *folder)
 {
     struct stat is;
-    return stat(place->count, &is) ? 0 : (long)is.st_size;
+    return stat(folder->count, &is) ? 0 : (long)is.st_size;
 }
 
-static inline void fill(struct pool *pool, struct task *tasks, const struct place *place, size_t n)
+static inline void fill(struct pool *pool, struct task *tasks, const struct job_folder *folder,
+                        size_t n)
 {
     *pool = (struct pool){0};
     for (size_t i = 0; i < n; i++) {
         char name[32];
-        tasks[i].place = place;
+        tasks[i].folder = folder;
         tasks[i].number = (int)i;
         snprintf(name, sizeof name, "task %zu", i);
         assert_int_equal(pool_add(pool, name, name, (double)(i % 3), compute, &tasks[i]), i);

@@ -32,13 +32,14 @@ WRAP(gsl_qrng_alloc, (const gsl_qrng_type *type, unsigned dim), (type, dim), fal
 
 enum { N = 100 };
 
-static double places[3][N], unit[N];
+static double positions[3][N], unit[N];
 
-static void make_places(void)
+static void make_positions(void)
 {
     for (int i = 0; i < N; i++) {
         unit[i] = 1;
-        for (int d = 0; d < 3; d++) places[d][i] = 10 * fmod((0.618034 + 0.0629 * d) * (i + 1), 1);
+        for (int d = 0; d < 3; d++)
+            positions[d][i] = 10 * fmod((0.618034 + 0.0629 * d) * (i + 1), 1);
     }
 }
 
@@ -84,17 +85,18 @@ static double volume(const void *context, const double x[3])
 static enum status relaxed(struct error *error)
 {
     const struct relax_region all = {{2, {0, 0}, {10, 10}}, volume, NULL};
-    make_places();
-    return relax_points(&all, N, (double *const[]){places[0], places[1], places[2]}, error);
+    make_positions();
+    return relax_points(&all, N, (double *const[]){positions[0], positions[1], positions[2]},
+                        error);
 }
 
 static enum status relax_measured(struct error *error)
 {
     const struct domain box = {2, {0, 0}, {10, 10}};
     struct relax_quality quality;
-    make_places();
-    return relax_measure(&box, N, (const double *const[]){places[0], places[1], places[2]}, unit,
-                         &quality, error);
+    make_positions();
+    return relax_measure(&box, N, (const double *const[]){positions[0], positions[1], positions[2]},
+                         unit, &quality, error);
 }
 
 static enum status regular(struct error *error)
@@ -102,11 +104,11 @@ static enum status regular(struct error *error)
     struct kernel kernel;
     struct regularity found;
     enum status status = kernel_select(&kernel, "cubic_spline", 0, error);
-    make_places();
+    make_positions();
     for (int dim = 1; !status && dim <= 2; dim++) {
         const struct regularity_cloud cloud = {.box = {dim, {0, 0}, {10, 10}},
                                                .n = N,
-                                               .x = {places[0], places[1]},
+                                               .x = {positions[0], positions[1]},
                                                .volume = unit,
                                                .h = unit,
                                                .kernel = &kernel};
@@ -149,9 +151,9 @@ static char path[] = "sphproof_memory_XXXXXX.ini";
 static enum status mapped(struct error *error)
 {
     const struct domain domain = {2, {0, 0}, {10, 10}};
-    const struct snapshot s = {.n = N, .x = {places[0], places[1]}, .h = places[0]};
+    const struct snapshot s = {.n = N, .x = {positions[0], positions[1]}, .h = positions[0]};
     struct map map;
-    make_places();
+    make_positions();
     const enum status status = map_create(&map, &domain, &s, 8, error);
     if (!status) map_free(&map);
     return status;

@@ -84,7 +84,7 @@ TEST(share_that_fails_three_times)
                  "--engine slurm: %zu computations are missing; what is done is kept in",
                  shares_computations(2));
         says_error(what);
-        says_error(call.place.cache_folder);
+        says_error(call.folder.cache_folder);
         snprintf(what, sizeof what, "share 2 of 3 (%s, submitted %d times), log ",
                  rows[r].fate == HELD ? "CANCELLED" : rows[r].state, rows[r].given_up ? 1 : 3);
         says(what);
@@ -97,7 +97,7 @@ TEST(share_that_fails_three_times)
             snprintf(name, sizeof name, "missing: task %d (share 2)\n", i);
             missing += strstr(call.said, name) != NULL;
             snprintf(text, sizeof text, "task %d", i);
-            assert_int_equal(strstr(call.said, name) != NULL, !cache_has(&call.place.cache, text));
+            assert_int_equal(strstr(call.said, name) != NULL, !cache_has(&call.folder.cache, text));
         }
         assert_int_equal(missing, shares_computations(2));
         if (!rows[r].given_up) says("submitted again (1 of 2)"), says("submitted again (2 of 2)");
@@ -177,7 +177,8 @@ TEST(late_results_are_waited_for)
     again();
     slurm.fates[2][0] = USELESS;
     assert_int_equal(compute_all(), STATUS_OK);
-    assert_true(slurm.tasks[3].submitted >= 100 + 3 + 30 && slurm.tasks[3].submitted < 100 + 3 + 35);
+    assert_true(slurm.tasks[3].submitted >= 100 + 3 + 30 &&
+                slurm.tasks[3].submitted < 100 + 3 + 35);
     again();
     slurm.fates[2][0] = ENDS_BADLY;
     assert_int_equal(compute_all(), STATUS_OK);
@@ -252,7 +253,7 @@ TEST(command_line_of_a_share)
              "exec '%s' converge --shard $SLURM_ARRAY_TASK_ID/3 --only-build %s --threads 3 --jobs "
              "2 '--n=1,2,3' '--words=it'\\''s \"$HOME\" `x`\n2' '--flag' '--cache=a b' -- 'sod' "
              "'-1'\\'''",
-             program, call.place.cache.build);
+             program, call.folder.cache.build);
     assert_string_equal(slurm.wrap, text);
     static const char *const words[] = {
         "--requeue",   "--open-mode=append", "--cpus-per-task=6", "--partition=main",
@@ -277,7 +278,7 @@ TEST(a_command_without_jobs)
     snprintf(text, sizeof text,
              "' bench --shard $SLURM_ARRAY_TASK_ID/3 --only-build %s --threads "
              "1 '--n=7' -- 'sod'",
-             call.place.cache.build);
+             call.folder.cache.build);
     assert_non_null(strstr(slurm.wrap, text));
 }
 
@@ -309,17 +310,17 @@ TEST(name_of_a_study)
     assert_string_not_equal(slurm.name, name);
     call.pool.jobs[3].key[0] = 't';
     char path[CACHE_PATH_MAX];
-    cache_path(&call.place.cache, "task 1", path);
+    cache_path(&call.folder.cache, "task 1", path);
     assert_int_equal(unlink(path), 0);
-    snprintf(call.place.cache.folder, sizeof call.place.cache.folder, "./%s",
-             call.place.cache_folder);
+    snprintf(call.folder.cache.folder, sizeof call.folder.cache.folder, "./%s",
+             call.folder.cache_folder);
     assert_int_equal(compute_all(), STATUS_OK);
     assert_string_equal(slurm.name, name);
     again();
     assert_int_equal(compute_all(), STATUS_OK);
     assert_string_not_equal(slurm.name, name);
     again();
-    strcat(call.place.cache.folder, "_none");
+    strcat(call.folder.cache.folder, "_none");
     assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
     says_error("_none: No such file or directory");
     assert_int_equal(slurm.submissions, 0);

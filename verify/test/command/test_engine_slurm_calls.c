@@ -138,7 +138,7 @@ TEST(interrupted)
             slurm.interrupt = 120;
             slurm.refuses_cancel = refused;
             slurm.terminal = answers[i].answer != NULL;
-            snprintf(path, sizeof path, "%s/answer", call.place.cache_folder);
+            snprintf(path, sizeof path, "%s/answer", call.folder.cache_folder);
             FILE *file = fopen(path, "w");
             fputs(answers[i].answer ? answers[i].answer : "y\n", file);
             fclose(file);
@@ -254,8 +254,8 @@ TEST(state_file)
     for (int tasks = 1; tasks <= ENGINE_TASKS_MAX + 1; tasks += tasks > 1 ? 1 : 999) {
         char path[300], of[32];
         again();
-        made.fates[2][0] = STAYS;
-        made.interrupt = 130;
+        slurm.fates[2][0] = STAYS;
+        slurm.interrupt = 130;
         assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
         state_path(path);
         FILE *file = fopen(path, "w");
@@ -267,10 +267,10 @@ TEST(state_file)
         }
         fputc('}', file);
         fclose(file);
-        for (size_t k = 0; k < made.count; k++) made.tasks[k].fate = FORGOTTEN;
+        for (size_t k = 0; k < slurm.count; k++) slurm.tasks[k].fate = FORGOTTEN;
         assert_int_equal(compute_all(), STATUS_OK);
         snprintf(of, sizeof of, "TASK_ID/%d ", tasks > ENGINE_TASKS_MAX ? SHARES : tasks);
-        assert_non_null(strstr(made.wrap, of));
+        assert_non_null(strstr(slurm.wrap, of));
     }
     /* invalid states: the study is divided again */
     static const char *const none[] = {"",
@@ -330,7 +330,7 @@ TEST(last_line_of_the_log)
         slurm.fates[2][0] = STAYS;
         slurm.interrupt = 120;
         assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
-        snprintf(path, sizeof path, "%s/slurm/%s-7_2.log", call.place.cache_folder, slurm.name);
+        snprintf(path, sizeof path, "%s/slurm/%s-7_2.log", call.folder.cache_folder, slurm.name);
         FILE *file = fopen(path, "w");
         fputs(logs[i].text, file);
         fclose(file);
@@ -354,7 +354,8 @@ TEST(logs_of_completed_shares_are_removed)
     assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
     for (int s = 1; s <= SHARES; s++) {
         char path[400];
-        snprintf(path, sizeof path, "%s/slurm/%s-7_%d.log", call.place.cache_folder, slurm.name, s);
+        snprintf(path, sizeof path, "%s/slurm/%s-7_%d.log", call.folder.cache_folder, slurm.name,
+                 s);
         FILE *file = fopen(path, "w");
         fclose(file);
     }

@@ -105,7 +105,7 @@ TEST(commands)
     char here[4096];
     const int most = test_word(1) ? atoi(test_word(1)) : 20;
     assert_non_null(getcwd(here, sizeof here));
-    assert_int_equal(chdir(place), 0);
+    assert_int_equal(chdir(own_folder), 0);
     FILE *line = fopen("line.csv", "w");
     fputs("x,volume,f\n", line);
     for (int i = 0; i < 8; i++) fprintf(line, "%g,0.1,%d\n", 0.1 * i, i * i);

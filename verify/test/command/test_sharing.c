@@ -23,7 +23,7 @@ struct planned {
 };
 
 static struct call {
-    struct place place;
+    struct job_folder folder;
     struct planned planned[N];
     const char *values[sizeof list / sizeof *list];
     struct options options;
@@ -56,14 +56,14 @@ static int begin(void **state)
     call = (struct call){
         .options = {
             .command = &command, .threads = 1, .speak = 1, .quiet = 1, .values = call.values}};
-    place_make(&call.place);
+    job_folder_make(&call.folder);
     return 0;
 }
 
 static int end(void **state)
 {
     (void)state;
-    place_clear(&call.place);
+    job_folder_clear(&call.folder);
     return 0;
 }
 
@@ -83,7 +83,7 @@ static void listen_to(int said[2], int usual[2])
     fflush(NULL);
     for (int f = 0; f < 2; f++) {
         char path[100];
-        snprintf(path, sizeof path, "%s/said%d", call.place.cache_folder, f);
+        snprintf(path, sizeof path, "%s/said%d", call.folder.cache_folder, f);
         said[f] = open(path, O_RDWR | O_CREAT | O_TRUNC, 0600);
         usual[f] = dup(f + 1);
         dup2(said[f], f + 1);
@@ -107,7 +107,7 @@ static void listened(const int said[2], const int usual[2])
 static enum status run_share(const char *shard)
 {
     int said[2], usual[2];
-    set("cache", call.place.cache_folder);
+    set("cache", call.folder.cache_folder);
     set("shard", shard);
     call.error = (struct error){0};
     assert_int_equal(sharing_take(&call.sharing, &call.options, 1, NULL, false, &call.error),
@@ -171,7 +171,7 @@ TEST(exit_status_of_a_share)
             assert_int_equal(mine, N);
             char key[32];
             snprintf(key, sizeof key, "task %d", i);
-            assert_int_equal(cache_has(&call.place.cache, key), outcomes[k].kept);
+            assert_int_equal(cache_has(&call.folder.cache, key), outcomes[k].kept);
         }
 }
 
@@ -194,7 +194,7 @@ TEST(shares_in_every_order)
         for (int i = 0; i < N; i++) {
             char key[32];
             snprintf(key, sizeof key, "task %d", i);
-            there += cache_has(&call.place.cache, key);
+            there += cache_has(&call.folder.cache, key);
         }
         assert_int_equal(run_share(NULL), STATUS_OK);
         assert_string_equal(call.said, "");
@@ -220,7 +220,7 @@ TEST(damaged_and_unwritable_caches)
     end(NULL), begin(NULL);
     assert_int_equal(run_share("1/1"), STATUS_OK);
     pool_free(&call.pool);
-    cache_path(&call.place.cache, "task 1", path);
+    cache_path(&call.folder.cache, "task 1", path);
     assert_int_equal(truncate(path, 20), 0);
     call.options.quiet = 0;
     assert_int_equal(run_share("1/1"), STATUS_OK);
@@ -279,7 +279,7 @@ TEST(engines)
         for (enum status s = STATUS_OK; s <= STATUS_ENVIRONMENT; s++) {
             int said[2], usual[2];
             end(NULL), begin(NULL);
-            set("cache", call.place.cache_folder), set("jobs", jobs[k]);
+            set("cache", call.folder.cache_folder), set("jobs", jobs[k]);
             assert_int_equal(
                 sharing_take(&call.sharing, &call.options, 5, NULL, false, &call.error), STATUS_OK);
             call.sharing.engine = &engine, call.sharing.tasks = 9;
@@ -325,7 +325,7 @@ TEST(list_of_computations)
         for (int there = 0; there < 2; there++) {
             char expected[1000] = "";
             set("shard", shards[k]);
-            set("cache", there ? call.place.cache_folder : k ? "nowhere" : NULL);
+            set("cache", there ? call.folder.cache_folder : k ? "nowhere" : NULL);
             assert_int_equal(
                 sharing_take(&call.sharing, &call.options, 1, NULL, false, &call.error), STATUS_OK);
             assert_true(call.sharing.list);
@@ -422,7 +422,7 @@ TEST(invalid_options)
         end(NULL), begin(NULL);
         for (int i = 0; i < 3 && rows[r].names[i]; i++)
             set(rows[r].names[i],
-                strcmp(rows[r].values[i], "c") ? rows[r].values[i] : call.place.cache_folder);
+                strcmp(rows[r].values[i], "c") ? rows[r].values[i] : call.folder.cache_folder);
         const bool build = rows[r].names[1] && strcmp(rows[r].names[0], "only-build") == 0;
         call.error = (struct error){0};
         const enum status status =
@@ -454,22 +454,22 @@ TEST(valid_options)
     cache_build(build);
     set("only-build", build);
     assert_int_equal(
-        sharing_take(&sharing, &call.options, 5, call.place.cache_folder, false, &call.error),
+        sharing_take(&sharing, &call.options, 5, call.folder.cache_folder, false, &call.error),
         STATUS_OK); /* the command's own folder takes precedence over --cache */
     assert_int_equal(sharing.pool.jobs, 3);
     assert_true(sharing.pool.share.number == 2 && sharing.pool.share.of == 7);
     assert_true(sharing.pool.cache == &sharing.cache && !sharing.cache.force);
-    assert_string_equal(sharing.cache.folder, call.place.cache_folder);
+    assert_string_equal(sharing.cache.folder, call.folder.cache_folder);
     assert_int_equal(access("elsewhere", F_OK), -1);
     set("shard", NULL), set("engine", "slurm"), set("engine-tasks", "9");
     assert_int_equal(
-        sharing_take(&sharing, &call.options, 5, call.place.cache_folder, false, &call.error),
+        sharing_take(&sharing, &call.options, 5, call.folder.cache_folder, false, &call.error),
         STATUS_OK);
     assert_string_equal(sharing.engine->name, "slurm");
     assert_int_equal(sharing.tasks, 9);
     set("engine", NULL), set("engine-tasks", NULL);
     assert_int_equal(
-        sharing_take(&sharing, &call.options, 5, call.place.cache_folder, true, &call.error),
+        sharing_take(&sharing, &call.options, 5, call.folder.cache_folder, true, &call.error),
         STATUS_OK);
     assert_true(sharing.cache.force);
 }

@@ -26,10 +26,10 @@ static void command_says(const char *name, const char *output, const char *compl
             "#!/bin/sh\nprintf '[%%s]' \"$@\" >%s/%s.arguments\nIFS= read -r nothing && exit 99\n"
             "while IFS= read -r line; do echo \"$line\"; done <%s/%s.said\n"
             "[ -z \"%s\" ] || echo \"%s\" >&2\nexit %d\n",
-            place, name, place, name, complaint, complaint, code);
+            own_folder, name, own_folder, name, complaint, complaint, code);
     fclose(file);
     assert_int_equal(chmod(path_of(name), 0700), 0);
-    assert_int_equal(setenv("PATH", place, 1), 0); /* no other command is found */
+    assert_int_equal(setenv("PATH", own_folder, 1), 0); /* no other command is found */
 }
 
 static const char *arguments_of(const char *name)

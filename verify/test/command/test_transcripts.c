@@ -35,7 +35,7 @@
 enum { SHORT = 6, WORDS = 80, COLUMNS = 12, LINE_MAX = 1 << 16 };
 
 static const char *folder;
-static char place[] = "sphproof_transcripts_XXXXXX";
+static char own_folder[] = "sphproof_transcripts_XXXXXX";
 
 /* ---- files ---- */
 
@@ -458,7 +458,7 @@ static int begin(void **state)
 {
     (void)state;
     char path[8192], here[4096];
-    if (!mkdtemp(place) || chdir(place) || !getcwd(here, sizeof here)) return 1;
+    if (!mkdtemp(own_folder) || chdir(own_folder) || !getcwd(here, sizeof here)) return 1;
     write_all("gnuplot", "#!/bin/sh\nsed '/^print/q' >drawn.gp\n"
                          "if grep -q '^load' drawn.gp; then cat /dev/fd/3 >drawn.gp; fi\n"
                          "echo \"<svg viewBox='0 0 1 1'>\n</svg>\"\n");
@@ -473,7 +473,7 @@ static int end(void **state)
 {
     (void)state;
     char command[64];
-    snprintf(command, sizeof command, "rm -r %s", place);
+    snprintf(command, sizeof command, "rm -r %s", own_folder);
     return chdir("..") || system(command);
 }
 

@@ -253,7 +253,7 @@ TEST(names)
                 {"c.01.hdf5", "c.11.hdf5", "give the first"},
                 {"d.0/c.hdf5", "d.1/c.hdf5", "give the first"}};
     char command[300];
-    snprintf(command, sizeof command, "mkdir %s/d.0 %s/d.1", place, place);
+    snprintf(command, sizeof command, "mkdir %s/d.0 %s/d.1", own_folder, own_folder);
     assert_int_equal(system(command), 0);
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct snapshot_file file;

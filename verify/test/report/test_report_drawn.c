@@ -45,7 +45,7 @@ static void add_document(struct buffer *to, json_t *document)
         for (size_t i = 0; i < sizeof heads / sizeof *heads; i++) json_object_del(value, heads[i]);
     char *text = json_dumps(document, JSON_INDENT(1) | JSON_REAL_PRECISION(9));
     assert_non_null(text);
-    for (char *at = text; (at = strstr(at, place)); at++) memset(at, '~', strlen(place));
+    for (char *at = text; (at = strstr(at, own_folder)); at++) memset(at, '~', strlen(own_folder));
     buffer_add(to, text);
     free(text);
 }
@@ -239,7 +239,7 @@ TEST(reports)
     struct pool *pool = report_pool(report);
     compute_some(pool);
     drawn_pieces(&draw, pool, 150);
-    if (report_judge(report, place, &results, &error)) fail_msg("%s", error.message);
+    if (report_judge(report, own_folder, &results, &error)) fail_msg("%s", error.message);
     add_document(&text, results);
     compare(&kept, "report", 0, &text);
     json_decref(results);

@@ -17,53 +17,53 @@
 
 TEST(any_number_of_processes)
 {
-    struct place place;
+    struct job_folder folder;
     struct pool one, two, kept;
     struct task tasks[3][JOBS] = {0};
-    place_make(&place);
+    job_folder_make(&folder);
     tasks[0][2].kind = tasks[1][2].kind = tasks[2][2].kind = BROKEN;
-    fill(&one, tasks[0], &place, JOBS);
-    fill(&two, tasks[1], &place, JOBS);
-    fill(&kept, tasks[2], &place, JOBS);
+    fill(&one, tasks[0], &folder, JOBS);
+    fill(&two, tasks[1], &folder, JOBS);
+    fill(&kept, tasks[2], &folder, JOBS);
     assert_int_equal(run(&one, NULL, 1), STATUS_OK);
-    assert_int_equal(run(&two, &place.cache, 3), STATUS_OK);
-    assert_int_equal(computed(&place), 2 * JOBS);
-    assert_int_equal(run(&kept, &place.cache, 2), STATUS_OK);
-    assert_int_equal(computed(&place), 2 * JOBS);
+    assert_int_equal(run(&two, &folder.cache, 3), STATUS_OK);
+    assert_int_equal(computed(&folder), 2 * JOBS);
+    assert_int_equal(run(&kept, &folder.cache, 2), STATUS_OK);
+    assert_int_equal(computed(&folder), 2 * JOBS);
     assert_int_equal(kept.found, JOBS);
     assert_int_equal(two.found, 0);
     same_results(&one, &two);
     same_results(&one, &kept);
     assert_int_equal(one.jobs[2].error.status, STATUS_BROKE_DOWN);
     assert_int_equal(json_integer_value(json_object_get(one.jobs[5].document, "number")), 5);
-    struct cache force = place.cache;
+    struct cache force = folder.cache;
     force.force = true;
     pool_free(&kept);
-    fill(&kept, tasks[2], &place, JOBS);
+    fill(&kept, tasks[2], &folder, JOBS);
     assert_int_equal(run(&kept, &force, 2), STATUS_OK);
-    assert_int_equal(computed(&place), 3 * JOBS);
+    assert_int_equal(computed(&folder), 3 * JOBS);
     same_results(&one, &kept);
     pool_free(&one);
     pool_free(&two);
     pool_free(&kept);
-    place_clear(&place);
+    job_folder_clear(&folder);
 }
 
 /* If results cannot be stored, they are still returned, and the pool gives the reason. */
 TEST(full_disk)
 {
-    struct place place;
+    struct job_folder folder;
     struct pool pool;
     struct task tasks[2] = {0};
-    place_make(&place);
-    struct cache gone = place.cache;
+    job_folder_make(&folder);
+    struct cache gone = folder.cache;
     snprintf(gone.folder, sizeof gone.folder, "/dev/null/missing");
-    fill(&pool, tasks, &place, 2);
+    fill(&pool, tasks, &folder, 2);
     assert_int_equal(run(&pool, &gone, 2), STATUS_OK);
     assert_non_null(pool.jobs[0].document);
     assert_non_null(strstr(pool.note, "/dev/null"));
     pool_free(&pool);
-    place_clear(&place);
+    job_folder_clear(&folder);
 }
 
 /* ---- how jobs are made ---- */
@@ -212,10 +212,10 @@ TEST(results_that_are_kept)
     static const enum status statuses[] = {STATUS_OK, STATUS_CHECK_FAILED, STATUS_BAD_INPUT,
                                            STATUS_BROKE_DOWN, STATUS_ENVIRONMENT};
     enum { N = 5 };
-    struct place place;
+    struct job_folder folder;
     struct pool pool;
     *board = (struct board){0};
-    place_make(&place);
+    job_folder_make(&folder);
     for (int round = 0; round < 2; round++) {
         struct script script[N] = {{0}};
         for (int i = 0; i < N; i++) {
@@ -223,7 +223,7 @@ TEST(results_that_are_kept)
             script[i].kind = i % 2 ? WITH_DOCUMENT : NOTHING;
         }
         add(&pool, script, N, NULL);
-        assert_int_equal(run(&pool, &place.cache, 2), STATUS_OK);
+        assert_int_equal(run(&pool, &folder.cache, 2), STATUS_OK);
         assert_int_equal(pool.found, round ? 3 : 0);
         assert_true(pool.damaged == 0 && !pool.note[0]);
         for (int i = 0; i < N; i++) {
@@ -241,23 +241,23 @@ TEST(results_that_are_kept)
         assert_int_equal(board->count, round ? N + 2 : N);
         pool_free(&pool);
     }
-    place_clear(&place);
+    job_folder_clear(&folder);
 }
 
 /* A valid entry that is not a reply is computed again, and so is a damaged one, which is
  * counted. */
 TEST(entries_that_are_missing_or_damaged)
 {
-    struct place place;
+    struct job_folder folder;
     struct pool pool;
     struct error error = {0};
     struct script script[2] = {{.kind = WITH_DOCUMENT}, {.kind = WITH_DOCUMENT}};
     char path[CACHE_PATH_MAX];
     *board = (struct board){0};
-    place_make(&place);
+    job_folder_make(&folder);
     for (int round = 0; round < 3; round++) {
         add(&pool, script, 2, NULL);
-        assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK);
+        assert_int_equal(run(&pool, &folder.cache, 1), STATUS_OK);
         assert_int_equal(pool.found, round == 0 ? 0 : 1);
         assert_int_equal(pool.damaged, round == 1);
         assert_int_equal(board->count, 2 + round);
@@ -265,15 +265,15 @@ TEST(entries_that_are_missing_or_damaged)
         assert_true(pool.jobs[0].done && pool.jobs[1].done);
         pool_free(&pool);
         if (round == 0) {
-            cache_path(&place.cache, "job 0", path);
+            cache_path(&folder.cache, "job 0", path);
             assert_int_equal(truncate(path, 20), 0);
         } else {
             json_t *other = json_pack("{s:s}", "status", "0");
-            assert_int_equal(cache_store(&place.cache, "job 1", other, &error), STATUS_OK);
+            assert_int_equal(cache_store(&folder.cache, "job 1", other, &error), STATUS_OK);
             json_decref(other);
         }
     }
-    place_clear(&place);
+    job_folder_clear(&folder);
 }
 
 /* A crash or a failure affects one job only and is not kept. */
@@ -282,13 +282,13 @@ TEST(jobs_that_crash_or_fail)
     struct pool pool;
     struct script script[3] = {{.kind = LEAVES}, {.kind = LEAVES_BADLY}, {.kind = WITH_DOCUMENT}};
     struct task task = {.kind = CRASHES};
-    struct place place;
-    place_make(&place);
-    task.place = &place;
+    struct job_folder folder;
+    job_folder_make(&folder);
+    task.folder = &folder;
     for (int round = 0; round < 2; round++) {
         add(&pool, script, 3, NULL);
         assert_int_equal(pool_add(&pool, "bad one", "bad one", 1, compute, &task), 3);
-        assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK);
+        assert_int_equal(run(&pool, &folder.cache, 1), STATUS_OK);
         assert_int_equal(pool.found, round);
         for (int i = 0; i < 2; i++) {
             char said[80];
@@ -305,7 +305,7 @@ TEST(jobs_that_crash_or_fail)
                             "bad one: its process was ended by signal 9 (Killed)");
         pool_free(&pool);
     }
-    place_clear(&place);
+    job_folder_clear(&folder);
 }
 
 /* Output still in this process's buffer before the run is written once. */
@@ -387,16 +387,16 @@ TEST(progress)
     enum { N = 5 };
     static const double weights[N] = {1, 4, 2, 16, 8};
     static struct seen seen;
-    struct place place;
+    struct job_folder folder;
     struct pool pool;
     struct error error = {0};
     struct script script[N] = {{0}};
-    place_make(&place);
+    job_folder_make(&folder);
     add(&pool, script, 1, weights);
-    assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK); /* keeps job 0 */
+    assert_int_equal(run(&pool, &folder.cache, 1), STATUS_OK); /* keeps job 0 */
     pool_free(&pool);
     const struct pool_settings settings = {
-        .jobs = 1, .cache = &place.cache, .progress = see, .progress_context = &seen};
+        .jobs = 1, .cache = &folder.cache, .progress = see, .progress_context = &seen};
     add(&pool, script, N, weights);
     seen = (struct seen){0};
     assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
@@ -430,7 +430,7 @@ TEST(progress)
     assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
     assert_true(pool.found == N && seen.calls == 0);
     pool_free(&pool);
-    place_clear(&place);
+    job_folder_clear(&folder);
 }
 
 /* A long job reports a few times a second. */

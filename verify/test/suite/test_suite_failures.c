@@ -32,7 +32,7 @@ static void make_gnuplot(void)
 {
     FILE *file = fopen(path_of("gnuplot"), "w");
     assert_non_null(file);
-    fprintf(file, "#!/bin/sh\ncat > %s/script\necho '<svg>drawn</svg>'\n", place);
+    fprintf(file, "#!/bin/sh\ncat > %s/script\necho '<svg>drawn</svg>'\n", own_folder);
     fclose(file);
     assert_int_equal(chmod(path_of("gnuplot"), 0700), 0);
 }
@@ -76,13 +76,13 @@ TEST(plots_of_failures)
                                 .series_count = CURVES,
                                 .failed = 3};
     char *before = strdup(getenv("PATH") ? getenv("PATH") : ""), path[4096], printed[1024];
-    snprintf(path, sizeof path, "%s:%s", place, before);
+    snprintf(path, sizeof path, "%s:%s", own_folder, before);
     make_gnuplot();
     setenv("PATH", path, 1);
     struct suite one = suite;
     one.figure_count = 5; /* the first check alone */
     char out[256];
-    snprintf(out, sizeof out, "%s/out", place);
+    snprintf(out, sizeof out, "%s/out", own_folder);
     assert_int_equal(suite_output_failures(&one, out, NULL, NULL), STATUS_OK);
     numbers_are("# x y: pass\n 1 0.5\n 2 1e-06\n 3 NaN\n 4 NaN\n 5 NaN\n\n\n"
                 "# x y: fail\n 1 NaN\n 2 NaN\n 3 6\n 4 1e+12\n 5 NaN\n\n\n");

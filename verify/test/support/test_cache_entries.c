@@ -27,8 +27,8 @@ static struct cache opened(bool force)
 {
     struct cache cache;
     struct error error;
-    assert_int_equal(cache_open(&cache, place, force, &error), STATUS_OK);
-    assert_string_equal(cache.folder, place);
+    assert_int_equal(cache_open(&cache, own_folder, force, &error), STATUS_OK);
+    assert_string_equal(cache.folder, own_folder);
     return cache;
 }
 
@@ -85,23 +85,23 @@ TEST(folders)
     struct error error;
     static char folder[2 * CACHE_PATH_MAX];
     memset(folder, '/', sizeof folder - 1);
-    memcpy(folder, place, strlen(place));
+    memcpy(folder, own_folder, strlen(own_folder));
     for (size_t length = sizeof cache.folder - 1; length <= sizeof cache.folder; length++) {
-        memset(folder + strlen(place), '/', length - strlen(place));
+        memset(folder + strlen(own_folder), '/', length - strlen(own_folder));
         folder[length] = '\0';
         assert_int_equal(cache_open(&cache, folder, false, &error),
                          length < sizeof cache.folder ? STATUS_OK : STATUS_BAD_INPUT);
     }
     assert_string_equal(error.message, "the path of the cache is too long");
     char file[64];
-    snprintf(file, sizeof file, "%s/file", place);
+    snprintf(file, sizeof file, "%s/file", own_folder);
     fclose(fopen(file, "w"));
     assert_int_equal(cache_open(&cache, file, false, &error), STATUS_ENVIRONMENT);
     unlink(file);
-    snprintf(file, sizeof file, "%s/a/b", place);
+    snprintf(file, sizeof file, "%s/a/b", own_folder);
     assert_int_equal(cache_open(&cache, file, true, &error), STATUS_OK);
     assert_true(cache.force && rmdir(file) == 0);
-    snprintf(file, sizeof file, "%s/a", place);
+    snprintf(file, sizeof file, "%s/a", own_folder);
     rmdir(file);
 }
 
@@ -226,7 +226,7 @@ static void make_entry(const char *name, size_t bytes, double age)
 {
     char path[256];
     struct timespec times[2] = {0};
-    snprintf(path, sizeof path, "%s/%s", place, name);
+    snprintf(path, sizeof path, "%s/%s", own_folder, name);
     char *slash = strrchr(path, '/');
     *slash = '\0';
     mkdir(path, 0777);
@@ -239,7 +239,7 @@ static void make_entry(const char *name, size_t bytes, double age)
 static bool is_there(const char *name)
 {
     char path[256];
-    snprintf(path, sizeof path, "%s/%s", place, name);
+    snprintf(path, sizeof path, "%s/%s", own_folder, name);
     return access(path, F_OK) == 0;
 }
 
@@ -253,24 +253,24 @@ TEST(pruning_by_age)
     make_entry("ff/3.entry", 8, 1000);
     make_entry("ff/README", 5, 9000); /* not an entry */
     make_entry("fg/4.entry", 5, 9000);
-    assert_int_equal(cache_prune(place, HUGE_VAL, &census, &error), STATUS_OK);
+    assert_int_equal(cache_prune(own_folder, HUGE_VAL, &census, &error), STATUS_OK);
     assert_true(census.entries == 4 && census.removed == 0 && census.bytes == 15);
-    assert_int_equal(cache_prune(place, 2000, &census, &error), STATUS_OK);
+    assert_int_equal(cache_prune(own_folder, 2000, &census, &error), STATUS_OK);
     assert_true(census.entries == 2 && census.removed == 2 && census.bytes == 9);
     assert_true(is_there("00/0.entry") && is_there("ff/3.entry") && is_there("ff/README") &&
                 is_there("fg/4.entry") && !is_there("00/1.entry") &&
                 !is_there("7f/.2.entry.123.0.part"));
-    assert_int_equal(cache_prune(place, 1000, &census, &error),
+    assert_int_equal(cache_prune(own_folder, 1000, &census, &error),
                      STATUS_OK); /* entries of exactly that age */
     assert_int_equal(census.removed, 2);
     make_entry("00/0.entry", 1, 0);
     make_entry("ff/3.entry", 8, 0);
-    assert_int_equal(cache_prune(place, 0, &census, &error), STATUS_OK);
+    assert_int_equal(cache_prune(own_folder, 0, &census, &error), STATUS_OK);
     assert_true(census.entries == 0 && census.removed == 2 && census.bytes == 0);
     assert_true(is_there("ff/README") && is_there("fg/4.entry"));
     /* folders that cannot be read */
     char path[256], said[300];
-    snprintf(path, sizeof path, "%s/ff/README", place);
+    snprintf(path, sizeof path, "%s/ff/README", own_folder);
     snprintf(said, sizeof said, "there is no folder %s", path);
     assert_int_equal(cache_prune(path, 1, &census, &error), STATUS_BAD_INPUT);
     assert_string_equal(error.message, said);
@@ -278,7 +278,7 @@ TEST(pruning_by_age)
     assert_string_equal(error.message, "there is no folder /no/such");
     static char folder[CACHE_PATH_MAX];
     memset(folder, '/', sizeof folder);
-    memcpy(folder, place, strlen(place));
+    memcpy(folder, own_folder, strlen(own_folder));
     /* names too long for the path are left alone, whatever file has the truncated name */
     make_entry("00/3.entry", 1, 0);
     make_entry("00/3.entryx", 1, 0);

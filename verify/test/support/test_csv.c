@@ -242,7 +242,7 @@ TEST(faults_of_whole_files)
     assert_int_equal(csv_read(path_of("no/file"), &csv, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "cannot be read"));
     csv_free(&csv);
-    assert_int_equal(csv_read(place, &csv, &error), STATUS_BAD_INPUT);
+    assert_int_equal(csv_read(own_folder, &csv, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "is a directory; allowed: a CSV file"));
     csv_free(&csv);
 }
