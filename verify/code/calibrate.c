@@ -249,9 +249,6 @@ static void find_trouble(struct calibrate_case *one)
     const struct study_result *first = &one->studies[0].results[0];
     if (first->suspicion[0])
         snprintf(one->trouble, sizeof one->trouble, "suspicious: %.140s", first->suspicion);
-    else if (first->still_status == FINDING_FAIL)
-        snprintf(one->trouble, sizeof one->trouble, "gas that no wave has reached moves: %.2g c",
-                 first->still);
 }
 
 static enum status judge_case(const struct calibrate *calibrate, struct calibrate_case *one,

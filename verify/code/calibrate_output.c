@@ -77,7 +77,8 @@ static const struct calibrate_case *calibrated(const struct calibrate *calibrate
 enum status calibrate_text(const struct calibrate *calibrate, char **text, struct error *error)
 {
     const struct calibrate_case *one = NULL;
-    struct buffer to = {0}, blank = {0}; /* blank lines at the end of a section follow its gates */
+    struct buffer to = {0},
+                  after = {0}; /* blank lines at the end of a section, and comments after them */
     char *bytes, name[INI_TEXT_LINE];
     size_t length;
     if (ini_text_load(calibrate->code->path, "code file", &bytes, &length, error))
@@ -89,23 +90,25 @@ enum status calibrate_text(const struct calibrate *calibrate, char **text, struc
         const size_t size = (size_t)((stop ? stop : end) - line);
         char copy[2 * INI_TEXT_LINE] = "";
         memcpy(copy, line, size < sizeof copy ? size : sizeof copy - 1);
-        const bool section = begins_section(copy, name), empty = !copy[strspn(copy, " \t\r")];
+        const char first = copy[strspn(copy, " \t\r")];
+        const bool section = begins_section(copy, name);
         line += size + (stop != NULL);
         if (strncmp(copy, head, sizeof head - 1) == 0 || (one && !section && is_gate(copy)))
             continue;
         if (section && one) add_gates(calibrate, one, &to);
         if (section) one = calibrated(calibrate, name);
-        if (empty) {
-            buffer_add(&blank, "\n");
+        if (!first || (after.size && strchr(";#", first))) {
+            buffer_format(&after, "%s\n", copy);
             continue;
         }
-        if (blank.size) buffer_add_bytes(&to, blank.data, blank.size);
-        buffer_free(&blank);
-        blank = (struct buffer){0};
+        if (after.size) buffer_add_bytes(&to, after.data, after.size);
+        buffer_free(&after);
+        after = (struct buffer){0};
         buffer_format(&to, "%s\n", copy);
     }
     if (one) add_gates(calibrate, one, &to);
-    buffer_free(&blank);
+    if (after.size) buffer_add_bytes(&to, after.data, after.size);
+    buffer_free(&after);
     free(bytes);
     *text = buffer_take(&to);
     return *text ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory for a code file");

@@ -35,9 +35,9 @@ static bool takes(const struct command *command, const char *name)
 }
 
 /* Writes a word quoted for the shell. */
-static void put_quoted(FILE *line, const char *before, const char *word)
+static void put_quoted(FILE *line, const char *word)
 {
-    fprintf(line, " '%s", before);
+    fputc('\'', line);
     for (; *word; word++) {
         if (*word == '\'')
             fputs("'\\''", line);
@@ -52,24 +52,26 @@ static char *line_of(const struct slurm_share *share)
 {
     const struct options *options = share->options;
     const struct command_option *list = options->command->options;
-    char program[PATH_LENGTH] = "sphproof", *text = NULL, before[80];
+    char program[PATH_LENGTH] = "", *text = NULL;
     size_t size;
-    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (length > 0) program[length] = '\0';
+    if (readlink("/proc/self/exe", program, sizeof program - 1) < 0) strcpy(program, "sphproof");
     FILE *line = open_memstream(&text, &size);
     if (!line) return NULL;
-    fputs("exec", line);
-    put_quoted(line, "", program);
+    fputs("exec ", line);
+    put_quoted(line, program);
     fprintf(line, " %s --shard $SLURM_ARRAY_TASK_ID/%d --only-build %s --threads %d",
             options->command->name, share->of, share->cache->build, options->threads);
     if (takes(options->command, "jobs")) fprintf(line, " --jobs %d", share->jobs);
     for (size_t i = 0; list[i].name; i++) {
         if (!options->values[i] || of_the_caller(list[i].name)) continue;
-        snprintf(before, sizeof before, "--%s%s", list[i].name, list[i].argument ? "=" : "");
-        put_quoted(line, before, options->values[i]);
+        fprintf(line, list[i].argument ? " --%s=" : " --%s", list[i].name);
+        if (list[i].argument) put_quoted(line, options->values[i]);
     }
     fputs(" --", line);
-    for (int i = 0; i < options->count; i++) put_quoted(line, "", options->arguments[i]);
+    for (int i = 0; i < options->count; i++) {
+        fputc(' ', line);
+        put_quoted(line, options->arguments[i]);
+    }
     return fclose(line) ? free(text), NULL : text;
 }
 

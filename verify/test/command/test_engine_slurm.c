@@ -251,7 +251,7 @@ TEST(command_line_of_a_share)
     assert_int_equal(compute_all(), STATUS_OK);
     snprintf(text, sizeof text,
              "exec '%s' converge --shard $SLURM_ARRAY_TASK_ID/3 --only-build %s --threads 3 --jobs "
-             "2 '--n=1,2,3' '--words=it'\\''s \"$HOME\" `x`\n2' '--flag' '--cache=a b' -- 'sod' "
+             "2 --n='1,2,3' --words='it'\\''s \"$HOME\" `x`\n2' --flag --cache='a b' -- 'sod' "
              "'-1'\\'''",
              program, call.folder.cache.build);
     assert_string_equal(slurm.wrap, text);
@@ -277,7 +277,7 @@ TEST(a_command_without_jobs)
     assert_int_equal(compute_all(), STATUS_OK);
     snprintf(text, sizeof text,
              "' bench --shard $SLURM_ARRAY_TASK_ID/3 --only-build %s --threads "
-             "1 '--n=7' -- 'sod'",
+             "1 --n='7' -- 'sod'",
              call.folder.cache.build);
     assert_non_null(strstr(slurm.wrap, text));
 }
