@@ -3,7 +3,6 @@
  * time saved, and where and when particles are inactive. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "html.h"

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "html.h"
 #include "value.h"
 
 enum { POINTS = 256, CURVES = 3 };

@@ -6,7 +6,6 @@
 #include "breakdown.h"
 #include "line.h"
 #include "pass.h"
-#include "specialise.h"
 #include "state.h"
 
 /* Result for a range: solved, or more ghosts needed, or (>= 0) the first particle without a root.

@@ -3,7 +3,6 @@
  * cos, J0 and sinc. */
 #include "measure.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "csv.h"
-#include "text.h"
 
 enum column { RHO, VX, VY, VZ, P_, U, VR, VPHI, COLUMNS };
 static const char *const column_names[COLUMNS] = {"rho", "vx", "vy", "vz", "P", "u", "vr", "vphi"};

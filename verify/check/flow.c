@@ -12,7 +12,6 @@
 #include "noh.h"
 #include "problem.h"
 #include "problem_prepare.h"
-#include "vortex.h"
 #include "worst.h"
 
 /* ---- dU/dt + div F = 0 ---- */

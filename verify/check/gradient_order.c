@@ -2,7 +2,6 @@
  * How the error of a gradient operator depends on resolution and on disorder, at a fixed number of
  * neighbours. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "check.h"

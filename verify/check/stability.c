@@ -2,7 +2,6 @@
  * Compares linear theory with the solver: the linearised rates and time steps of the stability
  * atlas are differences of the solver's own, and its limits of eta are the known ones. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "check.h"

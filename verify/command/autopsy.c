@@ -11,7 +11,6 @@
 #include "judge_autopsy.h"
 #include "picture.h"
 #include "result.h"
-#include "sweep.h"
 #include "table.h"
 #include "text.h"
 #include "value.h"

@@ -9,7 +9,6 @@
 
 #include "command.h"
 #include "diff.h"
-#include "output.h"
 #include "result.h"
 
 static const char default_results[] = "reports/out/results.json",

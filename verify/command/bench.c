@@ -10,7 +10,6 @@
 #include "bench_skips.h"
 #include "code_run.h"
 #include "command.h"
-#include "output.h"
 #include "picture.h"
 #include "precision.h"
 #include "progress.h"

@@ -12,7 +12,6 @@
 #include "result.h"
 #include "sharing.h"
 #include "table.h"
-#include "text.h"
 
 enum { RUNS = 4 };
 

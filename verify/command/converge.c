@@ -13,7 +13,6 @@
 #include "sharing.h"
 #include "study.h"
 #include "table.h"
-#include "text.h"
 
 /* True if this field of the case has an exact solution. */
 static bool measured(const struct case_file *file, const struct study_result *result, int field)

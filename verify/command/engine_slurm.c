@@ -20,7 +20,6 @@
 
 #include "clock.h"
 #include "engine.h"
-#include "list.h"
 #include "output.h"
 #include "result.h"
 #include "slurm.h"

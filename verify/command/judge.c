@@ -7,7 +7,6 @@
 
 #include "command.h"
 #include "findings.h"
-#include "gates.h"
 #include "judge.h"
 #include "output.h"
 #include "page.h"

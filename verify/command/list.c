@@ -20,7 +20,6 @@
 #include "snapshot_writer.h"
 #include "start_format.h"
 #include "stress.h"
-#include "suite.h"
 #include "table.h"
 #include "text.h"
 

@@ -16,7 +16,6 @@
 #include "page.h"
 #include "result.h"
 #include "sharing.h"
-#include "text.h"
 #include "value.h"
 #include "verdict.h"
 

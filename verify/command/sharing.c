@@ -6,8 +6,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "text.h"
-
 enum { JOBS_MAX = 1024, SHARES_MAX = 1000000 };
 
 static enum status take_share(struct pool_share *share, const struct options *options,

@@ -3,9 +3,7 @@
  * that, so that files are read in another process (guard.h). The reader must refuse the file or
  * give columns of valid numbers, and no result may come from a process that died. The bytes select
  * the file and the changes in all its variants; each variant has further changes of its own. */
-#include <fcntl.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>

@@ -5,7 +5,6 @@
  * has files that the library itself may not survive. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "fuzz.h"

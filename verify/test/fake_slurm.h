@@ -12,7 +12,6 @@
 
 #include "cache.h"
 #include "child.h"
-#include "clock.h"
 #include "pool.h"
 
 enum { FAKE_TASKS = 40, FAKE_TRIES = 4, FAKE_SHARES = 14 };

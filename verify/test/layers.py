@@ -24,7 +24,6 @@ GENERATED = {"config.h", "family_names.h", "h5_soname.h", "version.h"}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
 LAYER = re.compile(r"^\s*\['(\w+)', '([\w/]+)', \[([^\]]*)\]", re.M)
 
-
 def allowed(source):
     """For each library's folder, the folders that it may include, from meson.build."""
     with open(os.path.join(source, "meson.build")) as f:
@@ -37,7 +36,6 @@ def allowed(source):
             sees[where] |= {folder[other]} | sees[folder[other]]
     return sees
 
-
 def sources(source):
     files = []
     for top in FOLDERS:
@@ -46,12 +44,10 @@ def sources(source):
                       if n.endswith((".c", ".h", ".def"))]
     return sorted(files)
 
-
 def layer_of(file, layers):
     """The longest folder of a layer that contains the file; files below verify that are in no layer may include all."""
     found = [layer for layer in layers if file.startswith(layer + "/")]
     return max(found, key=len) if found else "/".join(file.split("/")[:2]) if file.startswith("verify/") else None
-
 
 def includes(source, files, layers, troubles):
     """file: the files that it includes. A name is looked up in the including folder first."""
@@ -70,7 +66,6 @@ def includes(source, files, layers, troubles):
                                 % (file, name, " and ".join(own) or "no place"))
             graph[file].update(own)
     return graph
-
 
 def circle(graph):
     """Some circle as a list of nodes, or None."""
@@ -96,7 +91,6 @@ def circle(graph):
             return found
     return None
 
-
 def folders(graph):
     """The graph of folders; edges between a folder and one inside it are left out."""
     result = {}
@@ -107,7 +101,6 @@ def folders(graph):
             if not (a + "/").startswith(b + "/") and not (b + "/").startswith(a + "/"):
                 result.setdefault(a, set()).add(b)
     return result
-
 
 def judge(source):
     troubles = []
@@ -127,7 +120,6 @@ def judge(source):
             if there != here and (there not in sees or here in sees and there not in sees[here]):
                 troubles.append("%s includes %s: upward" % (file, other))
     return troubles, graph, sees
-
 
 def try_itself():
     """A valid small tree, then the same with one fault each, and the expected message."""
@@ -162,7 +154,6 @@ def try_itself():
             sys.exit("layers.py does not notice its own fault %s: expected '%s', said %s"
                      % (fault, expected, troubles))
 
-
 def main(source, how=""):
     try_itself()
     troubles, graph, sees = judge(source)
@@ -178,7 +169,6 @@ def main(source, how=""):
         print("digraph layers {\n" + "\n".join('  "%s" -> "%s";' % (a, c) for a, b in edges for c in b) + "\n}")
     print("%d files, %d libraries and folders, %d faults" % (len(graph), len(layers), len(troubles)))
     return 1 if troubles else 0
-
 
 if __name__ == "__main__":
     if not 2 <= len(sys.argv) <= 3:

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Tests which numbers the macros of near.h accept and, above all, which they refuse. */
-#include <stdbool.h>
 
 static int refused;
 static char message[256];

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * dW/dr and dW/dh against derivatives that use nothing but W: slopes of Chebyshev series through W
  * in r at fixed h, and in h at fixed r, within one piece. */
-#include <float.h>
 #include <math.h>
 
 #include "places.h"

@@ -5,8 +5,6 @@
 #include "sample_lattice.h"
 #include "solver.h"
 
-#include "cells/cells.h"
-
 static void find_forces(struct simulation *simulation)
 {
     double rate;

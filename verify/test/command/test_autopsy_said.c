@@ -3,9 +3,6 @@
  * transcripts test whole calls.) */
 #include "test.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "printed.h"
 /* the command itself, because its static functions are tested */
 #include "../../command/autopsy.c"

@@ -3,8 +3,6 @@
  * it refuses. (The transcripts and other_codes.py test whole calls.) */
 #include "test.h"
 
-#include <math.h>
-
 #include "printed.h"
 /* the command itself, because its static functions are tested */
 #include "../../command/calibrate.c"

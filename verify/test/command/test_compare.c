@@ -3,10 +3,6 @@
  * which sides it refuses to compare. (The transcripts test whole calls, snapshots and pages.) */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "near.h"

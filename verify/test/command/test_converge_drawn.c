@@ -3,8 +3,6 @@
  * data/drawn/converge.txt, byte for byte. verify/test/keep renews that file. */
 #include "test.h"
 
-#include <math.h>
-
 #include "drawn_document.h"
 #include "printed.h"
 #include "sample_study.h"

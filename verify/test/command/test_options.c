@@ -2,8 +2,6 @@
  * Tests options that several commands share: kernels by name, and names that are refused. */
 #include "test.h"
 
-#include <string.h>
-
 #include "command.h"
 #include "kernel.h"
 

@@ -4,9 +4,6 @@
  * what the engine does with answers, and without.) */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "own_folder.h"

@@ -3,8 +3,6 @@
  * not depend on the order in which the snapshots are given. */
 #include "test.h"
 
-#include <string.h>
-
 #include "judge.h"
 #include "near.h"
 #include "problem_list.h"

@@ -3,11 +3,6 @@
  * rates, which reports differences and their likely causes. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "near.h"
 #include "oracle.h"
 #include "rate_check.h"

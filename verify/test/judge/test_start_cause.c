@@ -3,10 +3,6 @@
  * values. The faults are planted here. (The transcripts test whole snapshots.) */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "near.h"
 #include "start_gas.h"
 

@@ -3,11 +3,6 @@
  * wrong ones are refused with a message that names the fault. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "sphproof/convergence.h"
 #include "sphproof/gradients.h"
 #include "sphproof/rates.h"

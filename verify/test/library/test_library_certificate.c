@@ -3,10 +3,6 @@
  * with wrong knots, constants, values or dimensions. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "property.h"
 /* the library's own source, with properties of this file */
 #define property_list  planted_list

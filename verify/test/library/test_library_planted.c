@@ -4,11 +4,6 @@
  * with known results. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "gradient_study.h"
 #include "near.h"
 #include "noh.h"

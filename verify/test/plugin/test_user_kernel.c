@@ -6,8 +6,6 @@
 
 #include <sys/wait.h>
 
-#include <jansson.h>
-
 #include "certificate.h"
 #include "user_figures.h"
 #include "user_kernel.h"

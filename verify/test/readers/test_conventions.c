@@ -3,10 +3,6 @@
  * kernel and both sums, in 1D to 3D, periodic or not, and where densities do not suffice. */
 #include "test.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "conventions.h"
 #include "near.h"
 #include "own_folder.h"

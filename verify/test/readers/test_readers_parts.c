@@ -273,7 +273,7 @@ TEST(names)
     char here_too[4096]; /* a path without folders */
     struct snapshot_file file;
     struct error error = {0};
-    assert_true(getcwd(here_too, sizeof here_too) && chdir(place) == 0);
+    assert_true(getcwd(here_too, sizeof here_too) && chdir(own_folder) == 0);
     assert_int_equal(snapshot_read("a.0", &here, &file, &error), STATUS_OK);
     assert_true(file.n == 2 * N - 1 && chdir(here_too) == 0);
     snapshot_file_free(&file);

@@ -5,8 +5,6 @@
 #include "test.h"
 
 #include <float.h>
-#include <math.h>
-#include <string.h>
 
 #include "own_folder.h"
 #include "snapshot_file.h"

@@ -2,8 +2,6 @@
  * Tests which settings must agree before `diff` compares two runs. */
 #include "test.h"
 
-#include <stdio.h>
-
 #include "sample_diff.h"
 
 static void problem_is(const char *command, const char *inside, const char *name, bool counts)

@@ -4,10 +4,6 @@
  * byte. verify/test/keep renews that file. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "buffer.h"

@@ -3,9 +3,6 @@
  * totals and parts, and the order of figures.) */
 #include "test.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-
 #include "sample_diff.h"
 
 /* ---- figures, in both directions ---- */

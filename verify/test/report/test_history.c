@@ -4,10 +4,6 @@
  * damaged lines and the line that a night adds.) */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "history.h"

@@ -4,11 +4,6 @@
  * file. Also computes some cheap pieces. */
 #include "test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "buffer.h"
 #include "claims.h"
 #include "drawn_document.h"
@@ -17,7 +12,6 @@
 #include "pairing.h"
 #include "report.h"
 #include "report_piece.h"
-#include "result.h"
 #include "value.h"
 
 static void compare(struct digests *kept, const char *what, size_t number, struct buffer *text)

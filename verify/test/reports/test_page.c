@@ -2,8 +2,6 @@
  * Tests the report's list of failing figures. (test_page_drawn.c tests the rest.) */
 #include "test.h"
 
-#include <math.h>
-
 #include "markup.h"
 #include "page.h"
 #include "result.h"

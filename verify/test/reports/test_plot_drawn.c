@@ -5,7 +5,6 @@
 
 #include "buffer.h"
 #include "drawn_document.h"
-#include "layout.h"
 #include "script.h"
 
 enum { PLOTS = 250, PICTURES = 200, PANELS = 3, SERIES = 4, POINTS = 12, KEPT_TOGETHER = 10 };

@@ -3,7 +3,6 @@
  * with the reason. */
 #include "test.h"
 
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "cache.h"

@@ -5,7 +5,6 @@
 #include "autopsy_state.h"
 #include "draw.h"
 #include "keyed.h"
-#include "problem_list.h"
 
 enum { LEVELS = 4 };
 
