@@ -283,6 +283,15 @@ enum status settings_apply(struct settings *settings, int n, char *const *argume
     return STATUS_OK;
 }
 
+enum status settings_apply_words(struct settings *settings, const char *words, struct error *error)
+{
+    char text[512], *rest = text;
+    snprintf(text, sizeof text, "%s", words);
+    for (char *word; (word = strtok_r(rest, " ", &rest));)
+        if (settings_apply(settings, 1, &word, error)) return error->status;
+    return STATUS_OK;
+}
+
 double settings_real(const struct settings *settings, enum setting key)
 {
     return settings->value[key].real[0];

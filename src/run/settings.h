@@ -104,6 +104,9 @@ enum status settings_set(struct settings *settings, enum setting key, const char
 enum status settings_apply(struct settings *settings, int n, char *const *arguments,
                            struct error *error);
 
+/* Applies KEY=VALUE words with blanks between them, of at most 511 characters. */
+enum status settings_apply_words(struct settings *settings, const char *words, struct error *error);
+
 /* The scheme for the settings, checked in dim dimensions; sets the automatic keys of the scheme.
  * problem_prepare does so for the problem, run_resolve for both. STATUS_BAD_INPUT as by
  * settings_refuse_unused, unless the settings are shared. */

@@ -10,7 +10,7 @@
 #include "run_job.h"
 #include "value.h"
 
-enum { ROWS_MAX = 6, KEYS_MAX = 12, COMMAND_TEXT = 512 };
+enum { ROWS_MAX = 6, COMMAND_TEXT = 512 };
 
 /* Errors that differ by less than this factor count as equal. */
 static const double matters = 1.25;
@@ -81,17 +81,9 @@ static enum status plan_run(struct claim_run *of, const struct claim *claim, con
                             struct error *error)
 {
     struct run_settings settings;
-    char text[sizeof of->keys], *arguments[KEYS_MAX], *rest = text;
-    int n = 0;
     snprintf(of->keys, sizeof of->keys, "%s %s %s", size, row, side);
-    memcpy(text, of->keys, sizeof text);
-    for (char *word; (word = strtok_r(rest, " ", &rest));) {
-        if (n == KEYS_MAX)
-            return error_set(error, STATUS_ENVIRONMENT, "claim %s: more than %d keys", claim->name,
-                             KEYS_MAX);
-        arguments[n++] = word;
-    }
-    if (run_prepare(&settings, claim->case_name, n, arguments, error) ||
+    if (run_prepare(&settings, claim->case_name, 0, NULL, error) ||
+        settings_apply_words(&settings.settings, of->keys, error) ||
         run_resolve(&of->run, &settings, error))
         return error->status;
     return run_job_add(pool, &of->run, &of->job, error);

@@ -64,15 +64,12 @@ static enum status plan_run(struct pairing_run *of, bool nightly, struct pool *p
 {
     const struct crowd *crowd = of->crowd;
     struct run_settings settings;
-    char text[TEXT], *arguments[KEYS_MAX], *rest = text;
-    int n = 0;
     const double eta =
         crowd->dim == 2 ? sqrt(of->neighbours / M_PI) : cbrt(0.75 * of->neighbours / M_PI);
     snprintf(of->keys, TEXT, "%s %s kernel=%s gradient=%s eta=%.4g",
              nightly ? crowd->night : crowd->day, usual, of->kernel, crowd->gradient, eta);
-    memcpy(text, of->keys, TEXT);
-    for (char *word; n < KEYS_MAX && (word = strtok_r(rest, " ", &rest));) arguments[n++] = word;
-    if (run_prepare(&settings, crowd->case_name, n, arguments, error) ||
+    if (run_prepare(&settings, crowd->case_name, 0, NULL, error) ||
+        settings_apply_words(&settings.settings, of->keys, error) ||
         run_resolve(&of->run, &settings, error))
         return error->status;
     return run_job_add(pool, &of->run, &of->job, error);

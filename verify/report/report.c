@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "buffer.h"
 #include "cases.h"
 #include "check_registry.h"
 #include "claims.h"
@@ -47,7 +48,7 @@ static const struct scheme_label {
 };
 enum { SCHEMES = sizeof line_schemes / sizeof *line_schemes };
 enum { ENTRIES = SCHEMES + REPORT_CODES_MAX };
-enum { KEYS_MAX = 16, COMMAND_TEXT = 1024 };
+enum { MORE = CASE_LADDER_MAX * sizeof ",18446744073709551615" + sizeof " --n " };
 enum { COMPARED = 8000 }; /* largest number of particles by day for which other schemes run */
 enum { QUICK = 1000 };    /* particles by day of a case in 2D or 3D without a ladder */
 
@@ -56,8 +57,8 @@ struct reported {
     const char *name;
     int dimension, schemes, studied; /* number of entries that have a run, and a study */
     struct scheme_label entries[ENTRIES];
-    char more[ENTRIES][256]; /* additional words on the command lines of the studies */
-    char size[32];           /* size on the command lines of the runs: "n=48^2", or nothing */
+    char more[ENTRIES][MORE]; /* additional words on the command lines of the studies */
+    char size[32];            /* size on the command lines of the runs: "n=48^2", or nothing */
     struct study studies[ENTRIES];
 };
 
@@ -82,21 +83,6 @@ static const struct scheme_label *scheme_of(const struct reported *of, int s)
     return &of->entries[s];
 }
 
-/* Applies KEY=VALUE words. */
-static enum status apply(const char *words, struct settings *settings, struct error *error)
-{
-    char text[512], *arguments[KEYS_MAX], *rest = text;
-    int n = 0;
-    snprintf(text, sizeof text, "%s", words);
-    for (char *word; (word = strtok_r(rest, " ", &rest));) {
-        if (n == KEYS_MAX)
-            return error_set(error, STATUS_ENVIRONMENT, "more than %d keys: %.200s", KEYS_MAX,
-                             words);
-        arguments[n++] = word;
-    }
-    return settings_apply(settings, n, arguments, error);
-}
-
 /* The case with the scheme's keys. In a report of other codes our own schemes are not judged. */
 static enum status prepare(const struct reported *of, int s, struct run_settings *settings,
                            struct error *error)
@@ -106,9 +92,8 @@ static enum status prepare(const struct reported *of, int s, struct run_settings
     if (!other && run_prepare(settings, of->name, 0, NULL, error)) return error->status;
     if (other) *settings = scheme->other ? *scheme->other : *other;
     if (other && !scheme->other) settings->external = NULL, settings->file.gate_count = 0;
-    return apply(of->size, &settings->settings, error)
-               ? error->status
-               : apply(scheme->keys, &settings->settings, error);
+    if (settings_apply_words(&settings->settings, of->size, error)) return error->status;
+    return settings_apply_words(&settings->settings, scheme->keys, error);
 }
 
 /* Sets the ladder of a case: its own, by day the smaller one if there is one, by night with added
@@ -122,18 +107,14 @@ static void take_ladder(const struct report *report, struct reported *of, int s)
     size_t *n = &study->level_count;
     memcpy(study->ladder, from, sizeof study->ladder);
     *n = day ? file->quick_count : file->ladder_count;
-    if (report->nightly && file->night_count)
-        for (size_t i = 0; i < file->night_count && *n < CASE_LADDER_MAX; i++)
-            study->ladder[(*n)++] = file->night[i];
-    else if (report->nightly && *n < CASE_LADDER_MAX)
+    for (size_t i = 0; report->nightly && i < file->night_count; i++)
+        study->ladder[(*n)++] = file->night[i];
+    if (report->nightly && !file->night_count)
         study->ladder[*n] = study->ladder[*n - 1] << file->dimension, ++*n;
-    const bool own = study->ladder[*n - 1] == file->ladder[file->ladder_count - 1] && !day;
-    if (codes ? scheme_of(of, s)->other != NULL : own) return;
-    char *more = of->more[s];
-    int used = snprintf(more, sizeof of->more[s], " --n ");
-    for (size_t i = 0; i < *n && used < (int)sizeof of->more[s]; i++)
-        used += snprintf(more + used, sizeof of->more[s] - (size_t)used, "%s%zu", i ? "," : "",
-                         study->ladder[i]);
+    if (codes ? scheme_of(of, s)->other != NULL : !day && !report->nightly) return;
+    int used = 0;
+    for (size_t i = 0; i < *n; i++)
+        used += sprintf(of->more[s] + used, "%s%zu", i ? "," : " --n ", study->ladder[i]);
 }
 
 static enum status add_study(struct report *report, struct reported *of, int s,
@@ -141,7 +122,7 @@ static enum status add_study(struct report *report, struct reported *of, int s,
 {
     struct study *study = &of->studies[s];
     study->settings = *settings;
-    if (sweep_parse(&study->sweep, NULL, error)) return error->status;
+    study->sweep.count = 1; /* without a key that varies */
     if (s && !report->codes) gates_compare(&study->settings.file);
     take_ladder(report, of, s);
     study->replicates = study_replicates(settings);
@@ -238,26 +219,22 @@ static enum status add_cases(struct report *report, struct error *error)
 static enum status add_skips(struct report *report, struct error *error)
 {
     static const struct {
-        const char *name, *keys[2];
-    } setups[] = {{"sod", {"n=1600"}},
-                  {"noh_1d", {"n=800"}},
-                  {"sod_2d", {"n=5600", "t_end=0.03"}},
-                  {"sod_2d", {"n=5600"}},
-                  {"sedov_2d", {"n=64^2", "t_end=0.01"}},
-                  {"sedov_2d", {"n=64^2"}},
-                  {"sedov_3d", {"n=24^3", "t_end=0.002"}},
-                  {"noh_2d", {"n=40^2"}}};
+        const char *name, *keys;
+    } setups[] = {{"sod", "n=1600"},
+                  {"noh_1d", "n=800"},
+                  {"sod_2d", "n=5600 t_end=0.03"},
+                  {"sod_2d", "n=5600"},
+                  {"sedov_2d", "n=64^2 t_end=0.01"},
+                  {"sedov_2d", "n=64^2"},
+                  {"sedov_3d", "n=24^3 t_end=0.002"},
+                  {"noh_2d", "n=40^2"}};
     for (size_t k = 0; k < sizeof setups / sizeof *setups; k++) {
         struct report_piece skips = {.kind = REPORT_SKIPS,
                                      .where = setups[k].name,
                                      .rules = {.least_s = 0.01, .most_s = 2, .samples = 3}};
-        char words[2][40], *keys[] = {words[0], words[1]};
-        int count = 0;
-        for (; count < 2 && setups[k].keys[count]; count++)
-            snprintf(words[count], sizeof words[count], "%s", setups[k].keys[count]);
-        snprintf(skips.keys, sizeof skips.keys, "%s%s%s", words[0], count > 1 ? " " : "",
-                 count > 1 ? words[1] : "");
-        if (run_prepare(&skips.settings, skips.where, count, keys, error) ||
+        snprintf(skips.keys, sizeof skips.keys, "%s", setups[k].keys);
+        if (run_prepare(&skips.settings, skips.where, 0, NULL, error) ||
+            settings_apply_words(&skips.settings.settings, skips.keys, error) ||
             add_piece(report, skips, error))
             return error->status;
     }
@@ -332,11 +309,13 @@ static enum status add_all(struct report *report, struct error *error)
 static void describe(const char *command, const struct reported *of, int s, const char *more,
                      json_t *document)
 {
-    char reproduce[COMMAND_TEXT];
+    struct buffer reproduce = {0};
     const struct scheme_label *scheme = scheme_of(of, s);
-    snprintf(reproduce, sizeof reproduce, "sphproof %s %s%s%s%s%s", command, of->name, more,
-             *scheme->keys ? " " : "", scheme->keys, scheme->option ? scheme->option : "");
-    result_add(document, "label=%s reproduce=%s", scheme_of(of, s)->label, reproduce);
+    buffer_format(&reproduce, "sphproof %s %s%s%s%s%s", command, of->name, more,
+                  *scheme->keys ? " " : "", scheme->keys, scheme->option ? scheme->option : "");
+    result_add(document, "label=%s reproduce=%s", scheme->label,
+               reproduce.data ? reproduce.data : "");
+    buffer_free(&reproduce);
 }
 
 static void describe_run(const struct reported *of, int s, json_t *document)

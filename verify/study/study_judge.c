@@ -240,9 +240,10 @@ bool study_suspect_same(const char *what, const struct study_result *a,
     double before[CASE_LADDER_MAX * FIELDS], after[CASE_LADDER_MAX * FIELDS];
     size_t n = 0;
     for (size_t l = 0; l < a->level_count && l < b->level_count; l++)
-        for (int f = 0; f < FIELDS; f++, n++) {
+        for (int f = 0; f < FIELDS; f++) {
             before[n] = a->levels[l].errors[f][NORM_L1];
             after[n] = b->levels[l].errors[f][NORM_L1];
+            n += !isnan(before[n]) || !isnan(after[n]); /* both: the field is not known */
         }
     return suspicion_idle_setting(what, n, before, after, why);
 }

@@ -194,19 +194,59 @@ static void add_settings(struct buffer *to, const struct pool_job *job)
     json_decref(key);
 }
 
-static struct report *planned(struct digests *kept, enum report_mode mode)
+static void compare_plan(struct digests *kept, size_t number, struct report *report)
 {
-    struct error error = {0};
     struct buffer text = {0};
-    struct report *report;
-    assert_int_equal(report_create(mode, &report, &error), STATUS_OK);
     const struct pool *pool = report_pool(report);
     for (size_t i = 0; i < pool->count; i++) {
         buffer_format(&text, "%s: %.4g\n", pool->jobs[i].name, pool->jobs[i].weight);
         add_settings(&text, &pool->jobs[i]);
     }
-    compare(kept, "plan", mode == REPORT_NIGHTLY, &text);
+    compare(kept, "plan", number, &text);
+}
+
+static struct report *planned(struct digests *kept, enum report_mode mode)
+{
+    struct error error = {0};
+    struct report *report;
+    if (report_create(mode, &report, &error)) fail_msg("%s", error.message);
+    compare_plan(kept, mode == REPORT_NIGHTLY, report);
     return report;
+}
+
+/* Two codes with a common case; cases in 1D and 2D, one with the longest ladder, one without a
+ * ladder. */
+static void report_codes(struct digests *kept, struct drawing *draw)
+{
+    static const char *const names[] = {"sod", "yee", "square", "yee"};
+    static struct run_settings cases[4];
+    const struct report_code codes[] = {{"A", " --code a.ini", 2, cases},
+                                        {"B", " --code b.ini", 2, cases + 2}};
+    struct report *report;
+    struct error error = {0};
+    struct buffer text = {0}, command = {0};
+    json_t *results;
+    for (size_t k = 0; k < 4; k++)
+        assert_int_equal(run_prepare(&cases[k], names[k], 0, NULL, &error), STATUS_OK);
+    cases[0].file.ladder_count = CASE_LADDER_MAX;
+    buffer_add(&command, "sphproof converge sod --n ");
+    for (size_t i = 0; i < CASE_LADDER_MAX; i++) {
+        cases[0].file.ladder[i] = 1000000 + i;
+        buffer_format(&command, "%s%zu", i ? "," : "", cases[0].file.ladder[i]);
+    }
+    cases[2].file.ladder_count = 0;
+    if (report_create_codes(codes, 2, &report, &error)) fail_msg("%s", error.message);
+    compare_plan(kept, 2, report);
+    drawn_pieces(draw, report_pool(report), 150);
+    if (report_judge(report, NULL, &results, &error)) fail_msg("%s", error.message);
+    const json_t *ours = json_array_get(json_object_get(results, "studies"), 1);
+    assert_string_equal(value_text(ours, "label"), "default");
+    assert_string_equal(value_text(ours, "reproduce"), command.data);
+    add_document(&text, results);
+    compare(kept, "codes", 0, &text);
+    buffer_free(&command);
+    json_decref(results);
+    report_destroy(report);
 }
 
 static void refuse(struct pool *pool, const char *name)
@@ -216,6 +256,37 @@ static void refuse(struct pool *pool, const char *name)
     json_decref(job->document);
     job->document = NULL;
     job->error = (struct error){STATUS_BAD_INPUT, "refused"};
+}
+
+/* Studies of one case with equal errors are suspicious, except for the first. */
+TEST(equal_schemes)
+{
+    json_t *template = read_template(test_word(1), "pieces.json"), *results, *study;
+    struct drawing draw = {0, template};
+    struct report *report;
+    struct error error = {0};
+    const char *before = "";
+    size_t k, later = 0;
+    if (report_create(REPORT_QUICK, &report, &error)) fail_msg("%s", error.message);
+    const struct pool *pool = report_pool(report);
+    drawn_pieces(&draw, report_pool(report), SIZE_MAX);
+    for (size_t i = 0; i < pool->count; i++)
+        if (json_object_get(pool->jobs[i].document, "errors"))
+            json_object_set_new(pool->jobs[i].document, "errors",
+                                json_pack("{s:{s:f}}", "density", "l1", 1.));
+    if (report_judge(report, NULL, &results, &error)) fail_msg("%s", error.message);
+    json_array_foreach(json_object_get(results, "studies"), k, study) {
+        const char *name = value_text(study, "case");
+        const bool first = strcmp(name, before) != 0;
+        later += !first;
+        assert_string_equal(value_text(study, "suspicion"),
+                            first ? "" : "changing the scheme changed nothing: is it read at all?");
+        before = name;
+    }
+    assert_true(later > 10);
+    json_decref(results);
+    report_destroy(report);
+    json_decref(template);
 }
 
 TEST(reports)
@@ -256,6 +327,7 @@ TEST(reports)
     assert_null(results);
     report_destroy(report);
     report_destroy(planned(&kept, REPORT_NIGHTLY)); /* judged as the daily one */
+    report_codes(&kept, &draw);
     digests_close(&kept);
     json_decref(template);
 }

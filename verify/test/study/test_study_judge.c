@@ -264,7 +264,8 @@ static double one_error(size_t l, int f)
     return 1 + (double)l + 10 * f;
 }
 
-/* Results are the same if their errors are at all levels that both have. */
+/* Results are the same if their errors are, at all levels that both have, in all fields that are
+ * known. */
 TEST(same_at_all_levels)
 {
     static struct study_result a, b;
@@ -284,6 +285,14 @@ TEST(same_at_all_levels)
             assert_false(study_suspect_same("eta", &a, &b, why));
             b.levels[l].errors[f][NORM_L1] = one_error(l, f);
         }
+    a.levels[1].errors[2][NORM_L1] = NAN;
+    assert_false(study_suspect_same("eta", &a, &b, why));
+    b.levels[1].errors[2][NORM_L1] = NAN;
+    assert_true(study_suspect_same("eta", &a, &b, why));
+    for (size_t l = 0; l < 2; l++)
+        for (int f = 0; f < FIELDS; f++)
+            a.levels[l].errors[f][NORM_L1] = b.levels[l].errors[f][NORM_L1] = NAN;
+    assert_false(study_suspect_same("eta", &a, &b, why));
     b.level_count = 0;
     assert_false(study_suspect_same("eta", &a, &b, why));
 }
