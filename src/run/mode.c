@@ -6,16 +6,11 @@
 /* Largest displacement, in widths of the layer, for which the mode counts as small. */
 static const double small = 0.1;
 
-_Static_assert(sizeof(struct mode_start) <= PROBLEM_OWN_BYTES, "a mode fits");
-
-static const struct mode_start *start_of(const struct prepared *p)
-{
-    return (const struct mode_start *)p->own.bytes;
-}
+PROBLEM_OWN(mode_start)
 
 static void growing_during(const struct prepared *p, double times[2])
 {
-    const struct mode_start *start = start_of(p);
+    const struct mode_start *start = mode_start_of(p);
     const struct layer_mode *mode = &start->mode;
     const double rate = cimag(mode->omega) / start->length;
     times[0] = log(2) / rate;
@@ -59,7 +54,7 @@ static void to_mode(const struct mode_start *start, const double x[3], double at
 
 void mode_sample(const struct prepared *p, const double x[3], double t, struct problem_state *state)
 {
-    const struct mode_start *start = start_of(p);
+    const struct mode_start *start = mode_start_of(p);
     double at[2];
     to_mode(start, x, at);
     const struct layer_base base = layer_base(&start->mode.layer, at[1]);
@@ -105,7 +100,7 @@ static void add_particle(struct sums *sums, const struct mode_start *start, cons
 
 static struct projection project(const struct prepared *p, const struct snapshot *s)
 {
-    const struct mode_start *start = start_of(p);
+    const struct mode_start *start = mode_start_of(p);
     struct sums sums = {0};
     for (size_t i = 0; i < s->n; i++) {
         double x[3], v[3], at[2];
@@ -138,7 +133,7 @@ static double amplitude_measured(const struct prepared *p, const struct snapshot
 
 static double amplitude_exact(const struct prepared *p, double t)
 {
-    const struct mode_start *start = start_of(p);
+    const struct mode_start *start = mode_start_of(p);
     return start->amplitude * exp(cimag(start->mode.omega) * t / start->length);
 }
 
@@ -166,7 +161,7 @@ static double none(const struct prepared *p, double t)
 
 static double rate_exact(const struct prepared *p)
 {
-    const struct mode_start *start = start_of(p);
+    const struct mode_start *start = mode_start_of(p);
     return cimag(start->mode.omega) / start->length;
 }
 

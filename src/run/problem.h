@@ -38,6 +38,14 @@ struct prepared {
     } own;
 };
 
+/* For the file of a problem with its own data, a struct TYPE: defines TYPE_of(p). */
+#define PROBLEM_OWN(type)                                                                          \
+    _Static_assert(sizeof(struct type) <= PROBLEM_OWN_BYTES, "the problem's own data fit");        \
+    static const struct type *type##_of(const struct prepared *p)                                  \
+    {                                                                                              \
+        return (const struct type *)p->own.bytes;                                                  \
+    }
+
 /* The purpose of a problem's key. */
 enum problem_role {
     ROLE_NEEDED,   /* defines the problem; a case file must give it */
@@ -85,6 +93,10 @@ struct problem_ends {
     unsigned also;       /* other valid boundaries: PROBLEM_END(OPEN) | ... */
 };
 #define PROBLEM_END(name) (1u << BOUNDARY_##name)
+#define PROBLEM_WALLS                                                                              \
+    {                                                                                              \
+        .also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)                                       \
+    }
 
 /* Flows whose velocity errors have azimuthal and radial parts: rotating around the middle of the
  * domain, or moving towards it or away from it. */
@@ -116,7 +128,7 @@ struct problem {
      * window. The sample at t = 0 does not show this energy, and u is unbounded there later. Else
      * NULL. */
     double (*mean_energy)(const struct prepared *p, double r, double t);
-    const struct problem_key *keys; /* keys of the problem, in addition to those of every run */
+    const struct problem_key *keys; /* in addition to those of every run; see PROBLEM_KEYS */
     size_t key_count;
     /* Checks the problem's keys, sets the automatic ones, and fills p->own. On entry domain, boost,
      * gamma, boundary and gravity are set, and a window, which prepare may replace unless the user
@@ -137,13 +149,16 @@ struct problem {
     /* Distance of x from the nearest wave, without boost; <= 0 where a wave has passed. NULL: no
      * wave has an edge. */
     double (*ahead)(const struct prepared *p, const double x[3], double t);
-    /* True if the initial state depends on the seed. */
-    bool (*random)(const struct settings *settings);
     /* NULL-terminated; at most PROBLEM_FUNCTIONALS_MAX including the growth rate. */
     const struct functional *functionals[PROBLEM_FUNCTIONALS_MAX + 1];
     const struct growing *growing; /* may be NULL */
     const struct regions *regions; /* may be NULL */
 };
+
+/* The members keys and key_count of a list of struct problem_key. */
+#define PROBLEM_KEYS(...)                                                                          \
+    .keys = (const struct problem_key[]){__VA_ARGS__},                                             \
+    .key_count = sizeof((const struct problem_key[]){__VA_ARGS__}) / sizeof(struct problem_key)
 
 void problem_sample(const struct prepared *p, const double x[3], double t,
                     struct problem_state *state);

@@ -351,8 +351,8 @@ bool settings_random_start(const struct settings *settings)
 {
     const enum lattice lattice = (enum lattice)settings_choice(settings, SETTING_lattice);
     const bool jittered = lattice == LATTICE_JITTERED && settings->value[SETTING_jitter].automatic;
-    return settings_real(settings, SETTING_jitter) > 0 || jittered || lattice == LATTICE_RANDOM ||
-           lattice == LATTICE_GLASS;
+    return !settings->file[0] && (settings_real(settings, SETTING_jitter) > 0 || jittered ||
+                                  lattice == LATTICE_RANDOM || lattice == LATTICE_GLASS);
 }
 
 bool settings_uses(const struct settings *settings, enum setting key)
@@ -360,7 +360,7 @@ bool settings_uses(const struct settings *settings, enum setting key)
     const enum setting other = decided_by[key];
     if (!other) return true;
     if (other == SETTING_grade) return settings_real(settings, SETTING_grade) < 1;
-    if (other == SETTING_lattice) return !settings->file[0] && settings_random_start(settings);
+    if (other == SETTING_lattice) return settings_random_start(settings);
     return settings_uses(settings, other) && is_read_with(key, settings_choice(settings, other));
 }
 

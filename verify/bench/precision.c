@@ -117,9 +117,9 @@ static enum status average(struct job *job, int order, struct error *error)
 {
     const size_t n = (size_t)settings_real(&job->run.settings, SETTING_n);
     const size_t wanted = study_replicates(&job->run.asked), most = 5;
-    const size_t replicates = study_is_random(&job->run.settings) ? 1
-                              : wanted < most                     ? wanted
-                                                                  : most;
+    const size_t replicates = settings_random_start(&job->run.settings) ? 1
+                              : wanted < most                           ? wanted
+                                                                        : most;
     double sum = 0, squares = 0;
     for (size_t r = 0; r < replicates; r++) {
         const size_t near = study_neighbour(n, job->run.asked.file.dimension, replicates, 1, r);

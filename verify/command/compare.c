@@ -156,7 +156,7 @@ static enum status draw(const struct side *side, size_t r, size_t draws, struct 
 {
     struct run_settings asked = side->asked;
     const struct settings *settings = &side->first.settings;
-    const bool random = study_is_random(settings);
+    const bool random = settings_random_start(settings);
     const enum setting key = random ? SETTING_seed : SETTING_n;
     const int dim = side->asked.file.dimension;
     double value = settings_real(settings, key);
@@ -248,7 +248,8 @@ static enum status one_snapshot(struct side *side, const struct side *other, boo
 static bool seen(const struct comparison *c, size_t r)
 {
     for (int s = 0; s < 2; s++)
-        if (!c->sides[s].is_snapshot && study_is_random(&c->sides[s].first.settings)) return false;
+        if (!c->sides[s].is_snapshot && settings_random_start(&c->sides[s].first.settings))
+            return false;
     for (size_t k = 0; k < r; k++)
         if (c->sides[0].n[k] == c->sides[0].n[r] && c->sides[1].n[k] == c->sides[1].n[r])
             return true;

@@ -165,7 +165,7 @@ static void print_errors(const struct study *study, const struct study_result *r
                          const struct table_style *style)
 {
     const struct case_file *file = &study->settings.file;
-    const bool random = study_is_random(&result->settings), many = study->replicates > 1;
+    const bool random = settings_random_start(&result->settings), many = study->replicates > 1;
     bool any = false;
     for (int field = 0; field < FIELDS; field++) any = any || measured(file, result, field);
     if (any)

@@ -11,17 +11,12 @@
 
 const char *const study_part_names[STUDY_PARTS] = {"azimuthal", "radial"};
 
-bool study_is_random(const struct settings *settings)
-{
-    return problem_of(settings)->random(settings);
-}
-
 size_t study_replicates(const struct run_settings *settings)
 {
     const struct settings *s = &settings->settings;
     const bool dear = settings->file.dimension > 1 && s->value[SETTING_jitter].automatic &&
                       settings_choice(s, SETTING_lattice) == LATTICE_JITTERED;
-    if (study_is_random(s) && !dear) return 3;
+    if (settings_random_start(s) && !dear) return 3;
     return settings->file.dimension > 1 || problem_of(s)->smooth ? 1 : 9;
 }
 
@@ -68,7 +63,7 @@ static enum status make_runs(struct study *study, size_t c, const struct run_set
                              struct error *error)
 {
     const double seed = settings_real(&base->settings, SETTING_seed);
-    const bool random = study_is_random(&base->settings);
+    const bool random = settings_random_start(&base->settings);
     for (size_t l = 0; l < study->level_count; l++)
         for (size_t r = 0; r < study->replicates; r++) {
             struct run_settings asked = *base;

@@ -105,9 +105,6 @@ void study_free(struct study *study);
 bool study_suspect_same(const char *what, const struct study_result *a,
                         const struct study_result *b, char *why);
 
-/* True if the initial state is random, so that the seed matters. */
-bool study_is_random(const struct settings *settings);
-
 /* Number of replicates of a case: 3 for a random start, 9 for solutions with jumps in 1D, else 1.
  * With the small default jitter of lattice=jittered in 2D and 3D, where runs are expensive, 1. */
 size_t study_replicates(const struct run_settings *settings);

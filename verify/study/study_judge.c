@@ -197,7 +197,7 @@ static void judge_stillness(struct study_result *result, bool ours)
     for (size_t l = 0; l < result->level_count; l++)
         if (result->levels[l].budget.regions)
             result->still = fmax(result->still, result->levels[l].budget.still);
-    if (isnan(result->still) || !ours || study_is_random(&result->settings)) return;
+    if (isnan(result->still) || !ours || settings_random_start(&result->settings)) return;
     result->still_status = result->still <= STUDY_STILL_BOUND ? FINDING_PASS : FINDING_FAIL;
     if (result->still_status == FINDING_FAIL) result->status = STATUS_CHECK_FAILED;
 }

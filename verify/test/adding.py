@@ -394,22 +394,16 @@ static enum status fill(const struct prepared *p, const struct settings *setting
     return STATUS_OK;
 }
 
-static const struct problem_key keys[] = {{SETTING_background, ROLE_NEEDED},
-                                          {SETTING_amplitude, ROLE_NEEDED},
-                                          {SETTING_waves, ROLE_OPTIONAL}};
-
 const struct problem problem_entropy_wave = {
     .member = {"entropy_wave", "density that is carried along", ""},
     .reference = "entropy_wave",
     .least_dim = 1,
     .most_dim = 1,
     .smooth = true,
-    .keys = keys,
-    .key_count = sizeof keys / sizeof *keys,
+    PROBLEM_KEYS({SETTING_background, ROLE_NEEDED}, {SETTING_amplitude, ROLE_NEEDED}, {SETTING_waves, ROLE_OPTIONAL}),
     .prepare = prepare,
     .sample = sample,
     .fill = fill,
-    .random = settings_random_start,
     .functionals = {&functional_mean_internal_energy, &functional_mean_pressure},
 };
 """)

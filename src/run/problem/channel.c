@@ -12,12 +12,7 @@ struct channel {
     struct liquid liquid;
     double height, speed, nu;
 };
-_Static_assert(sizeof(struct channel) <= PROBLEM_OWN_BYTES, "a channel fits");
-
-static const struct channel *channel_of(const struct prepared *p)
-{
-    return (const struct channel *)p->own.bytes;
-}
+PROBLEM_OWN(channel)
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
@@ -64,9 +59,6 @@ static double flow_exact(const struct prepared *p, double t)
 
 static const struct functional flow = {"channel_flow", NULL, flow_measured, flow_exact};
 
-static const struct problem_key keys[] = {
-    LIQUID_KEYS, {SETTING_nu, ROLE_NEEDED}, {SETTING_speed, ROLE_NEEDED}};
-
 const struct problem problem_channel = {
     .member = {"channel", "a viscous liquid between plates", "Morris, Fox & Zhu 1997"},
     .reference = "channel",
@@ -77,11 +69,9 @@ const struct problem problem_channel = {
     .liquid = true,
     .unknown = LIQUID_UNKNOWN,
     .ends = {{0}, {BOUNDARY_REFLECTING, PROBLEM_END(FIXED) | PROBLEM_END(OPEN)}, {0}},
-    .keys = keys,
-    .key_count = sizeof keys / sizeof *keys,
+    PROBLEM_KEYS(LIQUID_KEYS, {SETTING_nu, ROLE_NEEDED}, {SETTING_speed, ROLE_NEEDED}),
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_random_start,
     .functionals = {&flow},
 };

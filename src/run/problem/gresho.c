@@ -88,11 +88,9 @@ const struct problem problem_gresho = {
     .steady = true,
     .circular = CIRCULAR_ROUND,
     .smooth = true,
-    .ends = {{.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)},
-             {.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)}},
+    .ends = {PROBLEM_WALLS, PROBLEM_WALLS},
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_random_start,
     .functionals = {&disc_error, &peak},
 };

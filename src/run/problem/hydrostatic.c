@@ -36,8 +36,6 @@ static void sample(const struct prepared *p, const double x[3], double t,
     state->P = square * (state->rho - of->rho0);
 }
 
-static const struct problem_key keys[] = {LIQUID_KEYS};
-
 const struct problem problem_hydrostatic = {
     .member = {"hydrostatic", "a liquid at rest under gravity", "Landau & Lifshitz 1987"},
     .reference = "hydrostatic",
@@ -50,11 +48,9 @@ const struct problem problem_hydrostatic = {
     .ends = {{.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED) | PROBLEM_END(OPEN)},
              {BOUNDARY_REFLECTING, PROBLEM_END(FIXED) | PROBLEM_END(OPEN)},
              {.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED) | PROBLEM_END(OPEN)}},
-    .keys = keys,
-    .key_count = sizeof keys / sizeof *keys,
+    PROBLEM_KEYS(LIQUID_KEYS),
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_random_start,
     .functionals = {&functional_velocity_rms},
 };

@@ -68,8 +68,6 @@ static double amplitude_reference(const struct prepared *p, double t)
 static const struct functional mode_amplitude = {"mode_amplitude", NULL, amplitude_measured,
                                                  amplitude_reference};
 
-static const struct problem_key keys[] = {{SETTING_equal_masses, ROLE_PARTICLES}};
-
 const struct problem problem_kelvin_helmholtz = {
     .member = {"kelvin_helmholtz", "smooth shear layers whose instability grows",
                "McNally, Lyra & Passy 2012"},
@@ -80,11 +78,9 @@ const struct problem problem_kelvin_helmholtz = {
     .fieldless = true,
     .smooth = true,
     .shifts_equal_masses = true,
-    .keys = keys,
-    .key_count = sizeof keys / sizeof *keys,
+    PROBLEM_KEYS({SETTING_equal_masses, ROLE_PARTICLES}),
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_random_start,
     .functionals = {&mode_amplitude},
 };

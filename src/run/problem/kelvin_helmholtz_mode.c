@@ -28,10 +28,6 @@ static enum status prepare(struct prepared *p, struct settings *settings, struct
     return mode_prepare(p, &layer, origin, height, layer.U, settings, error);
 }
 
-static const struct problem_key keys[] = {{SETTING_amplitude, ROLE_OPTIONAL},
-                                          {SETTING_waves, ROLE_OPTIONAL},
-                                          {SETTING_parity, ROLE_OPTIONAL}};
-
 const struct problem problem_kelvin_helmholtz_mode = {
     .member = {"kelvin_helmholtz_mode", "smooth shear layers and their growing mode",
                "Chandrasekhar 1961"},
@@ -41,12 +37,11 @@ const struct problem problem_kelvin_helmholtz_mode = {
     .carried = true,
     .fieldless = true,
     .smooth = true,
-    .keys = keys,
-    .key_count = sizeof keys / sizeof *keys,
+    PROBLEM_KEYS({SETTING_amplitude, ROLE_OPTIONAL}, {SETTING_waves, ROLE_OPTIONAL},
+                 {SETTING_parity, ROLE_OPTIONAL}),
     .prepare = prepare,
     .sample = mode_sample,
     .fill = initial_fill,
-    .random = settings_random_start,
     .functionals = {&mode_amplitude, &mode_error, &mode_noise, &mode_other_parity},
     .growing = &mode_growing,
 };

@@ -131,6 +131,5 @@ const struct problem problem_noh = {
     .fill = fill,
     .holds = holds,
     .refuse = refuse,
-    .random = settings_random_start,
     .functionals = {&shock_radius, &plateau, &centre},
 };

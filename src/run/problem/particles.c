@@ -35,11 +35,6 @@ static enum status fill(const struct prepared *p, const struct settings *setting
                      p->problem->member.name);
 }
 
-static bool is_random(const struct settings *settings)
-{
-    return !settings->file[0] && settings_random_start(settings);
-}
-
 #define ANY                                                                                        \
     {                                                                                              \
         .also = PROBLEM_END(OPEN) | PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)                   \
@@ -57,5 +52,4 @@ const struct problem problem_particles = {
     .prepare = prepare,
     .sample = sample,
     .fill = fill,
-    .random = is_random,
 };

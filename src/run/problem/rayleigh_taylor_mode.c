@@ -31,9 +31,6 @@ static enum status prepare(struct prepared *p, struct settings *settings, struct
     return mode_prepare(p, &layer, origin, height, speed, settings, error);
 }
 
-static const struct problem_key keys[] = {{SETTING_amplitude, ROLE_OPTIONAL},
-                                          {SETTING_waves, ROLE_OPTIONAL}};
-
 const struct problem problem_rayleigh_taylor_mode = {
     .member = {"rayleigh_taylor_mode", "dense gas over thin gas and its growing mode",
                "Chandrasekhar 1961"},
@@ -44,12 +41,10 @@ const struct problem problem_rayleigh_taylor_mode = {
     .heavy = true,
     .smooth = true,
     .ends = {{0}, {.usual = BOUNDARY_REFLECTING, .also = PROBLEM_END(FIXED)}},
-    .keys = keys,
-    .key_count = sizeof keys / sizeof *keys,
+    PROBLEM_KEYS({SETTING_amplitude, ROLE_OPTIONAL}, {SETTING_waves, ROLE_OPTIONAL}),
     .prepare = prepare,
     .sample = mode_sample,
     .fill = initial_fill,
-    .random = settings_random_start,
     .functionals = {&mode_amplitude, &mode_error, &mode_noise},
     .growing = &mode_growing,
 };

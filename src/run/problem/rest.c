@@ -8,12 +8,7 @@
 struct gas {
     double rho, v, P;
 };
-_Static_assert(sizeof(struct gas) <= PROBLEM_OWN_BYTES, "a gas fits");
-
-static const struct gas *gas_of(const struct prepared *p)
-{
-    return (const struct gas *)p->own.bytes;
-}
+PROBLEM_OWN(gas)
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
@@ -36,8 +31,6 @@ static void sample(const struct prepared *p, const double x[3], double t,
         .rho = gas->rho, .P = gas->P, .u = gas->P / ((p->gamma - 1) * gas->rho)};
 }
 
-static const struct problem_key keys[] = {{SETTING_background, ROLE_NEEDED}};
-
 const struct problem problem_rest = {
     .member = {"rest", "uniform gas at rest", ""},
     .reference = "rest",
@@ -46,14 +39,10 @@ const struct problem problem_rest = {
     .carried = true,
     .steady = true,
     .smooth = true,
-    .ends = {{.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)},
-             {.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)},
-             {.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)}},
-    .keys = keys,
-    .key_count = sizeof keys / sizeof *keys,
+    .ends = {PROBLEM_WALLS, PROBLEM_WALLS, PROBLEM_WALLS},
+    PROBLEM_KEYS({SETTING_background, ROLE_NEEDED}),
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_random_start,
     .functionals = {&functional_velocity_rms},
 };

@@ -19,12 +19,7 @@ struct tube {
     struct riemann_solution ends[2]; /* solutions at the left and the right end */
     double returning[2]; /* Mach numbers of waves reflected by walls; see find_returning() */
 };
-_Static_assert(sizeof(struct tube) <= PROBLEM_OWN_BYTES, "a tube fits");
-
-static const struct tube *tube_of(const struct prepared *p)
-{
-    return (const struct tube *)p->own.bytes;
-}
+PROBLEM_OWN(tube)
 
 static enum status solve(struct riemann_solution *solution, double gamma, const double *left,
                          const double *right, struct error *error)
@@ -461,12 +456,6 @@ static const struct regions regions = {
     .still = stillness,
 };
 
-static const struct problem_key keys[] = {
-    {SETTING_left, ROLE_NEEDED},          {SETTING_right, ROLE_NEEDED},
-    {SETTING_grade, ROLE_PARTICLES},      {SETTING_grade_ratio, ROLE_PARTICLES},
-    {SETTING_mass_ratio, ROLE_PARTICLES},
-};
-
 const struct problem problem_riemann = {
     .member = {"riemann", "two uniform gases that meet in the middle of the box", "Toro 2009"},
     .reference = "riemann",
@@ -475,15 +464,15 @@ const struct problem problem_riemann = {
     .ends = {{.also = PROBLEM_END(REFLECTING)},
              {.also = PROBLEM_END(REFLECTING)},
              {.also = PROBLEM_END(REFLECTING)}},
-    .keys = keys,
-    .key_count = sizeof keys / sizeof *keys,
+    PROBLEM_KEYS({SETTING_left, ROLE_NEEDED}, {SETTING_right, ROLE_NEEDED},
+                 {SETTING_grade, ROLE_PARTICLES}, {SETTING_grade_ratio, ROLE_PARTICLES},
+                 {SETTING_mass_ratio, ROLE_PARTICLES}),
     .prepare = prepare,
     .sample = sample,
     .fill = fill,
     .ahead = ahead,
     .holds = holds,
     .refuse = refuse,
-    .random = settings_random_start,
     .functionals = {&functional_mean_internal_energy, &functional_mean_pressure, &shock_position,
                     &transverse_noise},
     .regions = &regions,

@@ -117,6 +117,5 @@ const struct problem problem_rotation = {
     .fill = fill,
     .holds = holds,
     .refuse = refuse,
-    .random = settings_random_start,
     .functionals = {&radius, &speed},
 };

@@ -321,6 +321,5 @@ const struct problem problem_sedov = {
     .ahead = ahead,
     .holds = holds,
     .refuse = refuse,
-    .random = settings_random_start,
     .functionals = {&shock_radius, &peak, &kinetic, &outward, &thermal, &asymmetry},
 };

@@ -16,12 +16,7 @@ struct layers {
     double length;
     double gas[3]; /* rho v P; v = 0 */
 };
-_Static_assert(sizeof(struct layers) <= PROBLEM_OWN_BYTES, "layers fit");
-
-static const struct layers *layers_of(const struct prepared *p)
-{
-    return (const struct layers *)p->own.bytes;
-}
+PROBLEM_OWN(layers)
 
 /* n rotated by a right angle in the x-y plane; the x axis if n is along z. */
 static void turn(const double n[3], double flow[3])
@@ -106,9 +101,6 @@ static double none(const struct prepared *p, double t)
 static const struct functional amplitude = {"shear_amplitude", NULL, amplitude_measured, one},
                                viscosity = {"shear_viscosity", NULL, viscosity_measured, none};
 
-static const struct problem_key keys[] = {{SETTING_background, ROLE_NEEDED},
-                                          {SETTING_direction, ROLE_OPTIONAL}};
-
 const struct problem problem_shear = {
     .member = {"shear", "layers that slide past each other", "Landau & Lifshitz 1987"},
     .reference = "shear",
@@ -117,11 +109,9 @@ const struct problem problem_shear = {
     .carried = true,
     .steady = true,
     .smooth = true,
-    .keys = keys,
-    .key_count = sizeof keys / sizeof *keys,
+    PROBLEM_KEYS({SETTING_background, ROLE_NEEDED}, {SETTING_direction, ROLE_OPTIONAL}),
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_random_start,
     .functionals = {&amplitude, &viscosity},
 };

@@ -195,11 +195,6 @@ static double mode_exact(const struct prepared *p, double t)
 
 static const struct functional mode_amplitude = {"mode_amplitude", NULL, mode_measured, mode_exact};
 
-static const struct problem_key keys[] = {{SETTING_background, ROLE_NEEDED},
-                                          {SETTING_amplitude, ROLE_NEEDED},
-                                          {SETTING_waves, ROLE_OPTIONAL},
-                                          {SETTING_direction, ROLE_OPTIONAL}};
-
 const struct problem problem_sound_wave = {
     .member = {"sound_wave", "a simple wave that runs to the right", "Landau & Lifshitz 1987"},
     .reference = "simple_wave",
@@ -207,13 +202,12 @@ const struct problem problem_sound_wave = {
     .most_dim = 3,
     .carried = true,
     .smooth = true,
-    .keys = keys,
-    .key_count = sizeof keys / sizeof *keys,
+    PROBLEM_KEYS({SETTING_background, ROLE_NEEDED}, {SETTING_amplitude, ROLE_NEEDED},
+                 {SETTING_waves, ROLE_OPTIONAL}, {SETTING_direction, ROLE_OPTIONAL}),
     .prepare = prepare,
     .sample = sample,
     .fill = fill,
     .holds = holds,
     .refuse = refuse,
-    .random = settings_random_start,
     .functionals = {&functional_mean_internal_energy, &functional_mean_pressure, &mode_amplitude},
 };

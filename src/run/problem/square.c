@@ -16,12 +16,7 @@ struct square {
     double dense;
     struct domain inside;
 };
-_Static_assert(sizeof(struct square) <= PROBLEM_OWN_BYTES, "a square fits");
-
-static const struct square *square_of(const struct prepared *p)
-{
-    return (const struct square *)p->own.bytes;
-}
+PROBLEM_OWN(square)
 
 /* The square has half the size of the box in each direction and is centred. */
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
@@ -122,9 +117,6 @@ static enum status fill(const struct prepared *p, const struct settings *setting
     return (equal_masses ? fill_equal_masses : fill_equal_spacing)(p, settings, initial, error);
 }
 
-static const struct problem_key keys[] = {{SETTING_contrast, ROLE_OPTIONAL},
-                                          {SETTING_equal_masses, ROLE_PARTICLES}};
-
 const struct problem problem_square = {
     .member = {"square", "a dense square in thin gas of the same pressure", "Saitoh & Makino 2013"},
     .reference = "square",
@@ -133,14 +125,10 @@ const struct problem problem_square = {
     .shifts = true,
     .carried = true,
     .steady = true,
-    .ends = {{.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)},
-             {.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)},
-             {.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)}},
-    .keys = keys,
-    .key_count = sizeof keys / sizeof *keys,
+    .ends = {PROBLEM_WALLS, PROBLEM_WALLS, PROBLEM_WALLS},
+    PROBLEM_KEYS({SETTING_contrast, ROLE_OPTIONAL}, {SETTING_equal_masses, ROLE_PARTICLES}),
     .prepare = prepare,
     .sample = sample,
     .fill = fill,
-    .random = settings_random_start,
     .functionals = {&functional_velocity_rms},
 };

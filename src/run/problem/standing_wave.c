@@ -14,12 +14,7 @@ struct wave {
     struct liquid liquid;
     double k, depth, omega, speed, nu; /* speed: of the surface */
 };
-_Static_assert(sizeof(struct wave) <= PROBLEM_OWN_BYTES, "a wave fits");
-
-static const struct wave *wave_of(const struct prepared *p)
-{
-    return (const struct wave *)p->own.bytes;
-}
+PROBLEM_OWN(wave)
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
@@ -75,11 +70,6 @@ static double amplitude_measured(const struct prepared *p, const struct snapshot
 static const struct functional amplitude = {"wave_amplitude", NULL, amplitude_measured,
                                             amplitude_exact};
 
-static const struct problem_key keys[] = {LIQUID_KEYS,
-                                          {SETTING_nu, ROLE_OPTIONAL},
-                                          {SETTING_amplitude, ROLE_NEEDED},
-                                          {SETTING_waves, ROLE_OPTIONAL}};
-
 const struct problem problem_standing_wave = {
     .member = {"standing_wave", "a standing gravity wave on a liquid", "Lamb 1932"},
     .reference = "standing_wave",
@@ -89,14 +79,13 @@ const struct problem problem_standing_wave = {
     .heavy = true,
     .liquid = true,
     .unknown = LIQUID_UNKNOWN,
-    .ends = {{.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)},
+    .ends = {PROBLEM_WALLS,
              {BOUNDARY_REFLECTING, PROBLEM_END(FIXED) | PROBLEM_END(OPEN)},
              {.also = PROBLEM_END(REFLECTING)}},
-    .keys = keys,
-    .key_count = sizeof keys / sizeof *keys,
+    PROBLEM_KEYS(LIQUID_KEYS, {SETTING_nu, ROLE_OPTIONAL}, {SETTING_amplitude, ROLE_NEEDED},
+                 {SETTING_waves, ROLE_OPTIONAL}),
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_random_start,
     .functionals = {&amplitude},
 };

@@ -13,12 +13,7 @@ struct vortices {
     struct liquid liquid;
     double k, speed, nu;
 };
-_Static_assert(sizeof(struct vortices) <= PROBLEM_OWN_BYTES, "vortices fit");
-
-static const struct vortices *vortices_of(const struct prepared *p)
-{
-    return (const struct vortices *)p->own.bytes;
-}
+PROBLEM_OWN(vortices)
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
@@ -79,11 +74,6 @@ static const struct functional amplitude = {"vortex_amplitude", NULL, amplitude_
                                             amplitude_exact},
                                rate = {"vortex_decay", NULL, decay_measured, decay};
 
-static const struct problem_key keys[] = {LIQUID_KEYS,
-                                          {SETTING_nu, ROLE_NEEDED},
-                                          {SETTING_speed, ROLE_OPTIONAL},
-                                          {SETTING_waves, ROLE_OPTIONAL}};
-
 const struct problem problem_taylor_green = {
     .member = {"taylor_green", "vortices that viscosity slows down", "Taylor & Green 1937"},
     .reference = "taylor_green",
@@ -93,11 +83,10 @@ const struct problem problem_taylor_green = {
     .smooth = true,
     .liquid = true,
     .unknown = LIQUID_UNKNOWN,
-    .keys = keys,
-    .key_count = sizeof keys / sizeof *keys,
+    PROBLEM_KEYS(LIQUID_KEYS, {SETTING_nu, ROLE_NEEDED}, {SETTING_speed, ROLE_OPTIONAL},
+                 {SETTING_waves, ROLE_OPTIONAL}),
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_random_start,
     .functionals = {&amplitude, &rate},
 };

@@ -31,8 +31,6 @@ static void sample(const struct prepared *p, const double x[3], double t,
                                     .u = s.P / ((p->gamma - 1) * s.rho)};
 }
 
-static const struct problem_key keys[] = {{SETTING_equal_masses, ROLE_PARTICLES}};
-
 const struct problem problem_yee = {
     .member = {"yee", "a smooth vortex that stands still", "Yee, Sandham & Djomehri 1999"},
     .reference = "yee",
@@ -43,10 +41,8 @@ const struct problem problem_yee = {
     .steady = true,
     .circular = CIRCULAR_ROUND,
     .smooth = true,
-    .keys = keys,
-    .key_count = sizeof keys / sizeof *keys,
+    PROBLEM_KEYS({SETTING_equal_masses, ROLE_PARTICLES}),
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
-    .random = settings_random_start,
 };

@@ -315,7 +315,7 @@ TEST(nothing_is_known_of_a_file)
     const struct problem_state have = sampled(&p, 0.1, 0.2, 0.3, 0.4);
     assert_true(isnan(have.rho) && isnan(have.P) && isnan(have.u));
     assert_true(isnan(have.v[0]) && isnan(have.v[1]) && isnan(have.v[2]));
-    assert_false(p.problem->random(&s));
+    assert_false(settings_random_start(&s));
     assert_int_equal(p.problem->fill(&p, &s, &initial, &error), STATUS_BAD_INPUT);
     assert_string_equal(error.message, "particles: no particles but those of a file");
 }

@@ -20,16 +20,13 @@ static struct prepared made(const char *keys)
     return prepared_of(&settings, 2, keys);
 }
 
-static const struct mode_start *start_of(const struct prepared *p)
-{
-    return (const struct mode_start *)p->own.bytes;
-}
+PROBLEM_OWN(mode_start)
 
 /* The layer of a problem, in units in which the box has a height of 1. */
 TEST(layers_are_those_of_the_keys)
 {
     const struct prepared shear = made(shear_keys), heavy = made(heavy_keys);
-    const struct mode_start *s = start_of(&shear), *h = start_of(&heavy);
+    const struct mode_start *s = mode_start_of(&shear), *h = mode_start_of(&heavy);
     const struct layer *shear_layer = &s->mode.layer, *heavy_layer = &h->mode.layer;
     assert_true(shear_layer->width == 0.05 && shear_layer->rho == 1.5 &&
                 shear_layer->rho_step == 0.5 && shear_layer->U == 0.5 && shear_layer->P == 2.5 &&
@@ -47,17 +44,17 @@ TEST(layers_are_those_of_the_keys)
     near_relative(h->amplitude, 0.001 * sqrt(2 * M_PI * 0.5 / (8 * M_PI)), 1e-15);
     for (int k = 0; k < 2; k++) { /* growth from t = 0 with the rate of the mode */
         const struct prepared *p = k ? &heavy : &shear;
-        const double rate = cimag(start_of(p)->mode.omega) / start_of(p)->length;
+        const double rate = cimag(mode_start_of(p)->mode.omega) / mode_start_of(p)->length;
         double times[2];
         assert_true(rate > 0.05);
         near_relative(mode_growing.rate(p), rate, 1e-15);
-        near_relative(mode_amplitude.exact(p, 0.7), start_of(p)->amplitude * exp(0.7 * rate),
+        near_relative(mode_amplitude.exact(p, 0.7), mode_start_of(p)->amplitude * exp(0.7 * rate),
                       1e-14);
         mode_growing.during(p, times);
         near_relative(exp(rate * times[0]), 2, 1e-14);
         /* displaced by a tenth of the layer's width */
-        near_relative(start_of(p)->amplitude * exp(rate * times[1]) *
-                          start_of(p)->mode.displacement,
+        near_relative(mode_start_of(p)->amplitude * exp(rate * times[1]) *
+                          mode_start_of(p)->mode.displacement,
                       0.1 * 0.05, 1e-13);
     }
 }
@@ -66,7 +63,7 @@ TEST(samples_are_base_and_mode)
 {
     for (int k = 0; k < 2; k++) {
         const struct prepared p = made(k ? heavy_keys : shear_keys);
-        const struct mode_start *start = start_of(&p);
+        const struct mode_start *start = mode_start_of(&p);
         for (int i = 0; i < 40; i++) {
             const double x[3] = {p.domain.lo[0] + 0.0237 * i, p.domain.lo[1] + 0.0471 * i, 7};
             const double t = 0.05 * i, X = (x[0] - start->origin[0]) / start->length,
@@ -100,7 +97,7 @@ struct mode_state {
 
 static void make_state(struct mode_state *made, const struct prepared *p, double scatter)
 {
-    const struct mode_start *start = start_of(p);
+    const struct mode_start *start = mode_start_of(p);
     /* on either side of the end of the layer's half; outside of the box and at its end */
     static const double set[] = {0.5 + 1e-8, 0.5 - 1e-8, -0.1, 1, 1.1};
     for (int i = 0; i <= N; i++) {
@@ -128,7 +125,7 @@ static void make_state(struct mode_state *made, const struct prepared *p, double
 /* The four functionals from their definitions. */
 static void measure(const struct prepared *p, const struct mode_state *made, double found[4])
 {
-    const struct mode_start *start = start_of(p);
+    const struct mode_start *start = mode_start_of(p);
     double complex up[2] = {0}, measured[BINS] = {0}, mode[BINS] = {0};
     double ff = 0, vv = 0, volume[BINS] = {0};
     for (int i = 0; i < N; i++) {
@@ -190,7 +187,7 @@ TEST(grid_knows_the_mode_alone)
     enum { SIDE = 64 };
     static double x[2][SIDE * SIDE], v[2][SIDE * SIDE], volume[SIDE * SIDE];
     struct prepared p = made(shear_keys);
-    const struct mode_start *start = start_of(&p);
+    const struct mode_start *start = mode_start_of(&p);
     const struct snapshot s = {
         .n = SIDE * SIDE, .x = {x[0], x[1]}, .v = {v[0], v[1]}, .volume = volume};
     double squares = 0, noise = 0;
@@ -269,8 +266,8 @@ TEST(amplitudes_leave_room_to_grow)
         char keys[96], said[64];
         snprintf(keys, sizeof keys, "kind=%s|amplitude=0.001", names[k]);
         const struct prepared p = made(keys);
-        const double speed = start_of(&p)->amplitude / 0.001;
-        const double most = 0.1 * 0.05 / (2 * start_of(&p)->mode.displacement * speed);
+        const double speed = mode_start_of(&p)->amplitude / 0.001;
+        const double most = 0.1 * 0.05 / (2 * mode_start_of(&p)->mode.displacement * speed);
         snprintf(said, sizeof said, "less than %.4g", most);
         for (int less = -1; less < 2; less++) {
             snprintf(keys, sizeof keys, "kind=%s|amplitude=%.17g", names[k],
@@ -289,9 +286,9 @@ TEST(keys_choose_the_mode)
     const struct prepared one = made("kind=kelvin_helmholtz_mode|parity=sinuous"),
                           two = made("kind=kelvin_helmholtz_mode|parity=varicose"),
                           heavy = made("kind=rayleigh_taylor_mode|hi=1 3");
-    assert_true(start_of(&one)->mode.layer.pressure_node);
-    assert_false(start_of(&two)->mode.layer.pressure_node);
+    assert_true(mode_start_of(&one)->mode.layer.pressure_node);
+    assert_false(mode_start_of(&two)->mode.layer.pressure_node);
     assert_true(heavy.gravity[1] == -0.125 && heavy.gravity[0] == 0);
-    assert_true(start_of(&heavy)->mode.layer.g == 0.5);
+    assert_true(mode_start_of(&heavy)->mode.layer.g == 0.5);
     assert_true(heavy.boundary[1] == BOUNDARY_REFLECTING && heavy.boundary[0] == BOUNDARY_PERIODIC);
 }

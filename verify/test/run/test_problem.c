@@ -43,7 +43,7 @@ static bool descriptor_is_whole(struct walk *walk)
     if (!(1 <= problem->least_dim && problem->least_dim <= problem->most_dim &&
           problem->most_dim <= 3))
         return fault(walk, "dimensions %d to %d", problem->least_dim, problem->most_dim);
-    if (!problem->prepare || !problem->sample || !problem->fill || !problem->random ||
+    if (!problem->prepare || !problem->sample || !problem->fill ||
         !problem->holds != !problem->refuse)
         return fault(walk, "a function is missing");
     for (size_t i = 0; i < problem->key_count; i++) {
@@ -175,7 +175,7 @@ static bool start_is_random_as_said(struct walk *walk)
         struct initial one, two;
         settings.value[SETTING_jitter].automatic = false;
         settings.value[SETTING_jitter].real[0] = 0.1 * shaken;
-        const bool random = walk->problem->random(&settings);
+        const bool random = settings_random_start(&settings);
         if (initial_create(&one, &walk->p, &settings, &error)) return fault(walk, "no particles");
         settings.value[SETTING_seed].real[0] += 1;
         if (initial_create(&two, &walk->p, &settings, &error)) return fault(walk, "no particles");
@@ -422,10 +422,12 @@ static bool never(const struct prepared *p, double t)
     return t == 0;
 }
 
-static bool not_random(const struct settings *settings)
+static enum status seeded(const struct prepared *p, const struct settings *settings,
+                          struct initial *initial, struct error *error)
 {
-    (void)settings;
-    return false;
+    const enum status status = tube->fill(p, settings, initial, error);
+    if (!status) initial->x[0][0] += 1e-12 * settings_real(settings, SETTING_seed);
+    return status;
 }
 
 static double energy_for_pressure(const struct prepared *p, const struct snapshot *s)
@@ -459,7 +461,7 @@ TEST(planted_faults_are_found)
     faulty[2].sample = boosted;
     faulty[3].holds = for_ever;
     faulty[4].holds = never;
-    faulty[5].random = not_random;
+    faulty[5].fill = seeded;
     faulty[6].keys = twice, faulty[6].key_count = 2;
     faulty[7].keys = scheme, faulty[7].key_count = 1;
     faulty[8].functionals[1] = &wrong;

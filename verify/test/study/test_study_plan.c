@@ -132,7 +132,7 @@ TEST(how_many_replicates)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct run_settings settings = keyed_case(rows[k].name, rows[k].key);
         assert_int_equal(study_replicates(&settings), rows[k].replicates);
-        assert_true(study_is_random(&settings.settings) == (rows[k].replicates == 3));
+        assert_true(settings_random_start(&settings.settings) == (rows[k].replicates == 3));
     }
 }
 
