@@ -409,9 +409,12 @@ static json_t *failure_json(const struct failure *failure)
     if (failure->more)
         buffer_format(&detail, "; and %zu more %s of this check", failure->more,
                       failure->more == 1 ? "figure" : "figures");
-    json_t *entry = json_pack("{s:s, s:s, s:s*, s:s, s:s}", "area", check ? "check" : f->group,
-                              "name", name.data, "subject", check ? f->subject : NULL, "detail",
-                              detail.data, "command", f->command);
+    json_t *entry =
+        name.failed || detail.failed
+            ? NULL
+            : json_pack("{s:s, s:s, s:s*, s:s, s:s}", "area", check ? "check" : f->group, "name",
+                        name.data, "subject", check ? f->subject : NULL, "detail", detail.data,
+                        "command", f->command);
     buffer_free(&name);
     buffer_free(&detail);
     return entry;

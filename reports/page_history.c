@@ -136,8 +136,7 @@ static void since_words(struct buffer *to, const json_t *since)
 static void revision(struct buffer *to, const char *git)
 {
     char text[REVISION + 1];
-    strncpy(text, git, REVISION);
-    text[REVISION] = '\0';
+    snprintf(text, sizeof text, "%.*s", REVISION, git);
     html_format(to, "<code>%s</code>", text);
 }
 

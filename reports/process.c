@@ -111,8 +111,9 @@ static enum turn converse(struct process *child, const char *input, size_t size,
     fcntl(child->in, F_SETFL, O_NONBLOCK);
     while (child->in >= 0 || child->out >= 0 || child->err >= 0) {
         const int in = size || !mark ? child->in : -1;
-        struct pollfd polled[3] = {
-            {in, POLLOUT, 0}, {child->out, POLLIN, 0}, {child->err, POLLIN, 0}};
+        struct pollfd polled[3] = {{.fd = in, .events = POLLOUT},
+                                   {.fd = child->out, .events = POLLIN},
+                                   {.fd = child->err, .events = POLLIN}};
         double left = end_time - clock_wall();
         if (left <= 0) return OUT_OF_TIME;
         if (poll(polled, 3, (int)(1000 * left) + 1) < 0 && errno != EINTR) return OUT_OF_TIME;

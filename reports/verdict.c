@@ -96,17 +96,22 @@ json_t *verdict_make(const json_t *results)
     char *line = buffer_take(&words);
     gates_words(&words, &tally);
     char *judged = buffer_take(&words);
-    json_t *verdict = result_object(
-        "status=%s headline=%s figures_passed=%d figures_failed=%d figures_skipped=%d mutants=%d "
-        "mutants_detected=%d gates_passed=%d gates_failed=%d gates_smoke=%d gates_undetermined=%d "
-        "gates_known=%d gates=%s runs=%d broke_down=%d faults=%d faults_right=%d failures=%p",
-        json_array_size(failures) ? "fail" : "pass", line ? line : "", checks[FINDING_PASS],
-        checks[FINDING_FAIL], checks[FINDING_SKIP],
-        (int)json_integer_value(json_object_get(summary, "mutants")),
-        (int)json_integer_value(json_object_get(summary, "detected")), gates[FINDING_PASS],
-        gates[FINDING_FAIL], gates[FINDING_SMOKE], gates[FINDING_UNDETERMINED],
-        gates[FINDING_KNOWN], judged ? judged : "", ran, runs[FINDING_FAIL], faults,
-        tally.faults[FINDING_PASS], (void *)failures);
+    json_t *verdict = NULL;
+    if (line && judged)
+        verdict = result_object(
+            "status=%s headline=%s figures_passed=%d figures_failed=%d figures_skipped=%d "
+            "mutants=%d mutants_detected=%d gates_passed=%d gates_failed=%d gates_smoke=%d "
+            "gates_undetermined=%d gates_known=%d gates=%s runs=%d broke_down=%d faults=%d "
+            "faults_right=%d failures=%p",
+            json_array_size(failures) ? "fail" : "pass", line, checks[FINDING_PASS],
+            checks[FINDING_FAIL], checks[FINDING_SKIP],
+            (int)json_integer_value(json_object_get(summary, "mutants")),
+            (int)json_integer_value(json_object_get(summary, "detected")), gates[FINDING_PASS],
+            gates[FINDING_FAIL], gates[FINDING_SMOKE], gates[FINDING_UNDETERMINED],
+            gates[FINDING_KNOWN], judged, ran, runs[FINDING_FAIL], faults,
+            tally.faults[FINDING_PASS], (void *)failures);
+    else
+        json_decref(failures);
     free(line);
     free(judged);
     return verdict;

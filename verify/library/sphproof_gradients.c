@@ -51,8 +51,9 @@ enum sphproof_status sphproof_gradients_apply(const char *name,
         return library_fail(error, STATUS_BAD_INPUT, "the cloud needs volume and h");
     const struct cloud ours = {points_of(cloud), cloud->volume, cloud->h};
     const struct operator_settings settings = {
-        (const struct operator_form *)operator_family.members[at], &kernel->kernel,
-        kernel_specialisation(&kernel->kernel) < 0, 1};
+        .form = (const struct operator_form *)operator_family.members[at],
+        .kernel = &kernel->kernel,
+        .threads = 1};
     struct error failure;
     return library_pass(operator_apply(&settings, &ours, 1, &f, gradient, NULL, NULL, &failure),
                         &failure, error);

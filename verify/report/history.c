@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
 #include "diff.h"
@@ -76,18 +77,17 @@ enum status history_append(const json_t *results, const char *path, struct error
     char *body = line ? json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;
     json_decref(line);
     if (!body) return error_set(error, STATUS_ENVIRONMENT, "no memory for the history");
-    const size_t length = strlen(body);
-    char *text = malloc(length + 3), last = '\n';
+    char last = '\n';
     const int file = open(path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     enum status status = STATUS_OK;
     if (file >= 0 && lseek(file, -1, SEEK_END) >= 0 && read(file, &last, 1) != 1) last = '\n';
-    const int total =
-        text ? snprintf(text, length + 3, "%s%s\n", last == '\n' ? "" : "\n", body) : 0;
-    if (file < 0 || !text || write(file, text, (size_t)total) != total)
+    const struct iovec parts[] = {{"\n", last != '\n'}, {body, strlen(body)}, {"\n", 1}};
+    const size_t total = parts[0].iov_len + parts[1].iov_len + 1;
+    errno = file < 0 ? errno : 0;
+    if (file < 0 || writev(file, parts, 3) != (ssize_t)total)
         status = error_set(error, STATUS_ENVIRONMENT, "cannot write the history '%.200s': %s", path,
                            strerror(errno ? errno : ENOSPC));
     if (file >= 0) close(file);
-    free(text);
     free(body);
     return status;
 }
@@ -143,13 +143,16 @@ static int worst_first(const void *a, const void *b)
     return i != j ? (i > j ? -1 : 1) : strcmp(value_text(x, "path"), value_text(y, "path"));
 }
 
+/* Replaces the list by a sorted one, or leaves it as it is if there is no memory. */
 static json_t *sorted(json_t *list, int compare(const void *, const void *))
 {
     const size_t n = json_array_size(list);
-    json_t **items = malloc((n + 1) * sizeof(json_t *)), *result = json_array();
-    for (size_t i = 0; items && i < n; i++) items[i] = json_array_get(list, i);
-    if (items) qsort(items, n, sizeof(json_t *), compare);
-    for (size_t i = 0; items && i < n; i++) json_array_append(result, items[i]);
+    json_t **items = malloc((n + 1) * sizeof(json_t *));
+    if (!items) return list;
+    json_t *result = json_array();
+    for (size_t i = 0; i < n; i++) items[i] = json_array_get(list, i);
+    qsort(items, n, sizeof(json_t *), compare);
+    for (size_t i = 0; i < n; i++) json_array_append(result, items[i]);
     free(items);
     json_decref(list);
     return result;

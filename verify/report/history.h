@@ -26,7 +26,8 @@ enum { HISTORY_NIGHTS_MAX = 120 };
 enum status history_tell(const json_t *results, const char *path, json_t **history,
                          struct error *error);
 
-/* Appends this night's line, completely or not at all. */
+/* Appends this night's line. If the disk is full, a part of it may stay there, which history_tell
+ * counts as unreadable. */
 enum status history_append(const json_t *results, const char *path, struct error *error);
 
 /* Change points of a figure's history, from medians: a single odd night is none, unless it is the

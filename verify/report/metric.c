@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "list.h"
 #include "value.h"
 
 enum { PATH_MAX_LENGTH = 1536, NAME_MAX_LENGTH = 900, KEYS_MAX = 64 };
@@ -38,15 +39,9 @@ static bool one_of(const char *word, const char *const *list, size_t n)
 
 static void add(struct metrics *metrics, struct metric metric, const char *path)
 {
-    if (metrics->count == metrics->room) {
-        const size_t room = metrics->room ? 2 * metrics->room : 256;
-        struct metric *list = realloc(metrics->list, room * sizeof *list);
-        if (!list) {
-            metrics->failed = true;
-            return;
-        }
-        metrics->list = list;
-        metrics->room = room;
+    if (!list_grow(&metrics->list, metrics->count, sizeof *metrics->list)) {
+        metrics->failed = true;
+        return;
     }
     metric.path = strdup(path);
     const char *word = metric.word;

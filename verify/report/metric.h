@@ -35,7 +35,7 @@ struct metric {
 
 struct metrics {
     struct metric *list; /* sorted by path, each once */
-    size_t count, room;
+    size_t count;
     bool failed;       /* no memory */
     char trouble[400]; /* "", or the first figure without a rule, which is not in the list */
 };

@@ -8,13 +8,16 @@
 
 #include "cases.h"
 #include "checkpoint.h"
+#include "diff.h"
 #include "failing_memory.h"
 #include "findings.h"
 #include "gas.h"
+#include "history.h"
 #include "initial.h"
 #include "line/line.h"
 #include "map.h"
 #include "particle_file.h"
+#include "plot.h"
 #include "pool.h"
 #include "rate_table.h"
 #include "regularity.h"
@@ -23,6 +26,7 @@
 #include "snapshots.h"
 #include "suite.h"
 #include "suite_output.h"
+#include "verdict.h"
 
 /* GSL frees these itself, so that they do not count as blocks. */
 WRAP(gsl_rng_alloc, (const gsl_rng_type *type), (type), false)
@@ -246,18 +250,93 @@ static enum status joined(struct error *error)
     return STATUS_OK;
 }
 
-static enum status as_junit(struct error *error)
+static json_t *two_runs(void)
 {
     static json_t *results;
     if (!results)
         results = json_pack("{s:[{s:s, s:s, s:s}, {s:s, s:s, s:s, s:s}]}", "runs", "status", "ok",
                             "case", "a", "reproduce", "b", "status", "broke_down", "case", "c",
                             "reproduce", "d", "message", "e");
-    char *text = findings_junit(findings_of_report, results);
+    return results;
+}
+
+static enum status as_failures(struct error *error)
+{
+    struct findings findings = {0};
+    findings_of_report(&findings, two_runs());
+    json_t *list = findings_failures(&findings);
+    findings_free(&findings);
+    if (!list) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    assert_int_equal(json_array_size(list), 1);
+    json_decref(list);
+    return STATUS_OK;
+}
+
+static enum status as_junit(struct error *error)
+{
+    char *text = findings_junit(findings_of_report, two_runs());
     if (!text) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     assert_non_null(strstr(text, "tests=\"2\" failures=\"1\""));
     free(text);
     return STATUS_OK;
+}
+
+static enum status in_verdict(struct error *error)
+{
+    json_t *verdict = verdict_make(two_runs());
+    if (!verdict) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    assert_string_equal(json_string_value(json_object_get(verdict, "status")), "fail");
+    json_decref(verdict);
+    return STATUS_OK;
+}
+
+static enum status compared(struct error *error)
+{
+    struct diff diff;
+    json_t *documents[2];
+    for (int k = 0; k < 2; k++)
+        documents[k] = json_pack("{s:s, s:[{s:s, s:s}, {s:s, s:s}, {s:s, s:s}]}", "command",
+                                 "report", "runs", "case", "a", "status", "ok", "case", "a",
+                                 "status", k ? "broke_down" : "ok", "case", "b", "status", "ok");
+    const enum status status = diff_documents(documents[0], documents[1], 0.05, &diff, error);
+    if (status != STATUS_ENVIRONMENT) {
+        assert_int_equal(status, STATUS_CHECK_FAILED);
+        diff_free(&diff);
+    }
+    for (int k = 0; k < 2; k++) json_decref(documents[k]);
+    return status == STATUS_CHECK_FAILED ? STATUS_OK : status;
+}
+
+static enum status told(struct error *error)
+{
+    json_t *history;
+    const enum status status = history_tell(two_runs(), "no/such/folder", &history, error);
+    json_decref(history);
+    return status;
+}
+
+static enum status scripted(struct error *error)
+{
+    static const double x[] = {1, 2};
+    static const struct plot_series line = {.label = "a", .n = 2, .x = x, .y = x};
+    static const struct plot_panel panel = {.series = &line, .series_count = 1};
+    static const struct plot plot = {.name = "a", .panels = &panel, .panel_count = 1};
+    char *script, *data;
+    if (!plot_source(&plot, &script, &data))
+        return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    free(script);
+    free(data);
+    return STATUS_OK;
+}
+
+TEST(reports)
+{
+    without_memory(as_failures, 3, true);
+    without_memory(in_verdict, 3, true);
+    without_memory(compared, 10, true);
+    spared = 1; /* changes are not sorted */
+    without_memory(told, 3, true);
+    without_memory(scripted, 5, true);
 }
 
 TEST(checks_and_suites)

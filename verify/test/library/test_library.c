@@ -48,6 +48,14 @@ static void see(void *context, const struct sphproof_figure *figure)
         snprintf(seen->first, sizeof seen->first, "%s", figure->property);
 }
 
+TEST(version)
+{
+    int numbers[3], end = 0;
+    const char *version = sphproof_version();
+    assert_int_equal(sscanf(version, "%d.%d.%d%n", &numbers[0], &numbers[1], &numbers[2], &end), 3);
+    assert_int_equal(version[end], '\0');
+}
+
 TEST(user_kernel_is_certified)
 {
     struct sphproof_kernel *kernel;

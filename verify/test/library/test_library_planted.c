@@ -10,6 +10,7 @@
 #include "order.h"
 #include "riemann.h"
 #include "sedov.h"
+#include "settings.h"
 #include "simple_wave.h"
 #include "sphproof/gradients.h"
 #include "sphproof/rates.h"
@@ -355,7 +356,22 @@ TEST(refused_setups)
         }
         sphproof_simulations_free(simulation);
     }
-    const struct sphproof_setup setup = drawn_setup(1);
+    struct sphproof_setup setup = drawn_setup(1);
+    struct settings settings;
+    settings_init(&settings);
+    for (int k = 0; k < SETTINGS; k++) { /* keys of runs, whatever their value is */
+        char value[SETTING_TEXT_MAX], key[SETTING_TEXT_MAX + 40], says[80];
+        const char *const keys[] = {key, NULL};
+        if (!strcmp(setting_keys[k].section, "scheme")) continue;
+        settings_text(&settings, (enum setting)k, value);
+        if (settings_set(&settings, (enum setting)k, value, SOURCE_FALLBACK, NULL, NULL))
+            strcpy(value, "auto");
+        snprintf(key, sizeof key, "%s=%s", setting_keys[k].name, value);
+        snprintf(says, sizeof says, "%s is no key of a scheme", setting_keys[k].name);
+        setup.keys = keys;
+        refused(sphproof_simulations_create(&setup, &simulation, &error), says);
+    }
+    setup.keys = NULL;
     assert_int_equal(sphproof_simulations_create(&setup, &simulation, &error), SPHPROOF_OK);
     refused(sphproof_simulations_run(simulation, 2e300, &error), "t = 2e+300: allowed: 0 or later");
     sphproof_simulations_free(simulation);
@@ -363,12 +379,31 @@ TEST(refused_setups)
 
 /* ---- gradients of a cloud ---- */
 
+static double bump(double q, int dim)
+{
+    (void)dim;
+    return q < 1 ? pow(1 - q * q, 3) : 0;
+}
+
+static double bump_slope(double q, int dim)
+{
+    (void)dim;
+    return q < 1 ? -6 * q * pow(1 - q * q, 2) : 0;
+}
+
+static struct sphproof_kernel *own_kernel(int dim)
+{
+    const struct sphproof_shape shape = {
+        .w = bump, .dw = bump_slope, .smoothness = 2, .name = "bump", .dim = dim};
+    struct sphproof_kernel *kernel;
+    assert_int_equal(sphproof_kernels_own(&shape, &kernel, NULL), SPHPROOF_OK);
+    return kernel;
+}
+
 /* The standard sum and the density, in an open and in a periodic box. */
-TEST(clouds)
+static void clouds_are_summed(struct sphproof_kernel *kernel)
 {
     static double h[MOST], volume[MOST], f[MOST], got[4][MOST + 1];
-    struct sphproof_kernel *kernel;
-    assert_int_equal(sphproof_kernels_find("wendland_c4", &kernel, NULL), SPHPROOF_OK);
     for (int dim = 1; dim <= 3; dim++)
         for (int periodic = 0; periodic < 2; periodic++) {
             const struct sphproof_setup setup = drawn_setup(dim);
@@ -432,6 +467,40 @@ TEST(clouds)
                     "no operator ''");
         }
     sphproof_kernels_free(kernel);
+}
+
+TEST(clouds)
+{
+    struct sphproof_kernel *kernel;
+    assert_int_equal(sphproof_kernels_find("wendland_c4", &kernel, NULL), SPHPROOF_OK);
+    clouds_are_summed(kernel);
+    clouds_are_summed(own_kernel(0));
+}
+
+/* A kernel for one dimension alone is refused in the others. */
+TEST(kernel_of_one_dimension)
+{
+    double h[1] = {1}, f[1] = {1}, volume[1] = {1},
+           got[3][1], *const to[] = {got[0], got[1], got[2]};
+    for (int own = 1; own <= 3; own++) {
+        struct sphproof_kernel *kernel = own_kernel(own);
+        for (int dim = 1; dim <= 3; dim++) {
+            const struct sphproof_cloud cloud = {
+                .dim = dim, .n = 1, .x = {f, f, f}, .volume = volume, .h = h};
+            const enum sphproof_status sum = sphproof_gradients_apply("ia", kernel, &cloud, f, to,
+                                                                      &error),
+                                       density = sphproof_gradients_density(kernel, 2, &cloud, f, h,
+                                                                            got[0], &error);
+            char says[60];
+            snprintf(says, sizeof says, "kernel bump: dim = %d is not among its own", dim);
+            assert_int_equal(sum, dim == own ? SPHPROOF_OK : SPHPROOF_BAD_INPUT);
+            if (dim == own)
+                assert_int_equal(density, SPHPROOF_BROKE_DOWN); /* any h suits one point */
+            else
+                refused(density, says);
+        }
+        sphproof_kernels_free(kernel);
+    }
 }
 
 /* ---- figures of an operator ---- */
@@ -679,6 +748,23 @@ static bool zero(void *context, const struct sphproof_cloud *cloud, const double
     for (int a = 0; a < cloud->dim; a++)
         for (size_t i = 0; i < cloud->n; i++) gradient[a][i] = 0;
     return ++calls != refuse_at;
+}
+
+/* Fills the gradient of the first point alone. */
+static bool forget(void *context, const struct sphproof_cloud *cloud, const double *f,
+                   double *const gradient[])
+{
+    (void)context, (void)f;
+    for (int a = 0; a < cloud->dim; a++) gradient[a][0] = 0;
+    return true;
+}
+
+TEST(gradients_left_out)
+{
+    const struct sphproof_gradient_promise none = {0, -9, 2.4, true, true, true, true};
+    assert_int_equal(sphproof_gradients_check(forget, NULL, 2, &none, NULL, NULL, &error),
+                     SPHPROOF_CHECK_FAILED);
+    assert_non_null(strstr(error.message, "linear: nan"));
 }
 
 TEST(promises)

@@ -4,6 +4,9 @@
  * damaged lines and the line that a night adds.) */
 #include "test.h"
 
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "history.h"
@@ -157,6 +160,38 @@ TEST(history_that_cannot_be_opened)
     assert_non_null(strstr(error.message, "history/night': Not a directory"));
     assert_null(history);
     unlink(path_of("history"));
+    json_decref(results);
+}
+
+/* A line is cut off where the disk is full; the next one begins on a new line. */
+TEST(full_disk)
+{
+    const struct night night = usual_night(1);
+    json_t *results = results_of(&night), *history;
+    struct error error = {0};
+    struct rlimit usual, limit;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &usual), 0);
+    for (int lines = 0; lines < 2; lines++) {
+        struct stat is = {0};
+        const char *path = path_of("history");
+        for (int k = 0; k < lines; k++)
+            assert_int_equal(history_append(results, path, &error), STATUS_OK);
+        if (lines) assert_int_equal(stat(path, &is), 0);
+        limit = usual, limit.rlim_cur = (rlim_t)is.st_size + 20;
+        signal(SIGXFSZ, SIG_IGN);
+        assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+        assert_int_equal(history_append(results, path, &error), STATUS_ENVIRONMENT);
+        assert_int_equal(setrlimit(RLIMIT_FSIZE, &usual), 0);
+        assert_non_null(strstr(error.message, "history': No space left on device"));
+        assert_int_equal(stat(path, &is), 0);
+        assert_int_equal(is.st_size, limit.rlim_cur);
+        assert_int_equal(history_append(results, path, &error), STATUS_OK);
+        assert_int_equal(history_tell(results, path, &history, &error), STATUS_OK);
+        assert_true(value_member(history, "unreadable") == 1);
+        assert_int_equal(json_array_size(json_object_get(history, "nights")), lines + 2);
+        json_decref(history);
+        unlink(path);
+    }
     json_decref(results);
 }
 

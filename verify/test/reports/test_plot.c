@@ -220,6 +220,20 @@ TEST(processes)
     assert_int_equal(shell("kill -9 $$", input, size, 60, &output, message, sizeof message),
                      PROCESS_FAILED);
     assert_non_null(strstr(message, "signal 9"));
+    signal(SIGPIPE, SIG_IGN); /* for this process; the filter dies of it */
+    assert_int_equal(shell("kill -PIPE $$", "", 0, 60, &output, message, sizeof message),
+                     PROCESS_FAILED);
+    assert_string_equal(message, "sh was ended by signal 13: ");
+    signal(SIGPIPE, SIG_DFL);
+    static const char *const missing_too[][2] = {
+        {"exit 127", "sh cannot be run"},
+        {"echo; echo ' no' 1>&2; exit 127", "sh cannot be run: no\n"}};
+    for (size_t k = 0; k < 2; k++) {
+        assert_int_equal(
+            shell(missing_too[k][0], input, size, 60, &output, message, sizeof message),
+            PROCESS_NOT_FOUND);
+        assert_string_equal(message, missing_too[k][1]);
+    }
     time_t before = time(NULL);
     assert_int_equal(shell("exec sleep 50", input, size, 1, &output, message, sizeof message),
                      PROCESS_TOO_SLOW);
