@@ -23,7 +23,7 @@ static void template_name(const char *word, size_t length, char name[CODE_PATH])
     snprintf(name, CODE_PATH, "%.*s", (int)length, base);
 }
 
-/* Writes a number with the fewest digits that read back equal. */
+/* Writes a number with 15 digits, or with 17 if those do not read back equal. */
 static size_t write_real(char *text, size_t size, double value)
 {
     double read;

@@ -82,8 +82,8 @@ static void begin_fault(struct parser *parser, const char *name)
     struct code *code = parser->code;
     char what[120];
     snprintf(what, sizeof what, "[fault %.60s]", name);
-    if (code->fault_count == CODE_FAULTS_MAX || strlen(name) >= CODE_NAME) {
-        ini_text_fail(&parser->at, what, "16 faults, with names of up to 40 characters");
+    if (code->fault_count == CODE_FAULTS_MAX) {
+        ini_text_fail(&parser->at, what, "16 faults");
         return;
     }
     struct code_fault *fault = &code->faults[code->fault_count++];
