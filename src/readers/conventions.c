@@ -46,12 +46,12 @@ static int nearer(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Truncates the list, since no code sums over more than NEIGHBOURS_MAX neighbours. */
+/* Ends the reach at the last neighbour that counts, since no code sums over more than
+ * NEIGHBOURS_MAX. */
 static void limit_reach(struct sample *sample, struct near *near)
 {
     qsort(near->neighbour, near->count, sizeof *near->neighbour, nearer);
     if (near->count <= NEIGHBOURS_MAX) return;
-    near->count = NEIGHBOURS_MAX;
     sample->reach = fmin(sample->reach, near->neighbour[NEIGHBOURS_MAX - 1].s);
 }
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { GAS = 1 };
 
@@ -36,7 +37,7 @@ static void sort_rows(struct snapshot_file *file, const double *type, size_t *ro
         if (!column) continue;
         double *sorted = column + file->n; /* second half of the memory */
         for (size_t k = 0; k < n; k++) sorted[k] = column[row[k]];
-        for (size_t k = 0; k < n; k++) column[k] = sorted[k];
+        memcpy(column, sorted, n * sizeof *column);
     }
     if (n < file->n) {
         char value[64];

@@ -103,8 +103,7 @@ static int by_position(const void *a, const void *b)
 static double wrapped(double x, double lo, double period)
 {
     if (!(period > 0)) return x;
-    const double y = x - period * floor((x - lo) / period);
-    return y < lo ? lo : y;
+    return x - period * floor((x - lo) / period);
 }
 
 static double width_of_volume(const struct judged *judged, size_t i)

@@ -165,7 +165,7 @@ static enum status ask(const char *text, const json_t *figures, const char *no_o
         if (order && !strcmp(relation, "="))
             return error_set(error, STATUS_BAD_INPUT,
                              "--gate %.48s=%.40s: an order is gated by >= or <=", name, number);
-        if (!text_real(number, &bound) || !isfinite(bound) || !(order || bound > 0))
+        if (!text_real(number, &bound) || !(order || bound > 0))
             return error_set(error, STATUS_BAD_INPUT, "--gate %.48s%s%.40s: allowed: %s", name,
                              relation, number, order ? "a number" : "above 0");
         const json_t *figure = json_object_get(figures, name);

@@ -131,7 +131,7 @@ static bool extent_of_volumes(const struct snapshot_file *file, double *lo, doub
     const double *x = file->column[SNAPSHOT_X], *m = file->column[SNAPSHOT_M],
                  *rho = file->column[SNAPSHOT_RHO];
     double from = INFINITY, to = -INFINITY, sum = 0;
-    if (file->dim > 1 || file->gas < file->n || !rho) return false;
+    if (file->dim > 1 || file->gas < file->n) return false;
     for (size_t i = 0; i < file->n; i++) {
         const double volume = m[i] / rho[i];
         from = fmin(from, x[i] - 0.5 * volume);
@@ -166,7 +166,7 @@ static void take_liquid_box(const struct judge_request *request, struct judged *
     struct snapshot_file *file = &judged->file;
     const bool said = file->boxed && file->placed;
     char value[80];
-    *box = (struct box){.known = true};
+    box->known = true;
     for (int d = 0; d < file->dim; d++) {
         const double lo = settings_along(settings, SETTING_lo, d);
         const double length = settings_along(settings, SETTING_hi, d) - lo;
@@ -217,7 +217,7 @@ static enum status take_box(const struct judge_request *request, struct judged *
         take_liquid_box(request, judged, settings, box);
         return STATUS_OK;
     }
-    *box = (struct box){.known = file->boxed};
+    box->known = file->boxed;
     for (int d = 0; d < file->dim && file->boxed; d++) {
         double lo, hi;
         const double length = file->box[d];
@@ -405,7 +405,7 @@ static enum status check_dimension(struct judged *judged, struct run_settings *a
     const int dim = judged->file.dim;
     char value[32];
     if (dim == asked->file.dimension) return STATUS_OK;
-    if (dim < problem->least_dim || dim > problem->most_dim || problem->circular)
+    if (dim < problem->least_dim || problem->circular)
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s: particles in %d dimensions; the case %.60s has %d", judged->path,
                          dim, asked->file.asked, asked->file.dimension);
@@ -446,7 +446,7 @@ enum status judge_geometry(const struct judge_request *given, struct judged *jud
     struct judge_request with_ends = *given; /* with the case's boundary and window as defaults */
     const struct judge_request *request = &with_ends;
     struct run_settings asked;
-    struct box box;
+    struct box box = {.known = false};
     bool ended = false;
     struct settings *settings = &asked.settings;
     const char *said = judged->file.case_name;
@@ -525,11 +525,10 @@ enum status judge_geometry(const struct judge_request *given, struct judged *jud
     if (tube && place_tube(request, judged, settings, &box, &period[0], &ended, error))
         return error->status;
     judged->boxed = box.known && !ended && !has_walls(&judged->file);
+    const double n = fmin(1e7, judged->slab > 0 ? round(judged->case_n) : (double)judged->file.gas);
     if ((!ended && set_window(request, judged, settings, &box, case_hi - case_lo,
                               0.5 * (case_lo + case_hi), error)) ||
-        set_real(settings, SETTING_n,
-                 fmin(1e7, judged->slab > 0 ? round(judged->case_n) : (double)judged->file.gas),
-                 error) ||
+        (!settings->file[0] && set_real(settings, SETTING_n, n, error)) ||
         set_ends(settings, SETTING_lo, box.lo, dim, error) ||
         set_ends(settings, SETTING_hi, box.hi, dim, error))
         return error->status;
@@ -538,6 +537,8 @@ enum status judge_geometry(const struct judge_request *given, struct judged *jud
                       "the case's box is %.6g long, the file's %.6g", case_hi - case_lo,
                       box.hi[0] - box.lo[0]);
     struct error reason = {0};
-    if (!run_resolve(&judged->run, &asked, &reason)) return STATUS_OK;
-    return error_set(error, reason.status, "%.200s: %.280s", judged->path, reason.message);
+    if (run_resolve(&judged->run, &asked, &reason))
+        return error_set(error, reason.status, "%.200s: %.280s", judged->path, reason.message);
+    judged->run.settings.value[SETTING_n].real[0] = n; /* not a key beside a file of particles */
+    return STATUS_OK;
 }

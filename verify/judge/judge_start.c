@@ -296,8 +296,7 @@ enum status judge_start_look(const struct run_result *result, double precision, 
     *start = (struct judge_start){.looked = false};
     for (int d = 0; d < result->problem.domain.dim; d++)
         if (result->problem.boundary[d] != BOUNDARY_PERIODIC) mass_ratio = (double)NAN;
-    if (result->time != 0 || problem->liquid || problem->filed || problem->user != USER_NOT ||
-        s->n < 4)
+    if (result->time != 0 || problem->liquid || problem->filed || problem->user != USER_NOT)
         return STATUS_OK;
     gas.exact = malloc(s->n * sizeof *gas.exact);
     gas.x = calloc(s->n, sizeof *gas.x);

@@ -20,9 +20,10 @@ struct tube {
     double fastest; /* the fastest signal */
 };
 
+/* NaN in a vacuum: nothing is below it, and fmin and fmax ignore it. */
 static double sound(const struct riemann_solution *s, const struct riemann_state *gas)
 {
-    return gas->rho > 0 ? sqrt(s->gamma * gas->P / gas->rho) : 0;
+    return sqrt(s->gamma * gas->P / gas->rho);
 }
 
 static double fastest_of(const struct riemann_solution *s)
@@ -71,7 +72,7 @@ static bool still_there(const struct judged *judged, const struct tube *tube, co
         /* density is often too low at an end, where the neighbourhood is cut in half */
         const double from = fabs(x[i] - ends[side]);
         if (!(from <= 2 * reach && from >= reach / 2)) continue;
-        there++, of_v += v[i] - gas->v, of_rho += rho ? rho[i] - gas->rho : 0;
+        there++, of_v += v[i] - gas->v, of_rho += rho[i] - gas->rho;
     }
     return there >= 2 && fabs(of_v) <= undisturbed * c * there &&
            fabs(of_rho) <= undisturbed * gas->rho * there;

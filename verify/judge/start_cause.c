@@ -140,7 +140,7 @@ static double misfit(const struct start_gas *gas, enum start_field field, const 
         near += off <= 1e-3;
         sum += fmin(off, 1e-3);
     }
-    return wrong && PER_CENT * near >= 95 * wrong ? sum / (double)wrong : (double)INFINITY;
+    return PER_CENT * near >= 95 * wrong ? sum / (double)wrong : (double)INFINITY;
 }
 
 static double exact_energy(const struct start_gas *gas, size_t i, double factor)
@@ -267,7 +267,7 @@ static bool fits_velocity(const struct start_gas *gas, const int from[3], double
         wrong++;
         near += sqrt(squares) <= 1e-3 * gas->speed;
     }
-    return wrong && PER_CENT * near >= 95 * wrong;
+    return PER_CENT * near >= 95 * wrong;
 }
 
 static bool velocity_cause(const struct start_gas *gas, char *text, size_t size)
@@ -365,7 +365,7 @@ static size_t settle(const struct trial *trial, double by[3], double step)
     const int dim = trial->gas->problem->domain.dim;
     size_t near;
     double best = miss(trial, by, 1, &near);
-    for (int halvings = 0, rounds = 0; halvings < 40 && rounds < 120 && best > 0; rounds++) {
+    for (int rounds = 0; rounds < 80; rounds++) {
         bool moved = false;
         for (int k = 0; k < 2 * dim; k++) {
             double to[3];
@@ -377,7 +377,7 @@ static size_t settle(const struct trial *trial, double by[3], double step)
             best = other, near = now, moved = true;
             memcpy(by, to, sizeof to);
         }
-        if (!moved) step /= 2, halvings++;
+        if (!moved) step /= 2;
     }
     return near;
 }
@@ -408,7 +408,7 @@ static bool find_shift(const struct trial *trial, double by[3])
         best[k] = now;
         memcpy(at[k], to, sizeof at[k]);
     }
-    for (int k = 0; k < KEPT && isfinite(best[k]); k++) {
+    for (int k = 0; k < KEPT; k++) {
         const size_t near = settle(trial, at[k], 0.5 * domain_length(box, 0) / side);
         if (PER_CENT * near < 95 * trial->n) continue;
         memcpy(by, at[k], sizeof at[k]);

@@ -26,7 +26,6 @@ struct dump {
  * the default kinds of 4 or 8 bytes. */
 static bool begins(struct dump *dump, bool swapped)
 {
-    static const size_t fixed[KINDS] = {4, 1, 2, 4, 8, 8, 4, 8};
     struct error ignored = {0};
     struct fortran_record record;
     *dump = (struct dump){.source = dump->source, .swapped = swapped, .count = 1};
@@ -40,8 +39,8 @@ static bool begins(struct dump *dump, bool swapped)
                 fortran_integer(b + i + r, i, swapped) != MAGIC_SECOND ||
                 fortran_integer(b + 3 * i + r, i, swapped) != MAGIC_THIRD)
                 continue;
-            memcpy(dump->bytes, fixed, sizeof fixed);
-            dump->bytes[0] = i, dump->bytes[FIRST_REAL] = r;
+            const size_t sizes[KINDS] = {i, 1, 2, 4, 8, r, 4, 8};
+            memcpy(dump->bytes, sizes, sizeof sizes);
             return true;
         }
     return false;

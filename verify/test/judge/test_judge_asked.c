@@ -99,6 +99,7 @@ TEST(refused_requests)
         {1, TIMED, "sod", "1 0", NULL, NULL, "--left"},
         {1, TIMED, "sod", NULL, "1 0 1 2 3", NULL, "--right"},
         {1, TIMED, "sod", "1 0 -1", NULL, NULL, "a.csv: "},
+        {1, TIMED, "sod", NULL, "0 0 0", NULL, "particles cannot fill a vacuum"},
         {1, TIMED, "sod", NULL, NULL, "1 2 3 4", "judge: --box '1 2 3 4': allowed: LO:HI"},
         {1, TIMED, "sod", NULL, NULL, "", "judge: --box '': allowed: LO:HI"},
         {1, "# case = sod\n# keys = fancy=1\n" TIMED, NULL, NULL, NULL, NULL,
@@ -111,7 +112,15 @@ TEST(refused_requests)
          "a.csv: the file's box reaches from 0.01 to 2.01 along x, but positions from 0 to 2"},
         {2, "# time = 0.1\n# box = 0:2 0.01:1.01\n", "sod", NULL, NULL, NULL,
          "a.csv: the file's box reaches from 0.01 to 1.01 along y, but positions from 0 to 1"},
-        {1, "# time = 50\n# box = 2\n", "sod", NULL, NULL, NULL, "(t_end: the snapshot's time)"}};
+        {1, "# time = 50\n# box = 2\n", "sod", NULL, NULL, NULL, "(t_end: the snapshot's time)"},
+        {1, "# time = 0.1\n# box = -0.01:1.99\n", "sod", NULL, NULL, NULL,
+         "a.csv: the file's box reaches from -0.01 to 1.99 along x, but positions from 0 to 2"},
+        {1, "# time = 0.1 s\n# box = 2\n", "sod", NULL, NULL, NULL,
+         "judge --time T; not taken: '# time = 0.1 s'; allowed: a number, and no unit"},
+        {1, "# gamma = 0.5\n" TIMED, "sod", NULL, NULL, NULL,
+         "gamma=0.5: allowed: a number above 1"},
+        {2, TIMED, "noh_3d", NULL, NULL, NULL,
+         "a.csv: particles in 2 dimensions; the case noh_3d has 3"}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct judge_request request = {.case_name = rows[k].name,
                                               .left = rows[k].left,
@@ -121,25 +130,34 @@ TEST(refused_requests)
         plant(rows[k].dim, 0, rows[k].head);
         refuses(&request, rows[k].says);
     }
+    struct judge_request request = uniform_gas();
+    request.left = "1 0 -1", request.boundary = "open";
+    plant(1, 0, "");
+    refuses(&request, "a.csv: its tube has no exact solution");
+    request.left = "1 0 1", request.right = "0 0 0";
+    refuses(&request, "particles cannot fill a vacuum");
 }
 
 /* ---- box and window ---- */
 
 /* A case file whose window is not centred in its box; the box does not begin at 0. */
-static char *own_case(void)
+static char *own_case(int dim, const char *domain, const char *initial, const char *window)
 {
     static char path[256];
     snprintf(path, sizeof path, "%s", path_of("own.ini"));
     FILE *out = fopen(path, "w");
     assert_non_null(out);
-    fputs("[case]\ntitle = Own\ndimension = 1\nreference = riemann\n[domain]\nlo = 1\nhi = 3\n"
-          "[initial]\nkind = riemann\nleft = 1 0 1\nright = 1 0 1\n[run]\nt_end = 0.1\nn = 100\n"
-          "[measure]\nwindow = 1.5 2.25\nfields = density velocity pressure\n"
-          "[converge]\nn = 100 200 400 800\ndensity_l1 = 0 1\n",
-          out);
+    fprintf(out,
+            "[case]\ntitle = Own\ndimension = %d\nreference = riemann\n[domain]\nlo = 1\nhi = 3\n"
+            "%s[initial]\nkind = riemann\nleft = 1 0 1\nright = 1 0 1\n%s[run]\nt_end = 0.1\n"
+            "%s[measure]\n%sfields = density velocity pressure\n"
+            "[converge]\nn = 100 200 400 800\ndensity_l1 = 0 1\n",
+            dim, domain, initial, strstr(initial, "file") ? "" : "n = 100\n", window);
     fclose(out);
     return path;
 }
+
+#define WINDOW "window = 1.5 2.25\n"
 
 TEST(windows)
 {
@@ -173,7 +191,8 @@ TEST(windows)
         {"# box = 9\n", "0.7 1.9", NULL, 0, 9, {0.7, 1.9}, "window", NULL, "--window"},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        struct judge_request request = {.case_name = own_case(), .time = {true, 0}, .kernel = -1};
+        struct judge_request request = {
+            .case_name = own_case(1, "", "", WINDOW), .time = {true, 0}, .kernel = -1};
         struct judged judged;
         char text[80];
         if (rows[k].asked) {
@@ -192,6 +211,102 @@ TEST(windows)
         snprintf(text, sizeof text, "%.17g %.17g", request.ends[0], request.ends[1]);
         if (rows[k].note)
             noted(&judged, "window", rows[k].value ? rows[k].value : text, rows[k].evidence);
+        judge_free(&judged);
+    }
+}
+
+/* The ends and the window of a tube are those of the case, if it has any, unless the user asks for
+ * others; its box is then also the case's if particles fill only a part of it. */
+TEST(tubes_whose_case_has_ends)
+{
+    static const struct {
+        const char *boundary, *window;
+        bool asked;
+        double first, want[2]; /* position of the first particle */
+        const char *box, *evidence;
+    } rows[] = {
+        {"boundary = open\n", WINDOW, false, 2, {1.5, 2.25}, "lie in the case's", "--window or"},
+        {"boundary = open\n", WINDOW, true, 2, {1.75, 2.5}, "lie in the case's", "--window or"},
+        {"boundary = open\n", "", false, 2, {1, 3}, "lie in the case's", "from end to end"},
+        {"boundary = open\n", "", true, 2, {1.75, 2.5}, "lie in the case's", "--window or"},
+        {"", WINDOW, false, 1.2, {1.5, 2.25}, "lie in the case's and fill it", NULL},
+        {"", WINDOW, false, 2, {2.25, 2.75}, "as far as particles reach", "the case's box is 2"}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct judge_request request = {.case_name =
+                                            own_case(1, rows[k].boundary, "", rows[k].window),
+                                        .time = {true, 0},
+                                        .kernel = -1,
+                                        .window = rows[k].asked,
+                                        .ends = {1.75, 2.5}};
+        struct judged judged;
+        plant(1, 0, "");
+        for (int i = 0; i < N; i++)
+            gas.x[0][i] = rows[k].first + (3 - rows[k].first) * i / (N - 1), gas.m[i] /= 8;
+        judges(&request, &judged);
+        if (!strstr(note(&judged, "box")->evidence, rows[k].box))
+            fail_msg("row %zu: %s", k, note(&judged, "box")->evidence);
+        near_absolute(judged.run.problem.window.lo[0], rows[k].want[0], 1e-12);
+        near_absolute(judged.run.problem.window.hi[0], rows[k].want[1], 1e-12);
+        assert_true(is_noted(&judged, "window") == !!rows[k].evidence);
+        if (rows[k].evidence && !strstr(note(&judged, "window")->evidence, rows[k].evidence))
+            fail_msg("row %zu: %s", k, note(&judged, "window")->evidence);
+        assert_true(is_noted(&judged, "ends") == !!*rows[k].boundary);
+        judge_free(&judged);
+    }
+}
+
+/* The sums of the start are those of the case's own lattice or file, whatever lattice the file's
+ * run had; they are unknown if the case starts from a glass. */
+TEST(sums_of_the_start)
+{
+    static const char *const keys[] = {"", "# keys = lattice=random\n",
+                                       "# keys = equal_masses=no\n"},
+                             *const starts[] = {"", "lattice = glass\n", "file = p.csv\n"};
+    struct conservation first = {0};
+    for (int k = 0; k < 6; k++) {
+        const char *name = k < 3 ? "square" : own_case(2, "", starts[k - 3], WINDOW);
+        const struct judge_request request = {.time = {true, 0}, .kernel = -1};
+        struct judged judged;
+        char head[200];
+        double mass = 0;
+        snprintf(head, sizeof head,
+                 k < 3 ? "# case = %s\n%s# box = 0:2 0:1\n" : "# case = %s\n%s# box = 1:3 1:2\n",
+                 name, k < 3 ? keys[k] : "");
+        plant(2, k < 3 ? 0 : 1, head);
+        put("p.csv");
+        for (int i = 0; i < N; i++) mass += gas.m[i];
+        judges(&request, &judged);
+        const struct conservation *start = &judged.start;
+        if (k == 0) first = judged.start;
+        if (k < 3)
+            assert_true(start->mass == first.mass && start->energy == first.energy);
+        else
+            near_absolute(start->mass, k == 3 ? 2 : k == 4 ? 0 : mass, 1e-12);
+        assert_true(settings_real(&judged.run.settings, SETTING_n) == N);
+        judge_free(&judged);
+    }
+}
+
+/* A case of particles from a file says nothing about a later snapshot. */
+TEST(cases_without_a_solution)
+{
+    FILE *out = fopen(path_of("parts.ini"), "w");
+    fputs("[case]\ntitle = Own\ndimension = 1\nreference = none\n[domain]\nlo = 0\nhi = 2\n"
+          "[initial]\nkind = particles\nfile = a.csv\n[run]\nt_end = 0.1\n",
+          out);
+    fclose(out);
+    for (int allowed = 0; allowed < 2; allowed++) {
+        char path[256];
+        snprintf(path, sizeof path, "%s", path_of("parts.ini"));
+        const struct judge_request request = {
+            .case_name = path, .kernel = -1, .allow_far = allowed};
+        struct judged judged;
+        plant(1, 0, TIMED);
+        judges(&request, &judged);
+        assert_true(judged.passes && !judged.far && judged.silent == !allowed);
+        assert_true(judged.wrong == 0);
+        const char *begin = "nothing of this case is known at t = 0.1, so nothing was compared; ";
+        assert_int_equal(strncmp(judged.verdict, begin, strlen(begin)), 0);
         judge_free(&judged);
     }
 }

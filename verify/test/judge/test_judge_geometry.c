@@ -107,6 +107,15 @@ TEST(positions_of_tubes)
          true,
          "about the middle of the particles"},
         {0, 4, "# box = 4\n", 9, 0, 4, {1, 3}, true, "positions lie in it"},
+        {0.5,
+         2.4,
+         "# box = 2\n",
+         9,
+         0.45,
+         2.45,
+         {0.95, 1.95},
+         true,
+         "about the middle of the particles"},
         {-1, 1, "", 9, -1, 1, {-0.5, 0.5}, true, "all positions lie in the case's and fill it"},
         {-0.8, 0.8, "", 9, -1, 1, {-0.5, 0.5}, true, "all positions lie in the case's and fill it"},
         {-0.79, 0.8, "", 9, -0.795, 0.795, {-0.3975, 0.3975}, false, "as far as particles reach"},
@@ -225,6 +234,48 @@ TEST(walls)
             }
 }
 
+/* The box of a liquid between plates is that of the file or of the user if its corner is known,
+ * else the case's; particles may lie outside. */
+TEST(boxes_of_liquids)
+{
+    static const struct {
+        const char *head, *asked;
+        double lo[2], hi[2];
+        const char *value, *evidence;
+    } rows[] = {
+        {"", NULL, {0, 0}, {1, 1}, "0 to 1 along y", "the case's: the file does not say where its"},
+        {"# box = 2 3\n",
+         NULL,
+         {0, 0},
+         {1, 1},
+         "0 to 1 along y",
+         "the case's: the file does not say"},
+        {"# box = 0:2 -1:2\n", NULL, {0, -1}, {2, 2}, "-1 to 2 along y", "the file says so"},
+        {"# box = 0:2 -1:2\n",
+         "0.25:1 0.5:1.25",
+         {0.25, 0.5},
+         {1, 1.25},
+         "0.5 to 1.25 along y",
+         "--box"}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct judge_request request = {
+            .case_name = "poiseuille", .time = {true, 0}, .kernel = -1, .box = rows[k].asked};
+        struct judged judged;
+        plant(2, 0, rows[k].head);
+        judges(&request, &judged);
+        for (int d = 0; d < 2; d++) {
+            near_absolute(judged.run.problem.domain.lo[d], rows[k].lo[d], 1e-14);
+            near_absolute(judged.run.problem.domain.hi[d], rows[k].hi[d], 1e-14);
+            near_absolute(judged.file.box[d], rows[k].hi[d] - rows[k].lo[d], 1e-14);
+        }
+        assert_true(judged.boxed && judged.start.mass == 0);
+        assert_string_equal(note(&judged, "box")->value, rows[k].value);
+        if (!strstr(note(&judged, "box")->evidence, rows[k].evidence))
+            fail_msg("row %zu: %s", k, note(&judged, "box")->evidence);
+        judge_free(&judged);
+    }
+}
+
 /* ---- missing values, and options without effect ---- */
 
 /* If volumes fill a line, it extends half a volume beyond its outermost particles, also where these
@@ -232,7 +283,7 @@ TEST(walls)
 TEST(ends_of_volumes)
 {
     for (int draw = 0; draw < 40; draw++) {
-        const bool fills = draw % 4;
+        const bool walls = draw % 8 == 7, fills = draw % 4 && !walls;
         const double lo = uniform(1.5, 3);
         struct judge_request request = uniform_gas();
         struct judged judged;
@@ -241,11 +292,13 @@ TEST(ends_of_volumes)
         for (int k = 0; k < N; k++) {
             const int i = (k + 7 * draw) % N;
             const double volume = uniform(0.2, 3) / N;
-            gas.rho[i] = uniform(0.5, 2), gas.m[i] = volume * gas.rho[i] * (fills ? 1 : 0.8);
+            gas.rho[i] = uniform(0.5, 2),
+            gas.m[i] = volume * gas.rho[i] * (fills || walls ? 1 : 0.8);
             gas.x[0][i] = at + 0.5 * volume, at += volume;
             if (k == 0) first = gas.x[0][i];
             last = gas.x[0][i];
         }
+        gas.others = walls ? 2 : 0; /* then volumes do not count */
         judges(&request, &judged);
         const struct prepared *p = &judged.run.problem;
         near_absolute(p->domain.lo[0] - (fills ? lo : first), 0, 1e-13);

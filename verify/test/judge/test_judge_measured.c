@@ -290,6 +290,31 @@ TEST(widths_of_an_autopsy)
         near_relative(settings_real(&used.settings, SETTING_eta), eta, 1e-8);
         judge_free(&judged);
     }
+    /* a width that the file's run was asked for is kept */
+    for (int key = 0; key < 2; key++) {
+        static const char *const keys[] = {"eta=3", "kernel=wendland_c2"};
+        const struct judge_request request = {.time = {true, 0}, .width.ratio = 1.5};
+        struct judged judged;
+        struct autopsy_level level;
+        struct run used;
+        struct error error = {0};
+        plant(2, 0, "");
+        snprintf(gas.head, sizeof gas.head, "# case = yee\n# keys = %s\n# box = -5:5 -5:5\n",
+                 keys[key]);
+        gas.has_h = true;
+        for (int i = 0; i < N; i++) {
+            for (int d = 0; d < 2; d++) gas.x[d][i] = uniform(-5, 5);
+            gas.h[i] = 1;
+        }
+        judges(&request, &judged);
+        assert_true(judged.conventions.known);
+        if (judge_autopsy(&judged, &level, &used, &error)) fail_msg("%s", error.message);
+        if (key == 0) assert_true(settings_real(&used.settings, SETTING_eta) == 3);
+        assert_string_equal(
+            kernel_family.members[settings_choice(&used.settings, SETTING_kernel)]->name,
+            key ? "wendland_c2" : "wendland_c4");
+        judge_free(&judged);
+    }
     const struct judge_request jumps = {.case_name = "sod", .time = {true, 0.1}, .kernel = -1};
     struct judged judged;
     struct autopsy_level level;

@@ -144,9 +144,18 @@ TEST(documents)
                 assert_non_null(json_object_get(json_array_get(all, k), "profile"));
             }
         }
+        assert_null(json_object_get(document, "no_orders"));
         json_decref(document);
     }
     json_decref(gates);
+    judged[1].result.n = N + 1; /* other numbers of particles at other times */
+    json_t *orderless = judge_json(judged, 2, NULL, false);
+    char no_orders[400];
+    snprintf(no_orders, sizeof no_orders, "the time is 0.05 in %.100s and 0.1 in %.100s",
+             judged[0].path, judged[1].path);
+    assert_string_equal(json_string_value(at(orderless, "no_orders", NULL)), no_orders);
+    json_decref(orderless);
+    judged[1].result.n = N;
     gates = json_array();
     for (size_t silent = 1; silent <= 2; silent++) { /* one, then both, without exact solution */
         static const char *const says[] = {"pass", "smoke", "undetermined"},

@@ -89,6 +89,13 @@ TEST(snapshots_in_every_order)
                 near_relative(drift.energy, (b - a) / a, 1e-9);
                 near_relative(drift.momentum, (b - a) / (10 * b), 1e-9);
                 near_relative(drift.angular_momentum, (b - a) / (4 * b), 1e-9);
+                struct trace trace; /* of all snapshots between these two, in the order of time */
+                size_t between = 0;
+                json_decref(judge_conservation(judged, n, &trace));
+                for (size_t i = 0; i < n; i++)
+                    between += judged[i].result.n == judged[pair[0]].result.n;
+                assert_int_equal(trace.count, between);
+                for (size_t i = 1; i < between; i++) assert_true(trace.time[i] > trace.time[i - 1]);
             }
             while (levels < n && groups[g].levels[levels] >= 0) levels++;
             json_t *orders = judge_orders(judged, n);
@@ -176,7 +183,11 @@ TEST(orders)
             found = judge_orders(judged, (size_t)count);
             assert_int_equal(json_array_size(found), 0);
             json_decref(found);
+            char why[JUDGE_WHY] = "";
+            judged[0].result.time = 7; /* there are no orders to refuse */
+            assert_true(judge_one_ladder(judged, (size_t)count, why));
             problem.fieldless = false;
+            assert_false(judge_one_ladder(judged, (size_t)count, why));
         }
 }
 
@@ -431,6 +442,129 @@ TEST(gates_of_orders)
         json_decref(found);
     }
     json_decref(orders);
+}
+
+/* The source of a bound says how it follows from the case's, and its ladder if there is one. */
+TEST(sources_of_bounds)
+{
+    static const struct {
+        double n, finer; /* over the finest n; over the bound */
+        bool no_ladder;
+        double raised; /* the bound over the case's */
+        const char *says;
+    } rows[] = {
+        {1, 0, false, 1, "case leblanc: 0.0375 at n = 1600"},
+        {0.25, 0, false, 4, "case leblanc: 0.0375 at n = 1600, raised by order 1 to n = 400"},
+        {2, 0, false, 1, "case leblanc: 0.0375 at n = 1600"},
+        {2, 0.5, false, 0.5, "case leblanc: 0.0375 at n = 1600, beyond it 0.0187"},
+        {2, 2, false, 2, "case leblanc: 0.0375 at n = 1600, beyond it 0.075"},
+        {0.25, 0, true, 1, "case leblanc: 0.0375"}};
+    struct judged judged = {.path = "made", .case_dim = 1, .file = {.layout = "made", .dim = 1}};
+    struct run_settings *asked = &judged.run.asked;
+    struct error error = {0};
+    if (run_prepare(asked, "leblanc", 0, NULL, &error)) fail_msg("%s", error.message);
+    struct case_file *file = &asked->file;
+    struct case_gate *gate = &file->gates[1];
+    const size_t levels = file->ladder_count;
+    *gate = file->gates[0];
+    file->ladder[levels - 1] = 1600, gate->gate.bound = 0.0375, gate->gate.low = 1;
+    file->gates[0] = (struct case_gate){.functional = "peak"}; /* has no exact value: no gate */
+    file->gate_count = 2;
+    judged.result.problem.problem = problem_of(&asked->settings);
+    judged.result.time = settings_real(&asked->settings, SETTING_t_end);
+    judged.result.functional_count = 1;
+    judged.result.functionals[0] = (struct run_functional){"peak", 3, (double)NAN};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        json_t *gates;
+        file->ladder_count = rows[k].no_ladder ? 0 : levels;
+        gate->finer = gate->gate, gate->finer.bound *= rows[k].finer;
+        judged.case_n = 1600 * rows[k].n, judged.result.n = (size_t)judged.case_n;
+        if (judge_gates(NULL, true, &judged, 1, &gates, &error)) fail_msg("%s", error.message);
+        assert_int_equal(json_array_size(gates), 1);
+        const json_t *one = json_array_get(gates, 0);
+        assert_string_equal(json_string_value(json_object_get(one, "source")), rows[k].says);
+        near_relative(json_number_value(json_object_get(one, "bound")), 0.0375 * rows[k].raised,
+                      1e-12);
+        json_decref(gates);
+    }
+}
+
+/* With several n the case's gates of orders of L1 apply as well; a known weakness excuses those
+ * that do not pass. Conservation of angular momentum is gated in round flows only. */
+TEST(orders_of_a_case)
+{
+    enum { LEVELS = 4 };
+    static const struct {
+        double order;
+        enum norm norm;
+        const char *functional, *known;
+        bool no_order, round; /* no_order: the case gates the error alone */
+        const char *says;     /* status of the order; NULL: it is not gated */
+    } rows[] = {{0.95, NORM_L1, NULL, "", false, false, "pass"},
+                {0.85, NORM_L1, NULL, "", false, true, "fail"},
+                {0.95, NORM_L1, NULL, "why not", false, false, "pass"},
+                {0.85, NORM_L1, NULL, "why not", false, false, "known"},
+                {0.95, NORM_L2, NULL, "", false, false, NULL},
+                {0.95, NORM_L1, "peak", "", false, false, NULL},
+                {0.95, NORM_L1, NULL, "", true, false, NULL}};
+    static struct problem flow;
+    static struct judged judged[LEVELS];
+    struct error error = {0};
+    struct run_settings asked;
+    if (run_prepare(&asked, "leblanc", 0, NULL, &error)) fail_msg("%s", error.message);
+    flow = *problem_of(&asked.settings);
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct case_gate *gate = &asked.file.gates[0];
+        asked.file.gate_count = 1;
+        gate->norm = rows[k].norm, gate->functional = rows[k].functional;
+        gate->gate.low = 0.9, gate->gate.high = rows[k].no_order ? (double)INFINITY : 1.1;
+        snprintf(gate->known.why, sizeof gate->known.why, "%s", rows[k].known);
+        flow.circular = rows[k].round ? CIRCULAR_ROUND : CIRCULAR_NOT;
+        for (int i = 0; i < LEVELS; i++) {
+            judged[i] = (struct judged){.path = "made", .case_dim = 2};
+            judged[i].file = (struct snapshot_file){.layout = "made", .dim = 2};
+            judged[i].run.asked = asked;
+            judged[i].result.problem.problem = &flow;
+            judged[i].result.time = settings_real(&asked.settings, SETTING_t_end);
+            judged[i].result.n = (size_t)(100 << 2 * i), judged[i].case_n = 100 << 2 * i;
+            judged[i].result.errors[FIELD_DENSITY].l1 = pow(2, -rows[k].order * i);
+            judged[i].sums = judged[i].start = (struct conservation){.mass = 1,
+                                                                     .energy = 1,
+                                                                     .momentum_scale = 1,
+                                                                     .sound_scale = 1,
+                                                                     .angular_scale = 1,
+                                                                     .turning_scale = 1};
+            judged[i].sums.mass = 1.0025; /* more than other starts may differ by */
+        }
+        json_t *gates;
+        if (judge_gates(NULL, true, judged, LEVELS, &gates, &error)) fail_msg("%s", error.message);
+        const char *order = NULL, *mass = NULL, *energy = NULL, *angular = NULL;
+        for (size_t g = 0; g < json_array_size(gates); g++) {
+            const json_t *one = json_array_get(gates, g);
+            const char *name = json_string_value(json_object_get(one, "name"));
+            const double bound = json_number_value(json_object_get(one, "bound"));
+            if (!strcmp(name, "order.density")) order = status_at(gates, g);
+            if (!strcmp(name, "order.density")) assert_true(bound == 0.9);
+            if (!strcmp(name, "mass")) mass = status_at(gates, g);
+            if (!strcmp(name, "mass")) assert_true(bound == 2e-3);
+            if (!strcmp(name, "energy")) energy = status_at(gates, g);
+            if (!strcmp(name, "angular_momentum")) angular = status_at(gates, g);
+            if (!strcmp(name, "angular_momentum")) assert_true(bound == 0.02);
+            if (!strcmp(name, "order.density") && !strcmp(order, "known"))
+                assert_string_equal(json_string_value(json_object_get(one, "why")), "why not");
+        }
+        if (!rows[k].says != !order || (order && strcmp(order, rows[k].says)))
+            fail_msg("row %zu: %s", k, order ? order : "none");
+        assert_string_equal(mass, "fail");
+        assert_string_equal(energy, "pass");
+        assert_true(!angular == !rows[k].round);
+        json_decref(gates);
+    }
+    judged[1].result.time *= 1.01;
+    json_t *gates;
+    assert_int_equal(judge_gates(NULL, true, judged, LEVELS, &gates, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "--gates case: no orders: the time is "));
+    json_decref(gates);
 }
 
 /* A case's gates apply near its time and to its own initial state; a known weakness without a

@@ -304,6 +304,9 @@ TEST(rows_of_other_particles)
                              rows[k].good ? STATUS_OK : STATUS_BAD_INPUT);
             if (rows[k].swapped)
                 assert_non_null(strstr(error.message, "the row of particle 3 is at x="));
+            theirs.rows = 3; /* what is not there is not compared */
+            assert_int_equal(rate_check_positions("theirs.csv", &theirs, &gas.setup, &error),
+                             rows[k].good || rows[k].swapped ? STATUS_OK : STATUS_BAD_INPUT);
             theirs.columns = 0; /* without positions */
             assert_int_equal(rate_check_positions("theirs.csv", &theirs, &gas.setup, &error),
                              STATUS_OK);

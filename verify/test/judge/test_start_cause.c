@@ -238,6 +238,18 @@ TEST(scalars)
     }
 }
 
+/* One wrong pressure of cold gas, whose right pressure is 0, shows no sum, which two do. */
+TEST(pressures_of_cold_gas)
+{
+    for (int count = 1; count <= 2; count++) {
+        char text[200] = "";
+        plant(1, 1);
+        for (int i = 3; i < 3 + count; i++) u[i] = 0, P[i] = 0.5, wrong[i] = 1u << START_PRESSURE;
+        assert_true(start_cause(&gas, START_PRESSURE, text, sizeof text) == (count == 2));
+        assert_string_equal(text, count == 2 ? "it is 0.5 more than (gamma - 1) rho u" : "");
+    }
+}
+
 /* Where the density is 1 within a thousandth, both rho u and a constant factor may fit u: the
  * better fit is named, and rho u if both fit. */
 TEST(nearest_cause)

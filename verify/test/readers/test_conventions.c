@@ -238,6 +238,7 @@ TEST(either_sum)
     assert_string_equal(found.candidate[0].kernel.member.name, "quadratic_spline");
     assert_string_equal(found.candidate[1].kernel.member.name, "quadratic_spline");
     assert_null(strstr(found.why, "quadratic_spline"));
+    assert_non_null(strstr(found.why, "; the next kernel, "));
 }
 
 /* A stated kernel or meaning of h is used, and the message says how well it fits. */

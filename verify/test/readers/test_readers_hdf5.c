@@ -249,8 +249,11 @@ TEST(damaged_columns)
                 items_of(l, items);
                 items[k].values[5 * f->width] = fault ? -DBL_MIN : 0;
                 if (is_dead(l, f, 0)) continue;
+                snprintf(says, sizeof says, "%s of particle %d is %s; allowed: %s",
+                         snapshot_column_names[f->column], field_of(l, items, TYPES) ? 3 : 5,
+                         fault ? "-2.22507e-308" : "0", above ? "above 0" : "0 or above");
                 if (above || (below && fault))
-                    refuses(l, items, f->path, above ? "above 0" : "0 or above");
+                    refuses(l, items, f->path, says);
                 else if (below)
                     allows(items, l->count);
             }
@@ -307,15 +310,11 @@ TEST(texts)
         hsize_t count;
         const char *text;
         size_t letters, length; /* length: of what is read */
-    } rows[] = {{TEXT, 0, 1, "Quartic", 0, 7},
-                {TEXT, 1, 1, "Quartic", 0, 7},
-                {TEXT, 1, 2, "Quartic", 0, 0},
-                {TEXT_VARIABLE, 0, 1, "Quartic", 0, 7},
-                {TEXT_VARIABLE, 0, 1, "", 0, 0},
-                {TEXT, 0, 1, "", 47, 47},
-                {TEXT, 0, 1, "", 4095, 47},
-                {TEXT, 0, 1, "", 4096, 0},
-                {F64, 0, 1, "", 0, 0}};
+    } rows[] = {{TEXT, 0, 1, "Quartic", 0, 7},   {TEXT, 1, 1, "Quartic", 0, 7},
+                {TEXT, 1, 2, "Quartic", 0, 0},   {TEXT_VARIABLE, 0, 1, "Quartic", 0, 7},
+                {TEXT_VARIABLE, 0, 1, "", 0, 0}, {TEXT, 0, 1, "", 47, 47},
+                {TEXT, 0, 1, "", 4095, 47},      {TEXT, 0, 1, "", 4096, 0},
+                {F64, 0, 1, "", 0, 0},           {TEXT, 0, 1, "Q\x1b[2J", 0, 5}};
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         struct item items[ITEMS_MAX];
         struct snapshot_file file;
@@ -330,6 +329,7 @@ TEST(texts)
         write_items(path_of("a.hdf5"), items, n);
         if (snapshot_read(path_of("a.hdf5"), &here, &file, &error)) fail_msg("%s", error.message);
         assert_int_equal(strlen(file.kernel), rows[r].length);
+        assert_null(strchr(file.kernel, '\x1b'));
         assert_true(!rows[r].length || file.kernel[0] == (rows[r].letters ? 'k' : 'Q'));
         snapshot_file_free(&file);
     }

@@ -255,7 +255,8 @@ TEST(every_form)
         struct dump d = made();
         d.swapped = draw % 2;
         d.bytes[0] = draw / 2 % 2 ? 4 : 8, d.bytes[5] = draw / 4 % 2 ? 4 : 8;
-        for (int a = 0; a < ARRAYS; a++) d.kind[a] = 5 + (int)drawn(3);
+        for (int a = 0; a < ARRAYS; a++)
+            d.kind[a] = a == ALPHA ? (int)drawn(KINDS) : 5 + (int)drawn(3);
         for (int k = 0; k < VALUES; k++) d.value[k].kind = k < 3 ? 5 : 5 + (int)drawn(3);
         d.typed = drawn(3), d.groups = 1 + (int)drawn(3);
         if (drawn(2)) d.array[H][drawn(N)] = -1;

@@ -146,7 +146,9 @@ static void write_out(struct document *d)
     add_array(d, 0);
     add(d, "</Points><PointData>\n");
     for (int a = 1; a < ARRAYS; a++) add_array(d, a);
-    add(d, "</PointData><Verts><DataArray format=\"ascii\"/></Verts></Piece></UnstructuredGrid>\n");
+    add(d, "</PointData>");
+    if (d->odd) add(d, "<DataArray type=\"Int8\" Name=\"mass\" format=\"octal\"/>"); /* nobody's */
+    add(d, "<Verts><DataArray format=\"ascii\"/></Verts></Piece></UnstructuredGrid>\n");
     if (d->form == APPENDED) {
         add(d, "<AppendedData encoding=\"%s\">\n _", d->base64 ? "base64" : "raw");
         memcpy(d->text + d->length, d->appended, d->bytes);
@@ -318,6 +320,8 @@ static const struct {
     {TEXT, "4000 -1 4000 -1", "-1 -1 4000 -1", "'box' goes from -1 to -1"},
     {TEXT, "4000 -1 4000 -1", "4000 5 3 -1", "'box' goes from 5 to 3"},
     {TEXT, "4000 -1 4000 -1", "4000 -1e308 1e308 -1", "'box' goes from -1e+308 to 1e+308"},
+    {TEXT, "ascii\">3<", "ascii\">1<", "says that it has 1 dimensions"},
+    {TEXT, "ascii\">3<", "ascii\">2<", "says that it has 2 dimensions"},
     {TEXT, "Components=\"3\"", "Components=\"10\"", "has no y"}, /* as one */
     {TEXT, "Components=\"3\"", "Components=\"0\"", "has no y"},
     {TEXT, "Components=\"3\"", "Components=\"9\"", "no x; found"},
