@@ -397,90 +397,42 @@ enum status settings_refuse_unused(const struct settings *settings, struct error
     return STATUS_OK;
 }
 
+/* Members of the scheme that have the name of their key; OPEN: those that may be automatic. */
+#define OPEN_CHOICES(X)                                                                            \
+    X(gradient)                                                                                    \
+    X(volume_element)                                                                              \
+    X(viscosity)                                                                                   \
+    X(viscosity_form) X(balsara) X(energy) X(pair_width) X(h_method) X(shifting)
+#define OPEN_NUMBERS(X) X(eta) X(alpha) X(beta) X(cfl) X(shock_conductivity)
+#define NUMBERS(X)      X(alpha_min) X(alpha_max) X(balsara_floor) X(noise) X(alpha_u) X(h_tolerance)
+
 /* Reads the keys of the scheme; open: marks the automatic choices. */
 static enum status read_scheme(const struct settings *settings, int dim, struct scheme *scheme,
                                struct scheme_open *open, struct error *error)
 {
-#define REAL_OF(key)   settings_real(settings, SETTING_##key)
-#define CHOICE_OF(key) settings_choice(settings, SETTING_##key)
-#define IS_AUTO(key)   settings->value[SETTING_##key].automatic
+#define CHOICE_OF(key)   settings_choice(settings, SETTING_##key)
+#define READ_CHOICE(key) .key = (enum key)CHOICE_OF(key),
+#define READ_NUMBER(key) .key = settings_real(settings, SETTING_##key),
+#define IS_OPEN(key)     .key = settings->value[SETTING_##key].automatic,
     const struct member *integrator = integrator_family.members[CHOICE_OF(integrator)];
-    *scheme = (struct scheme){
-        .gradient = (enum gradient)CHOICE_OF(gradient),
-        .formulation = (enum formulation)CHOICE_OF(formulation),
-        .volume_element = (enum volume_element)CHOICE_OF(volume_element),
-        .viscosity = (enum viscosity)CHOICE_OF(viscosity),
-        .viscosity_form = (enum viscosity_form)CHOICE_OF(viscosity_form),
-        .balsara = (enum balsara)CHOICE_OF(balsara),
-        .energy = (enum energy)CHOICE_OF(energy),
-        .pair_width = (enum pair_width)CHOICE_OF(pair_width),
-        .h_method = (enum h_method)CHOICE_OF(h_method),
-        .steps = (enum time_steps)CHOICE_OF(steps),
-        .shifting = (enum shifting)CHOICE_OF(shifting),
-        .integrator = (const struct integrator *)integrator,
-        .alpha = REAL_OF(alpha),
-        .beta = REAL_OF(beta),
-        .alpha_min = REAL_OF(alpha_min),
-        .alpha_max = REAL_OF(alpha_max),
-        .balsara_floor = REAL_OF(balsara_floor),
-        .noise = REAL_OF(noise),
-        .alpha_u = REAL_OF(alpha_u),
-        .shock_conductivity = REAL_OF(shock_conductivity),
-        .eta = REAL_OF(eta),
-        .cfl = REAL_OF(cfl),
-        .h_tolerance = REAL_OF(h_tolerance),
-    };
-    *open = (struct scheme_open){
-        .kernel = IS_AUTO(kernel),
-        .gradient = IS_AUTO(gradient),
-        .volume_element = IS_AUTO(volume_element),
-        .viscosity = IS_AUTO(viscosity),
-        .viscosity_form = IS_AUTO(viscosity_form),
-        .balsara = IS_AUTO(balsara),
-        .eta = IS_AUTO(eta),
-        .alpha = IS_AUTO(alpha),
-        .beta = IS_AUTO(beta),
-        .cfl = IS_AUTO(cfl),
-        .energy = IS_AUTO(energy),
-        .pair_width = IS_AUTO(pair_width),
-        .h_method = IS_AUTO(h_method),
-        .shifting = IS_AUTO(shifting),
-        .shock_conductivity = IS_AUTO(shock_conductivity),
-    };
-    return plugin_select(&scheme->kernel, CHOICE_OF(kernel), (int)REAL_OF(sinc_n), dim, error);
-#undef REAL_OF
-#undef CHOICE_OF
-#undef IS_AUTO
+    *scheme =
+        (struct scheme){.formulation = (enum formulation)CHOICE_OF(formulation),
+                        .steps = (enum time_steps)CHOICE_OF(steps),
+                        .integrator = (const struct integrator *)integrator,
+                        OPEN_CHOICES(READ_CHOICE) OPEN_NUMBERS(READ_NUMBER) NUMBERS(READ_NUMBER)};
+    *open = (struct scheme_open){IS_OPEN(kernel) OPEN_CHOICES(IS_OPEN) OPEN_NUMBERS(IS_OPEN)};
+    return plugin_select(&scheme->kernel, CHOICE_OF(kernel),
+                         (int)settings_real(settings, SETTING_sinc_n), dim, error);
 }
 
 /* Stores the values of automatic keys. */
 static void write_scheme(struct settings *settings, const struct scheme *scheme)
 {
-    const struct {
-        enum setting key;
-        double real;
-    } numbers[] = {{SETTING_eta, scheme->eta},
-                   {SETTING_alpha, scheme->alpha},
-                   {SETTING_beta, scheme->beta},
-                   {SETTING_cfl, scheme->cfl},
-                   {SETTING_shock_conductivity, scheme->shock_conductivity}};
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-        settings->value[numbers[i].key].real[0] = numbers[i].real;
-    const struct {
-        enum setting key;
-        int choice;
-    } choices[] = {{SETTING_kernel, kernel_index(scheme->kernel.member.name)},
-                   {SETTING_gradient, (int)scheme->gradient},
-                   {SETTING_volume_element, (int)scheme->volume_element},
-                   {SETTING_viscosity, (int)scheme->viscosity},
-                   {SETTING_viscosity_form, (int)scheme->viscosity_form},
-                   {SETTING_balsara, (int)scheme->balsara},
-                   {SETTING_energy, (int)scheme->energy},
-                   {SETTING_pair_width, (int)scheme->pair_width},
-                   {SETTING_h_method, (int)scheme->h_method},
-                   {SETTING_shifting, (int)scheme->shifting}};
-    for (size_t i = 0; i < sizeof choices / sizeof *choices; i++)
-        settings->value[choices[i].key].choice = choices[i].choice;
+#define WRITE_CHOICE(key) settings->value[SETTING_##key].choice = (int)scheme->key;
+#define WRITE_NUMBER(key) settings->value[SETTING_##key].real[0] = scheme->key;
+    settings->value[SETTING_kernel].choice = kernel_index(scheme->kernel.member.name);
+    OPEN_CHOICES(WRITE_CHOICE)
+    OPEN_NUMBERS(WRITE_NUMBER)
 }
 
 enum status settings_scheme(struct settings *settings, int dim, struct scheme *scheme,
