@@ -204,7 +204,8 @@ void layout_make(struct layout *layout, const struct plot *plot)
     }
 }
 
-double layout_y(const struct layout_panel *panel, double value)
+/* Pixel of a value, clipped to the panel. */
+static double y_of(const struct layout_panel *panel, double value)
 {
     const struct layout_axis *y = &panel->y;
     double part = y->log ? log(fmax(value, 1e-300) / y->min) / log(y->max / y->min)
@@ -220,7 +221,7 @@ void layout_ends(const struct layout_panel *at, const struct plot_panel *panel, 
         pixels[k] = NAN;
         for (size_t i = 0; series->label && series->kind < PLOT_BAND && i < series->n; i++)
             if (isfinite(series->y[i]) && series->x[i] <= at->x.max)
-                pixels[k] = layout_y(at, series->y[i]);
+                pixels[k] = y_of(at, series->y[i]);
     }
     /* Labels that overlap push each other apart. There are few labels, so that many small steps are
      * cheap. */

@@ -27,9 +27,6 @@ struct layout {
 /* At most LAYOUT_PANELS panels. */
 void layout_make(struct layout *layout, const struct plot *plot);
 
-/* Pixel of a value, clipped to the panel. */
-double layout_y(const struct layout_panel *panel, double value);
-
 /* Positions of the labels at the ends of the curves: pixels[k] for series k, moved apart if they
  * would overlap; NaN for a series without a label. */
 void layout_ends(const struct layout_panel *at, const struct plot_panel *panel, double *pixels);

@@ -204,7 +204,10 @@ static enum status load(struct plugin *plugin, int dim, struct error *error)
     return STATUS_OK;
 }
 
-enum status plugin_prepare(int index, int dim, struct error *error)
+/* Prepares the plug-in with this index for dim dimensions; does nothing for built-in kernels.
+ * STATUS_CHECK_FAILED: refused, with the failed checks of the certificate; STATUS_BAD_INPUT: not a
+ * kernel. */
+static enum status prepare(int index, int dim, struct error *error)
 {
     struct plugin *plugin = plugins + index - (int)kernel_family.n;
     if (index < (int)kernel_family.n || plugin->user[dim].library) return STATUS_OK;
@@ -215,6 +218,6 @@ enum status plugin_prepare(int index, int dim, struct error *error)
 enum status plugin_select(struct kernel *kernel, int index, int sinc_order, int dim,
                           struct error *error)
 {
-    if (plugin_prepare(index, dim, error)) return error->status;
+    if (prepare(index, dim, error)) return error->status;
     return kernel_select(kernel, kernel_family.members[index]->name, sinc_order, error);
 }

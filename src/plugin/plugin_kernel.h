@@ -31,11 +31,6 @@ bool plugin_is_path(const char *word);
  * content other than HASH, or too many plug-ins. */
 enum status plugin_find(const char *word, int *index, struct error *error);
 
-/* Prepares the plug-in with this index for dim dimensions; does nothing for built-in kernels.
- * STATUS_CHECK_FAILED: refused, with the failed checks of the certificate; STATUS_BAD_INPUT: not a
- * kernel. */
-enum status plugin_prepare(int index, int dim, struct error *error);
-
-/* Calls plugin_prepare, then kernel_select. */
+/* Prepares the kernel if it is a plug-in, then calls kernel_select. */
 enum status plugin_select(struct kernel *kernel, int index, int sinc_order, int dim,
                           struct error *error);

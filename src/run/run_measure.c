@@ -162,8 +162,10 @@ void run_measure_nothing(struct run_result *result)
     for (int field = 0; field < FIELDS; field++) result->interpolation[field] = (double)NAN;
 }
 
-void run_measure_budget(const struct prepared *p, const struct snapshot *s,
-                        const double *const *exact_values, struct budget *budget)
+/* Splits the L1 norms by the regions of the problem; exact_values[f]: field f at the n
+ * particles. */
+static void measure_budget(const struct prepared *p, const struct snapshot *s,
+                           const double *const *exact_values, struct budget *budget)
 {
     const struct regions *regions = p->problem->regions;
     *budget = (struct budget){.regions = regions, .still = NAN};
@@ -196,7 +198,7 @@ enum status run_measure_errors(struct run_result *result, struct error *error)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
     (result->problem.domain.dim == 1 ? measure_line : measure_cloud)(result, measured, &of);
     const enum status status = suspect(result, measured, &of, error);
-    run_measure_budget(&result->problem, s, (const double *const *)of.exact, &result->budget);
+    measure_budget(&result->problem, s, (const double *const *)of.exact, &result->budget);
     free(of.storage);
     return status;
 }

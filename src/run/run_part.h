@@ -21,11 +21,6 @@ enum status run_keep(struct run_result *result, const struct snapshot *snapshot,
 /* Measures the errors of result->snapshot at result->time. STATUS_ENVIRONMENT: no memory. */
 enum status run_measure_errors(struct run_result *result, struct error *error);
 
-/* Splits the L1 norms by the regions of the problem; exact_values[f]: field f at the n
- * particles. */
-void run_measure_budget(const struct prepared *p, const struct snapshot *s,
-                        const double *const *exact_values, struct budget *budget);
-
 /* Sets all errors to NaN. */
 void run_measure_nothing(struct run_result *result);
 

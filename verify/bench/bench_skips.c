@@ -126,7 +126,6 @@ struct bench {
     size_t max;
     enum bench_part part;
     struct job *jobs; /* BENCH_SIDES per skip; then one whole step of each case */
-    struct bench_subject *subjects;
 };
 
 /* Applies keys, with ALPHA and CFL replaced. own: NULL if neither occurs. */

@@ -90,7 +90,10 @@ void hydro_tube(struct hydro_state *state, size_t n)
 
 static const double low[3] = {-0.37, 1.213, 0.61}, high[3] = {0.681, 2.109, 1.572};
 
-void hydro_cloud_disordered(struct hydro_state *state, int dim, size_t side)
+/* side^dim particles on a lattice whose spacing varies by a factor of 5/3 and whose points are
+ * displaced at random; unequal masses, random velocities and energies, in random order; the sides
+ * of the box differ, and none begins at 0. */
+static void disordered(struct hydro_state *state, int dim, size_t side)
 {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     size_t n = 1, order[HYDRO_MAX];
@@ -118,7 +121,7 @@ void hydro_cloud_disordered(struct hydro_state *state, int dim, size_t side)
 
 void hydro_cloud_sheared(struct hydro_state *state, int dim, size_t side)
 {
-    hydro_cloud_disordered(state, dim, side);
+    disordered(state, dim, side);
     for (size_t i = 0; i < state->n; i++) {
         const double s = 2 * M_PI * (state->x[1][i] - low[1]) / (high[1] - low[1]),
                      t = 2 * M_PI * (state->x[0][i] - low[0]) / (high[0] - low[0]);

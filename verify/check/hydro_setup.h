@@ -47,13 +47,8 @@ void hydro_describe(const struct scheme *scheme, char text[HYDRO_TEXT]);
 
 /* ---- in 2D and 3D ---- */
 
-/* side^dim particles on a lattice whose spacing varies by a factor of 5/3 and whose points are
- * displaced at random; unequal masses, random velocities and energies, in random order; the sides
- * of the box differ, and none begins at 0. */
-void hydro_cloud_disordered(struct hydro_state *state, int dim, size_t side);
-
-/* hydro_cloud_disordered with mostly smooth velocities, shear and compression, so that limiters and
- * projectors are neither 0 nor 1. */
+/* side^dim disordered particles with mostly smooth velocities, shear and compression, so that
+ * limiters and projectors are neither 0 nor 1. */
 void hydro_cloud_sheared(struct hydro_state *state, int dim, size_t side);
 
 /* cubic_spline standard vanilla_ice mass, constant viscosity, mean width, modified leapfrog, h to

@@ -75,10 +75,6 @@ long double oracle_time_step(const struct oracle *oracle);
 bool oracle_covers(const struct scheme *scheme);
 bool oracle_covers_step(const struct integrator *integrator);
 
-/* Advances by dt; needs rates and leaves those of the new state. STATUS_BAD_INPUT: an unknown
- * integrator. */
-enum status oracle_step(struct oracle *oracle, long double dt, struct error *error);
-
 /* Evaluates, steps to t_end, and evaluates again if the last step does not end with it: the derived
  * fields belong to the state at t_end. */
 enum status oracle_run(struct oracle *oracle, long double t_end, struct error *error);

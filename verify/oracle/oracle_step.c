@@ -187,7 +187,9 @@ bool oracle_covers_step(const struct integrator *integrator)
     return find_step(integrator) != NULL;
 }
 
-enum status oracle_step(struct oracle *oracle, long double dt, struct error *error)
+/* Advances by dt; needs rates and leaves those of the new state. STATUS_BAD_INPUT: an unknown
+ * integrator. */
+static enum status take_step(struct oracle *oracle, long double dt, struct error *error)
 {
     step_function *step = find_step(oracle->scheme.integrator);
     if (!step)
@@ -246,7 +248,7 @@ enum status oracle_run(struct oracle *oracle, long double t_end, struct error *e
             dt = left;
         else if (2 * dt >= left)
             dt = left / 2;
-        status = oracle_step(oracle, dt, error);
+        status = take_step(oracle, dt, error);
         if (dt == left) oracle->time = t_end;
     }
     if (!status && !oracle->scheme.integrator->ends_evaluated) status = find_end(oracle, error);

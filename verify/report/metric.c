@@ -379,15 +379,3 @@ void metric_free(struct metrics *metrics)
     free(metrics->list);
     *metrics = (struct metrics){0};
 }
-
-static int path_of(const void *path, const void *metric)
-{
-    return strcmp(path, ((const struct metric *)metric)->path);
-}
-
-const struct metric *metric_find(const struct metrics *metrics, const char *path)
-{
-    return metrics->count
-               ? bsearch(path, metrics->list, metrics->count, sizeof *metrics->list, path_of)
-               : NULL;
-}

@@ -45,9 +45,6 @@ struct metrics {
 enum status metric_collect(const json_t *document, struct metrics *metrics, struct error *error);
 void metric_free(struct metrics *metrics);
 
-/* The metric at a path, or NULL. */
-const struct metric *metric_find(const struct metrics *metrics, const char *path);
-
 enum metric_verdict {
     VERDICT_SAME,
     VERDICT_BETTER,

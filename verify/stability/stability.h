@@ -73,9 +73,5 @@ bool stability_knows(const struct integrator *integrator);
 void stability_follow(const struct stability *lattice, double kappa, double dt, int count,
                       double *x, double *v);
 
-/* Largest |eigenvalue| of one time step dt over all waves: the scheme's integrator with all its
- * memory (old rates, predicted widths). */
-double stability_amplification(const struct stability *lattice, double dt);
-
 /* The largest stable c dt/dx, searched up to `to`. */
 double stability_time_step(const struct stability *lattice, double to);

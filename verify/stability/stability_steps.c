@@ -190,7 +190,9 @@ void stability_follow(const struct stability *lattice, double kappa, double dt, 
     *v = step ? w.s[V] : (double)NAN;
 }
 
-double stability_amplification(const struct stability *lattice, double dt)
+/* Largest |eigenvalue| of one time step dt over all waves: the scheme's integrator with all its
+ * memory (old rates, predicted widths). */
+static double amplification(const struct stability *lattice, double dt)
 {
     struct wave_step w = begin(lattice, dt);
     void (*step)(struct wave_step *) = find_step(lattice);
@@ -211,7 +213,7 @@ double stability_time_step(const struct stability *lattice, double to)
     enum { STEPS = 40 };
     for (int i = 1; i <= STEPS; i++) {
         const double dt = to * i / STEPS;
-        if (!(stability_amplification(lattice, dt) <= 1 + tolerance * dt)) {
+        if (!(amplification(lattice, dt) <= 1 + tolerance * dt)) {
             unstable = dt;
             break;
         }
@@ -219,7 +221,7 @@ double stability_time_step(const struct stability *lattice, double to)
     }
     for (int i = 0; i < 16 && stable < unstable; i++) {
         const double middle = 0.5 * (stable + unstable);
-        const bool good = stability_amplification(lattice, middle) <= 1 + tolerance * middle;
+        const bool good = amplification(lattice, middle) <= 1 + tolerance * middle;
         *(good ? &stable : &unstable) = middle;
     }
     return stable;

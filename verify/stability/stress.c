@@ -112,7 +112,8 @@ static enum status prepare(struct stress_cell *cell, bool nightly, struct error 
     return STATUS_OK;
 }
 
-void stress_command(const struct stress_cell *cell, char command[STRESS_COMMAND])
+/* "sphproof run CASE KEY=VALUE ..." of a cell. */
+static void command_of(const struct stress_cell *cell, char command[STRESS_COMMAND])
 {
     int used = snprintf(command, STRESS_COMMAND, "sphproof run %s", case_of(cell));
     for (size_t i = 0; i < cell->argument_count && used < STRESS_COMMAND; i++) {
@@ -139,7 +140,7 @@ static enum status compute(const void *context, json_t **document, struct error 
 static enum status add_cell(struct stress_cell *cell, struct pool *pool, struct error *error)
 {
     char command[STRESS_COMMAND], key[STRESS_COMMAND + 64], name[128];
-    stress_command(cell, command);
+    command_of(cell, command);
     snprintf(key, sizeof key, "stress %s %s %s %llu %s", cell->group->member.name,
              cell->column->label, cell->row.label, (unsigned long long)cell->step_budget, command);
     snprintf(name, sizeof name, "stress %s: %s, %s", cell->group->member.name, cell->row.label,
@@ -193,7 +194,7 @@ static json_t *cell_json(const struct stress_cell *cell, const struct pool_job *
 {
     char command[STRESS_COMMAND];
     json_t *settings = json_object(), *entry = json_object();
-    stress_command(cell, command);
+    command_of(cell, command);
     result_add(settings, "case=%s", case_of(cell));
     for (size_t i = 0; i < cell->argument_count; i++) {
         const char *argument = cell->arguments[i];

@@ -29,6 +29,3 @@ enum status stress_plan(struct stress *stress, bool nightly, size_t group_count,
 size_t stress_judge(const struct stress *stress, const struct pool *pool, json_t *document);
 
 void stress_free(struct stress *stress);
-
-/* "sphproof run CASE KEY=VALUE ..." of a cell. */
-void stress_command(const struct stress_cell *cell, char command[STRESS_COMMAND]);
