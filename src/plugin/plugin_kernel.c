@@ -204,9 +204,7 @@ static enum status load(struct plugin *plugin, int dim, struct error *error)
     return STATUS_OK;
 }
 
-/* Prepares the plug-in with this index for dim dimensions; does nothing for built-in kernels.
- * STATUS_CHECK_FAILED: refused, with the failed checks of the certificate; STATUS_BAD_INPUT: not a
- * kernel. */
+/* Does nothing for built-in kernels. */
 static enum status prepare(int index, int dim, struct error *error)
 {
     struct plugin *plugin = plugins + index - (int)kernel_family.n;

@@ -31,6 +31,7 @@ bool plugin_is_path(const char *word);
  * content other than HASH, or too many plug-ins. */
 enum status plugin_find(const char *word, int *index, struct error *error);
 
-/* Prepares the kernel if it is a plug-in, then calls kernel_select. */
+/* Prepares the kernel if it is a plug-in, then calls kernel_select. STATUS_CHECK_FAILED: the
+ * plug-in is refused, with the failed checks of its certificate; STATUS_BAD_INPUT: not a kernel. */
 enum status plugin_select(struct kernel *kernel, int index, int sinc_order, int dim,
                           struct error *error);
