@@ -77,11 +77,13 @@ static void check_files(const struct code *code, struct ini_text *at, enum code_
     size_t length;
     const char *rest = value;
     for (const char *word; !at->failed && (word = code_next_word(&rest, &length));)
-        if (!code_beside(code, word, length, path) || !code_is_file(path))
-            ini_text_fail_value(at, code_keys[key].name, word,
+        if (!code_beside(code, word, length, path) || !code_is_file(path)) {
+            snprintf(path, sizeof path, "%.*s", (int)length, word);
+            ini_text_fail_value(at, code_keys[key].name, path,
                                 "files that are there, relative to the code file");
-        else if (key == CODE_parameters)
+        } else if (key == CODE_parameters) {
             template_known(at, path);
+        }
 }
 
 static void check_ic(struct ini_text *at, const char *value)

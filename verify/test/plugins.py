@@ -118,6 +118,14 @@ def judge_words(name):
     return None
 
 
+def judge_derived(name, hows):
+    """What a plug-in supplies, and how the rest is found."""
+    code, out, err = call("kernel", os.path.join(FOLDER, name + ".so"), "--dim", "1", "--color", "never")
+    lines = ["  %-28s %s" % (what, "supplied and checked" if not how else "not supplied: found " + how)
+             for what, how in zip(("constant", "dW/dh", "knots", "class"), hows)]
+    return None if code == 0 and out.endswith(" bounds\n%s\n\n" % "\n".join(lines)) else "exit status %d: %r%r" % (code, out, err)
+
+
 def processes(path):
     found = []
     for pid in filter(str.isdigit, os.listdir("/proc")):
@@ -162,6 +170,9 @@ def main():
         outcomes = [(line[0], pool.submit(judge, line)) for line in (table if MORE else by_day(table, certified))]
         outcomes += [(name, pool.submit(judge_verify, by_name[name])) for name in VERIFIED]
         outcomes += [("abort_in_dh", pool.submit(judge_words, "abort_in_dh"))]
+        for name, hows in (("table", ("by quadrature", "from w and dw", "by bisection", "by measurement")), ("faulty_NONE", 4 * ("",)),
+                           ("wendland_c8", ("by quadrature", "from w and dw", "by bisection", ""))):
+            outcomes += [(name, pool.submit(judge_derived, name, hows))]
         if MORE:
             outcomes += [(name, pool.submit(judge_right, name, dim)) for name in RIGHT for dim in "123"]
         for name, outcome in outcomes:
