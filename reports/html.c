@@ -41,7 +41,7 @@ void html_format(struct buffer *to, const char *format, ...)
         format += plain;
         if (!*format) break;
         char one[16];
-        const size_t end = 1 + strcspn(format + 1, "%sudefg");
+        const size_t end = 1 + strcspn(format + 1, "%sudf");
         snprintf(one, sizeof one, "%.*s", (int)end + 1, format);
         if (format[end] == '%')
             buffer_add(to, "%");
@@ -51,7 +51,7 @@ void html_format(struct buffer *to, const char *format, ...)
             buffer_format(to, one, va_arg(arguments, size_t));
         else if (format[end] == 'd')
             buffer_format(to, one, va_arg(arguments, int));
-        else if (format[end] == 'f' && end == 1)
+        else if (end == 1)
             html_number(to, va_arg(arguments, double));
         else
             buffer_format(to, one, va_arg(arguments, double));

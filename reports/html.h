@@ -13,7 +13,8 @@ void html_number(struct buffer *to, double value);
 /* Writes eight digits, for values that are nearly equal. */
 void html_digits(struct buffer *to, double value);
 
-/* As printf with %d and %zu, but %s is escaped, %-s written by html_words and %f by html_number. */
+/* As printf with %d, %zu and %.1f, but %s is escaped, %-s written by html_words and %f by
+ * html_number. */
 void html_format(struct buffer *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Begins <table class="..."> in a box that scrolls horizontally on a narrow screen, with a head row

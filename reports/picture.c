@@ -36,28 +36,22 @@ enum status picture_write(const struct plot *plot, const char *path, struct erro
     return status;
 }
 
-static enum status write_text(const char *stem, const char *end, const char *text,
-                              struct error *error)
-{
-    char path[4096];
-    if (snprintf(path, sizeof path, "%s%s", stem, end) >= (int)sizeof path)
-        return error_set(error, STATUS_ENVIRONMENT, "--plot '%.150s...': too long a name", stem);
-    return output_text(path, text, error);
-}
-
 enum status picture_source(const struct plot *plot, const char *path, struct error *error)
 {
     struct plot named = *plot;
     char *script = NULL, *data = NULL, *stem = strdup(path);
-    char *end = stem ? strrchr(stem, '.') : NULL;
-    if (end) *end = '\0';
-    const char *slash = stem ? strrchr(stem, '/') : NULL;
+    if (!stem) return error_set(error, STATUS_ENVIRONMENT, "--plot %.150s: no memory", path);
+    char *end = strrchr(stem, '.'), *slash = strrchr(stem, '/');
+    *end = '\0';
     named.name = slash ? slash + 1 : stem;
-    enum status status = STATUS_OK;
-    if (!stem || !plot_source(&named, &script, &data))
-        status = error_set(error, STATUS_ENVIRONMENT, "--plot %.150s: no memory", path);
-    if (!status) status = write_text(stem, ".dat", data, error);
-    if (!status) status = write_text(stem, ".gp", script, error);
+    enum status status =
+        plot_source(&named, &script, &data)
+            ? STATUS_OK
+            : error_set(error, STATUS_ENVIRONMENT, "--plot %.150s: no memory", path);
+    strcpy(end, ".dat");
+    if (!status) status = output_text(stem, data, error);
+    strcpy(end, ".gp");
+    if (!status) status = output_text(stem, script, error);
     free(script), free(data), free(stem);
     return status;
 }

@@ -247,6 +247,10 @@ static void report_codes(struct digests *kept, struct drawing *draw)
     buffer_free(&command);
     json_decref(results);
     report_destroy(report);
+    cases[3].file.ladder[0] = 1;
+    assert_int_equal(report_create_codes(codes, 2, &report, &error), STATUS_BAD_INPUT);
+    assert_null(report);
+    assert_non_null(strstr(error.message, "n=1: allowed: "));
 }
 
 static void refuse(struct pool *pool, const char *name)

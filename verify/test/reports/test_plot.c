@@ -7,10 +7,14 @@
 #include <signal.h>
 #include <sys/resource.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "layout.h"
 #include "markup.h"
+#include "movie.h"
+#include "own_folder.h"
 #include "page_plot.h"
+#include "picture.h"
 #include "plot.h"
 #include "process.h"
 
@@ -342,18 +346,82 @@ TEST(one_gnuplot_for_many_plots)
         free(svg);
     }
     plot_pen_free(&pen);
+    /* without /dev/fd/0 there is no file for the script */
+    char *alone, *svg, message[512];
+    const int input = dup(0);
+    assert_int_equal(plot_svg(NULL, &stack, &alone, message, sizeof message), PLOT_OK);
+    close(0);
+    for (int k = 0; k < 2; k++) {
+        const enum plot_status status = plot_svg(&pen, &stack, &svg, message, sizeof message);
+        if (k) dup2(input, 0);
+        assert_int_equal(status, PLOT_OK);
+        assert_int_equal(pen.script, -1);
+        assert_string_equal(svg, alone);
+        free(svg);
+    }
+    plot_pen_free(&pen);
+    close(input);
+    free(alone);
 }
 
-TEST(missing_gnuplot)
+/* No gnuplot and no ffmpeg, and other programs under the name of gnuplot. */
+TEST(wrong_gnuplot)
 {
-    char *path = strdup(getenv("PATH") ? getenv("PATH") : ""), *svg, message[512];
-    setenv("PATH", "/nowhere", 1);
-    enum plot_status status = plot_svg(NULL, &stack, &svg, message, sizeof message);
+    static const struct {
+        const char *program;
+        enum plot_status status;
+        const char *says;
+        bool png; /* does it write something that passes for a PNG file? */
+    } rows[] = {
+        {NULL, PLOT_NO_GNUPLOT,
+         "no plot: gnuplot cannot be run: No such file or directory (Debian, Ubuntu: "
+         "package gnuplot-nox)",
+         false},
+        {"/bin/true", PLOT_FAILED, "plot stack-of_2: gnuplot drew nothing", false},
+        {"/bin/false", PLOT_FAILED, "plot stack-of_2: gnuplot ended with status 1: ", false},
+        {"/bin/echo", PLOT_FAILED, "plot stack-of_2: gnuplot's SVG is not understood", true}};
+    char *path = strdup(getenv("PATH") ? getenv("PATH") : "");
+    char gnuplot[300], picture[2][300];
+    snprintf(gnuplot, sizeof gnuplot, "%s", path_of("gnuplot"));
+    snprintf(picture[0], sizeof picture[0], "%s", path_of("a.svg"));
+    snprintf(picture[1], sizeof picture[1], "%s", path_of("a.png"));
+    setenv("PATH", own_folder, 1);
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        char *svg, message[512], says[1000];
+        struct error error = {0};
+        struct movie movie = {0};
+        if (rows[k].program) assert_int_equal(symlink(rows[k].program, gnuplot), 0);
+        assert_int_equal(plot_svg(NULL, &stack, &svg, message, sizeof message), rows[k].status);
+        assert_null(svg);
+        assert_string_equal(message, rows[k].says);
+        for (int png = 0; png < 2; png++) {
+            const bool drawn = png && rows[k].png;
+            snprintf(says, sizeof says, "--plot '%s': %s", picture[png], rows[k].says);
+            assert_int_equal(picture_write(&stack, picture[png], &error),
+                             drawn ? STATUS_OK : STATUS_ENVIRONMENT);
+            if (!drawn) assert_string_equal(error.message, says);
+            assert_int_equal(access(picture[png], F_OK), drawn ? 0 : -1);
+        }
+        snprintf(says, sizeof says, "a picture of a movie: %s", rows[k].says);
+        assert_int_equal(movie_add(&movie, &stack, &error),
+                         rows[k].png ? STATUS_OK : STATUS_ENVIRONMENT);
+        if (!rows[k].png) assert_string_equal(error.message, says);
+        movie_free(&movie);
+        unlink(gnuplot);
+    }
+    struct error error = {0};
+    assert_int_equal(movie_probe("a.gif", &error), STATUS_ENVIRONMENT);
+    assert_string_equal(error.message,
+                        "--plot 'a.gif': a movie is made by ffmpeg (Debian, Ubuntu: package "
+                        "ffmpeg; FILE.png leaves pictures): ffmpeg cannot be run: No such file or "
+                        "directory");
+    const struct movie none = {0};
+    snprintf(gnuplot, sizeof gnuplot, "%s", path_of("a.mp4"));
+    assert_int_equal(movie_write(&none, gnuplot, &error), STATUS_ENVIRONMENT);
+    assert_non_null(strstr(error.message, "a movie is made by ffmpeg (Debian"));
+    assert_int_equal(access(gnuplot, F_OK), -1);
     setenv("PATH", path, 1);
     free(path);
-    assert_int_equal(status, PLOT_NO_GNUPLOT);
-    assert_null(svg);
-    assert_non_null(strstr(message, "gnuplot-nox"));
 }
 
 /* The names of plots are used as ids and as file names, and fit on one page. */
