@@ -16,7 +16,7 @@
 #include "worst.h"
 
 /* The limit of CPU time that this test sets stays for the rest of the process. */
-TEST(test_a_limit_of_cpu_time_leaves_the_clock_fine)
+TEST(a_limit_of_cpu_time_leaves_the_clock_fine)
 {
     struct rlimit limit;
     assert_int_equal(getrlimit(RLIMIT_CPU, &limit), 0);
@@ -30,6 +30,39 @@ TEST(test_a_limit_of_cpu_time_leaves_the_clock_fine)
         before = now;
     }
     near_below(before - begin, 0.5);
+}
+
+static const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 2};
+static struct run_settings given; /* of the last measurement */
+
+static void prepare(const char *name, int n, char *const *keys)
+{
+    struct error error;
+    if (run_prepare(&given, name, n, keys, &error)) fail_msg("%s", error.message);
+    given.threads = 1;
+}
+
+static struct bench_skips skips_of(const char *name, int n, char *const *keys, enum bench_part part)
+{
+    struct bench_skips skips;
+    struct error error;
+    prepare(name, n, keys);
+    if (bench_skips_measure(&given, 1, &brief, part, &skips, &error)) fail_msg("%s", error.message);
+    return skips;
+}
+
+/* With particle numbers ladder[0] and, unless it is 0, ladder[1]. */
+static struct precision precision_of(const char *name, int n, char *const *keys, const char *vary,
+                                     const size_t ladder[2])
+{
+    struct sweep sweep;
+    struct precision precision;
+    struct error error;
+    prepare(name, n, keys);
+    if (sweep_parse(&sweep, vary, &error) ||
+        precision_measure(&given, &sweep, ladder, 1 + (ladder[1] > 0), &brief, &precision, &error))
+        fail_msg("%s", error.message);
+    return precision;
 }
 
 /* --- timing, on a clock that the test controls ------------------------------------------------ */
@@ -57,7 +90,7 @@ static enum status fake_work(void *context, uint64_t times, struct clock_taken *
 
 static const struct bench_rules rules = {.least_s = 0.01, .most_s = 1e9, .samples = 5};
 
-TEST(test_samples_double_until_they_are_long_enough)
+TEST(samples_double_until_they_are_long_enough)
 {
     /* calls take 1, 2, 4, 8 ms after the warm-up; 16 ms is the first sample */
     struct fake fake = {.once = 1e-3, .warm_up = 0.1};
@@ -74,7 +107,7 @@ TEST(test_samples_double_until_they_are_long_enough)
     near_relative(subject.time.spread, 0.5, 1e-12); /* of 1 1.25 1.5 1.75 3 */
 }
 
-TEST(test_first_call_does_not_count)
+TEST(first_call_does_not_count)
 {
     struct fake fake = {.once = 0.02, .warm_up = 0.05};
     struct bench_subject subject = {.work = fake_work, .context = &fake};
@@ -84,7 +117,7 @@ TEST(test_first_call_does_not_count)
     assert_int_equal(fake.calls, 6);
 }
 
-TEST(test_long_work_is_not_repeated_for_ever)
+TEST(long_work_is_not_repeated_for_ever)
 {
     struct fake fake = {.once = 3};
     struct bench_subject subject = {.work = fake_work, .context = &fake};
@@ -94,7 +127,7 @@ TEST(test_long_work_is_not_repeated_for_ever)
     assert_int_equal(subject.time.samples, 2);
 }
 
-TEST(test_samples_are_taken_in_turn)
+TEST(samples_are_taken_in_turn)
 {
     struct fake fake = {.once = 0.02};
     struct bench_subject subjects[2] = {{.work = fake_work, .context = &fake},
@@ -108,7 +141,7 @@ TEST(test_samples_are_taken_in_turn)
     near_absolute(subjects[1].time.spread, 0, 1e-12);
 }
 
-TEST(test_breakdown_of_one_subject)
+TEST(breakdown_of_one_subject)
 {
     struct error error = {0};
     struct fake sound = {.once = 0.02}, unsound = {.once = 0.02, .breaks_at = 4},
@@ -134,7 +167,7 @@ TEST(test_breakdown_of_one_subject)
 
 /* --- Pareto front and paths along it ---------------------------------------------------------- */
 
-TEST(test_pareto_front)
+TEST(pareto_front)
 {
     static const double cost[] = {1, 2, 3, 4, 2, 1, 5, (double)NAN, 0.5, 4};
     static const double error[] = {8, 4, 5, 2, 4, 9, 2, 0.1, (double)INFINITY, 1.5};
@@ -148,7 +181,7 @@ TEST(test_pareto_front)
     precision_front(0, cost, error, front);
 }
 
-TEST(test_cost_of_an_error)
+TEST(cost_of_an_error)
 {
     /* error = cost^-1/2 from 1e-1 to 1e-3 */
     const double cost[] = {1e2, 1e4, 1e6}, error[] = {1e-1, 1e-2, 1e-3};
@@ -202,7 +235,7 @@ static void compare_limit(const struct kernel *kernel, const struct operator_for
     near_below(wrong / scale, 1e-10);
 }
 
-TEST(test_limit_has_the_operators_gradient)
+TEST(limit_has_the_operators_gradient)
 {
     for (size_t k = 0; k < kernel_family.n; k++) {
         struct kernel kernel;
@@ -215,7 +248,7 @@ TEST(test_limit_has_the_operators_gradient)
 }
 
 /* Neighbours by definition agree with the search's, and there are neighbours and others. */
-TEST(test_neighbours_of_the_search)
+TEST(neighbours_of_the_search)
 {
     enum { PLACES = 192 };
     float x[3][PLACES];
@@ -241,18 +274,17 @@ TEST(test_neighbours_of_the_search)
 
 /* However often the loops are repeated, their numbers stay ordinary: none overflows, and none
  * decays to zero, where arithmetic would be cheap. */
-TEST(test_repeated_loops_stay_finite)
+TEST(repeated_loops_stay_finite)
 {
     static char *const keys[][2] = {{"kernel=quadratic_spline", "gradient=standard"},
                                     {"kernel=quintic_spline", "gradient=ia"}};
     for (size_t k = 0; k < 2; k++) {
-        static struct run_settings settings;
         struct bench_loops loops;
         struct scheme scheme;
         struct error error = {0};
         struct clock_taken taken = {0};
-        assert_int_equal(run_prepare(&settings, "sod", 2, keys[k], &error), 0);
-        assert_int_equal(settings_scheme(&settings.settings, 1, &scheme, &error), 0);
+        prepare("sod", 2, keys[k]);
+        assert_int_equal(settings_scheme(&given.settings, 1, &scheme, &error), 0);
         const unsigned all = 1u << PASS_STATE | 1u << PASS_DENSITY | 1u << PASS_MATRIX |
                              1u << PASS_FORCE | 1u << PASS_SIGNAL;
         assert_int_equal(bench_loops_create(&loops, &scheme, 200, true, all, &error), 0);
@@ -287,15 +319,13 @@ static void compare_plain(const char *name, int n, char *const *more)
                                  "alpha=1",
                                  "skip=none",
                                  "h_tolerance=1e-13"};
-    struct run_settings *settings = calloc(1, sizeof *settings);
     struct run run;
     struct run_result fast, plain;
     struct error error = {0};
-    assert_int_equal(run_prepare(settings, name, sizeof keys / sizeof *keys, keys, &error), 0);
-    assert_int_equal(settings_apply(&settings->settings, n, more, &error), 0);
-    settings->settings.shared = true; /* alpha is of the cases with viscosity */
-    settings->threads = 1;
-    assert_int_equal(run_resolve(&run, settings, &error), STATUS_OK);
+    prepare(name, sizeof keys / sizeof *keys, keys);
+    assert_int_equal(settings_apply(&given.settings, n, more, &error), 0);
+    given.settings.shared = true; /* alpha is of the cases with viscosity */
+    assert_int_equal(run_resolve(&run, &given, &error), STATUS_OK);
     assert_int_equal(run_execute(&run, &fast, &error), STATUS_OK);
     run.asked.solver = precision_plain;
     assert_int_equal(run_execute(&run, &plain, &error), STATUS_OK);
@@ -324,10 +354,9 @@ static void compare_plain(const char *name, int n, char *const *more)
     near_relative(plain.errors[FIELD_DENSITY].l1, fast.errors[FIELD_DENSITY].l1, 1e-8);
     run_free(&fast);
     run_free(&plain);
-    free(settings);
 }
 
-TEST(test_plain_agrees_with_the_solver)
+TEST(plain_agrees_with_the_solver)
 {
     compare_plain("sod", 2, (char *[]){"n=126", "t_end=0.15"});
     compare_plain("sod_standard", 3, (char *[]){"n=100", "eta=2", "cfl=0.15"});
@@ -335,24 +364,22 @@ TEST(test_plain_agrees_with_the_solver)
     compare_plain("sound_wave", 3, (char *[]){"n=48", "background=1 0.7 1", "viscosity=none"});
 }
 
-TEST(test_plain_refuses_other_schemes)
+TEST(plain_refuses_other_schemes)
 {
     static char *const keys[] = {"n=60", "kernel=wendland_c2"};
-    struct run_settings *settings = calloc(1, sizeof *settings);
     struct run run;
     struct run_result result;
     struct error error = {0};
-    assert_int_equal(run_prepare(settings, "sod", 2, keys, &error), 0);
-    settings->solver = precision_plain;
-    assert_int_equal(run_resolve(&run, settings, &error), STATUS_OK);
+    prepare("sod", 2, keys);
+    given.solver = precision_plain;
+    assert_int_equal(run_resolve(&run, &given, &error), STATUS_OK);
     assert_int_equal(run_execute(&run, &result, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "cubic_spline"));
-    free(settings);
 }
 
 /* --- left-out work ---------------------------------------------------------------------------- */
 
-TEST(test_difference_of_states)
+TEST(difference_of_states)
 {
     double x[2][3] = {{-0.999999999, 0.1, 0.4}, {0.999999999, 0.1, 0.4}}, v[3] = {0, -4, 2},
            w[3] = {0, -4, 2 + 4e-9}, one[3] = {1, 1, 1};
@@ -377,15 +404,9 @@ TEST(test_difference_of_states)
     assert_true(isinf(bench_skips_difference(&nothing, &nothing, 2)));
 }
 
-TEST(test_skips_keep_their_promises)
+TEST(skips_keep_their_promises)
 {
-    static struct run_settings settings;
-    struct bench_skips skips;
-    struct error error = {0};
-    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 2};
-    assert_int_equal(run_prepare(&settings, "sod", 2, (char *[]){"t_end=0.1", "n=180"}, &error), 0);
-    settings.threads = 1;
-    assert_int_equal(bench_skips_measure(&settings, 1, &brief, BENCH_WORK, &skips, &error), 0);
+    struct bench_skips skips = skips_of("sod", 2, (char *[]){"t_end=0.1", "n=180"}, BENCH_WORK);
     assert_true(skips.count >= 6);
     near_inside(skips.skips[0].shares->skipped, 0.2, 0.9); /* at t = 0.1 */
     for (size_t i = 0; i < skips.count; i++) {
@@ -416,18 +437,12 @@ TEST(test_skips_keep_their_promises)
 
 /* A run without viscosity and one with viscosity of strength 0 have the same bits and time
  * steps. */
-TEST(test_no_viscosity_equals_strength_0)
+TEST(no_viscosity_equals_strength_0)
 {
-    static struct run_settings settings;
-    struct bench_skips skips;
-    struct error error = {0};
-    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 0.01, .samples = 1};
     static char *keys[][4] = {{"t_end=0.1", "n=40"}, {"t_end=0.02", "n=16^2", "viscosity=none"}};
     for (int k = 0; k < 2; k++) {
         const char *name = k ? "gresho" : "sound_wave";
-        assert_int_equal(run_prepare(&settings, name, 2 + k, keys[k], &error), 0);
-        settings.threads = 1;
-        assert_int_equal(bench_skips_measure(&settings, 1, &brief, BENCH_WORK, &skips, &error), 0);
+        struct bench_skips skips = skips_of(name, 2 + k, keys[k], BENCH_WORK);
         int met = 0;
         for (size_t i = 0; i < skips.count; i++) {
             assert_true(skips.skips[i].kept);
@@ -442,21 +457,15 @@ TEST(test_no_viscosity_equals_strength_0)
 
 /* Local time steps beside global ones: errors are of quantities with an exact value, and sums are
  * conserved. */
-TEST(test_local_time_steps)
+TEST(local_time_steps)
 {
     static const struct {
         const char *name, *measured;
     } cases[] = {
         {"noh_2d", "L1 of density"}, {"kelvin_helmholtz", "mode_amplitude"}, {"sod", NULL}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        static struct run_settings settings;
-        struct bench_skips skips;
-        struct error error = {0};
-        const struct bench_rules brief = {.least_s = 1e-6, .most_s = 0.01, .samples = 1};
         char *keys[] = {"t_end=0.05", "n=256"};
-        assert_int_equal(run_prepare(&settings, cases[k].name, 2, keys, &error), 0);
-        settings.threads = 1;
-        assert_int_equal(bench_skips_measure(&settings, 1, &brief, BENCH_STEPS, &skips, &error), 0);
+        struct bench_skips skips = skips_of(cases[k].name, 2, keys, BENCH_STEPS);
         assert_int_equal(skips.count, cases[k].measured ? 1 : 0);
         for (size_t i = 0; i < skips.count; i++) {
             const struct bench_skip *skip = &skips.skips[i];
@@ -472,7 +481,7 @@ TEST(test_local_time_steps)
     }
 }
 
-TEST(test_positions_along_every_axis_count)
+TEST(positions_along_every_axis_count)
 {
     double x[3] = {0.1, 0.2, 0.3}, y[3] = {0.1, 0.5, 0.9}, z[3] = {0.1, 0.5, 0.900001};
     struct snapshot a = {.n = 3, .x = {x, y}, .v = {x, y}, .rho = x, .u = x, .P = x, .h = x};
@@ -484,16 +493,10 @@ TEST(test_positions_along_every_axis_count)
     near_relative(bench_skips_difference(&a, &b, 1), 1e-6 / 0.9, 1e-6);
 }
 
-TEST(test_skips_keep_their_promises_in_2d)
+TEST(skips_keep_their_promises_in_2d)
 {
-    static struct run_settings settings;
-    struct bench_skips skips;
-    struct error error = {0};
-    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 0.01, .samples = 2};
     char *keys[] = {"t_end=0.02", "n=16^2", "gradient=standard", "viscosity=constant"};
-    assert_int_equal(run_prepare(&settings, "gresho", 4, keys, &error), 0);
-    settings.threads = 1;
-    assert_int_equal(bench_skips_measure(&settings, 1, &brief, BENCH_WORK, &skips, &error), 0);
+    struct bench_skips skips = skips_of("gresho", 4, keys, BENCH_WORK);
     bool matrix = false, slope = false, line = false;
     for (size_t i = 0; i < skips.count; i++) {
         const struct bench_skip *skip = &skips.skips[i];
@@ -509,7 +512,7 @@ TEST(test_skips_keep_their_promises_in_2d)
 /* --- sums in 2D and 3D ------------------------------------------------------------------------ */
 
 /* Pairs are counted over all pairs; each pass does what its name says and no more. */
-TEST(test_pairs_of_each_pass)
+TEST(pairs_of_each_pass)
 {
     struct run_settings asked;
     static struct run run;
@@ -545,7 +548,7 @@ TEST(test_pairs_of_each_pass)
 }
 
 /* Schemes that compute more per particle have the arrays that they need: forces add up to 0. */
-TEST(test_forces_of_schemes_balance)
+TEST(forces_of_schemes_balance)
 {
     static const char *const schemes[] = {"shifting=fluxes", "shifting=closed", "gradient=blended",
                                           "viscosity=cullen_dehnen", "formulation=lagrangian"};
@@ -571,15 +574,13 @@ TEST(test_forces_of_schemes_balance)
 
 /* --- how cost grows --------------------------------------------------------------------------- */
 
-TEST(test_scaling)
+TEST(scaling)
 {
-    static struct run_settings settings;
     static struct scaling scaling;
     static const size_t ladder[] = {90, 180, 270, 810};
     struct error error = {0};
-    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 2};
-    assert_int_equal(run_prepare(&settings, "sod", 1, (char *[]){"t_end=0.02"}, &error), 0);
-    assert_int_equal(bench_scaling_measure(&settings, ladder, 4, 2, &brief, &scaling, &error), 0);
+    prepare("sod", 1, (char *[]){"t_end=0.02"});
+    assert_int_equal(bench_scaling_measure(&given, ladder, 4, 2, &brief, &scaling, &error), 0);
     for (size_t i = 0; i < 4; i++) {
         assert_int_equal(scaling.levels[i].n, ladder[i]);
         near_inside(scaling.levels[i].error, 1e-5, 0.1);
@@ -594,20 +595,11 @@ TEST(test_scaling)
 
 /* --- a small study: order and consistency of its points --------------------------------------- */
 
-TEST(test_study)
+TEST(study)
 {
-    static struct run_settings settings;
-    static const size_t ladder[] = {45, 90};
-    struct sweep sweep;
-    struct precision precision;
-    struct error error = {0};
-    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 2};
-    assert_int_equal(run_prepare(&settings, "sod", 1, (char *[]){"t_end=0.1"}, &error), 0);
-    settings.threads = 1;
-    assert_int_equal(sweep_parse(&sweep, "kernel=quadratic_spline,cubic_spline,eta=2,1.1", &error),
-                     0);
-    assert_int_equal(precision_measure(&settings, &sweep, ladder, 2, &brief, &precision, &error),
-                     0);
+    struct precision precision =
+        precision_of("sod", 1, (char *[]){"t_end=0.1"},
+                     "kernel=quadratic_spline,cubic_spline,eta=2,1.1", (size_t[2]){45, 90});
     assert_int_equal(precision.scheme_count, 7);
     /* eta = 1.1 is below the existence limit of either kernel: excluded */
     assert_int_equal(precision.point_count, 10);
@@ -645,24 +637,21 @@ TEST(test_study)
 }
 
 /* Shares compute each n separately; on two processors each processor has its own front. */
-TEST(test_front_of_each_processor)
+TEST(front_of_each_processor)
 {
-    static struct run_settings settings;
     static const size_t ladder[] = {40, 60};
     static const char *const processors[] = {"this", "that"};
     struct sweep sweep;
     struct error error = {0};
-    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 2};
     const struct pool_settings how = {.jobs = 1};
-    assert_int_equal(run_prepare(&settings, "sod", 1, (char *[]){"t_end=0.1"}, &error), 0);
-    settings.threads = 1;
+    prepare("sod", 1, (char *[]){"t_end=0.1"});
     assert_int_equal(sweep_parse(&sweep, NULL, &error), 0);
     for (int two = 0; two < 2; two++) {
         struct precision precision;
         struct pool pool = {0};
         size_t on_front[2] = {0};
         assert_int_equal(
-            precision_plan(&settings, &sweep, ladder, 2, &brief, &precision, &pool, &error), 0);
+            precision_plan(&given, &sweep, ladder, 2, &brief, &precision, &pool, &error), 0);
         assert_int_equal(pool.count, 2);
         assert_int_equal(pool_run(&pool, &how, &error), 0);
         for (size_t l = 0; l < 2; l++)
@@ -683,20 +672,11 @@ TEST(test_front_of_each_processor)
 }
 
 /* A sound wave: errors are relative to the wave, not to the gas that carries it; second order. */
-TEST(test_errors_relative_to_the_wave)
+TEST(errors_relative_to_the_wave)
 {
-    static struct run_settings settings;
-    static const size_t ladder[] = {32, 64};
-    struct sweep sweep;
-    struct precision precision;
-    struct error error = {0};
-    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 1};
-    char *keys[] = {"t_end=0.1", "amplitude=1e-4"};
-    assert_int_equal(run_prepare(&settings, "sound_wave", 2, keys, &error), 0);
-    settings.threads = 1;
-    assert_int_equal(sweep_parse(&sweep, "kernel=quadratic_spline", &error), 0);
-    assert_int_equal(precision_measure(&settings, &sweep, ladder, 2, &brief, &precision, &error),
-                     0);
+    struct precision precision =
+        precision_of("sound_wave", 2, (char *[]){"t_end=0.1", "amplitude=1e-4"},
+                     "kernel=quadratic_spline", (size_t[2]){32, 64});
     near_relative(precision.signal, 2e-4 / 3.14159265358979, 1e-2); /* means over bins */
     assert_int_equal(precision.order, 2);
     near_relative(precision.points[0].relative, precision.points[0].error / precision.signal,
@@ -712,20 +692,10 @@ TEST(test_errors_relative_to_the_wave)
 }
 
 /* A scheme that the case's gravity excludes is reported, and the others are measured. */
-TEST(test_schemes_excluded_by_gravity)
+TEST(schemes_excluded_by_gravity)
 {
-    static struct run_settings settings;
-    static const size_t ladder[] = {288};
-    struct sweep sweep;
-    struct precision precision;
-    struct error error = {0};
-    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 1};
-    char *keys[] = {"t_end=0.001"};
-    assert_int_equal(run_prepare(&settings, "rayleigh_taylor_mode", 1, keys, &error), 0);
-    settings.threads = 1;
-    assert_int_equal(sweep_parse(&sweep, "shifting=none,closed", &error), 0);
-    assert_int_equal(precision_measure(&settings, &sweep, ladder, 1, &brief, &precision, &error),
-                     0);
+    struct precision precision = precision_of("rayleigh_taylor_mode", 1, (char *[]){"t_end=0.001"},
+                                              "shifting=none,closed", (size_t[2]){288});
     assert_int_equal(precision.schemes[0].count, 1);
     assert_int_equal(precision.schemes[1].count, 0);
     assert_non_null(strstr(precision.schemes[1].excluded, "gravity=-0.5 exclude each other"));
@@ -734,20 +704,10 @@ TEST(test_schemes_excluded_by_gravity)
 
 /* A vortex in 2D: errors are of the velocity along its circles, relative to its distance from a
  * uniform one; work grows as n^(3/2), and the merit at order 2 is error^(3/2) x CPU. */
-TEST(test_vortex_in_2d)
+TEST(vortex_in_2d)
 {
-    static struct run_settings settings;
-    static const size_t ladder[] = {144, 256};
-    struct sweep sweep;
-    struct precision precision;
-    struct error error = {0};
-    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 1};
-    char *keys[] = {"t_end=0.02"};
-    assert_int_equal(run_prepare(&settings, "gresho", 1, keys, &error), 0);
-    settings.threads = 1;
-    assert_int_equal(sweep_parse(&sweep, "gradient=ia", &error), 0);
-    assert_int_equal(precision_measure(&settings, &sweep, ladder, 2, &brief, &precision, &error),
-                     0);
+    struct precision precision =
+        precision_of("gresho", 1, (char *[]){"t_end=0.02"}, "gradient=ia", (size_t[2]){144, 256});
     assert_string_equal(precision.error_of, "azimuthal");
     /* the integral of |v_phi| over the box: 2 pi (5 0.2^3/3 + 0.4^2 - 0.2^2 - 5 (0.4^3 - 0.2^3)/3)
      */
