@@ -205,16 +205,6 @@ static void specialised_subjects(struct check_run *run)
             }
 }
 
-static double difference(const double *a, const double *b, size_t n)
-{
-    double worst = 0, scale = 0;
-    for (size_t i = 0; i < n; i++) {
-        worst_keep(&worst, fabs(a[i] - b[i]));
-        scale = fmax(scale, fabs(a[i]));
-    }
-    return worst == 0 ? 0 : worst / scale;
-}
-
 static void measure_specialised(struct check_run *run, const void *subject)
 {
     const struct balance_subject *given = subject;
@@ -236,9 +226,9 @@ static void measure_specialised(struct check_run *run, const void *subject)
         check_measure(run, 1, 0, 0, "%s: %s", where, error.message);
     } else {
         for (int k = 0; k < 2; k++) simulation_rates(simulation[k], &rates[k]);
-        double worst = difference(rates[0].energy, rates[1].energy, cloud.n);
+        double worst = hydro_difference(cloud.n, rates[0].energy, rates[1].energy);
         for (int a = 0; a < s.dim; a++)
-            worst_keep(&worst, difference(rates[0].force[a], rates[1].force[a], cloud.n));
+            worst_keep(&worst, hydro_difference(cloud.n, rates[0].force[a], rates[1].force[a]));
         check_measure(run, worst, 1e-12, 2e-14, "%s", where);
     }
     for (int k = 0; k < 2; k++) simulation_destroy(simulation[k]);

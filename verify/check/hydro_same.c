@@ -26,17 +26,6 @@ static enum status run_on(struct simulation *simulation, double t_end, bool stop
     return status;
 }
 
-/* The largest difference of two fields, relative to the largest value of the first. */
-static double field_difference(size_t n, const double *a, const double *b)
-{
-    double worst = 0, scale = 0;
-    for (size_t i = 0; i < n; i++) {
-        worst_keep(&worst, fabs(a[i] - b[i]));
-        scale = fmax(scale, fabs(a[i]));
-    }
-    return worst == 0 ? 0 : worst / scale;
-}
-
 /* Runs two setups for the same time, the second one with stops if asked; the largest difference of
  * any state variable relative to its largest value; NaN if one did not run. */
 static double difference(const struct setup *a, const struct setup *b, bool stops, double t_end,
@@ -59,7 +48,7 @@ static double difference(const struct setup *a, const struct setup *b, bool stop
         {r[0].force[0], r[1].force[0]}, {r[0].energy, r[1].energy}};
     worst = r[0].time_step == r[1].time_step ? 0 : fabs(r[0].time_step / r[1].time_step - 1);
     for (size_t f = 0; f < sizeof pairs / sizeof *pairs; f++)
-        worst_keep(&worst, field_difference(s[0].n, pairs[f][0], pairs[f][1]));
+        worst_keep(&worst, hydro_difference(s[0].n, pairs[f][0], pairs[f][1]));
     if (s[0].n == 0 || s[0].n != s[1].n) worst = (double)NAN;
 done:
     simulation_destroy(simulations[0]);

@@ -7,6 +7,7 @@
 #include <stdio.h>
 
 #include "integrator.h"
+#include "worst.h"
 
 void hydro_disordered(struct hydro_state *state, size_t n)
 {
@@ -273,4 +274,14 @@ void hydro_cloud_describe(const struct scheme *s, int dim, char text[HYDRO_TEXT]
              scheme_balsara_family.members[s->balsara]->name,
              scheme_energy_family.members[s->energy]->name, s->alpha_u, s->shock_conductivity,
              scheme_h_method_family.members[s->h_method]->name, s->integrator->member.name);
+}
+
+double hydro_difference(size_t n, const double *a, const double *b)
+{
+    double worst = 0, scale = 0;
+    for (size_t i = 0; i < n; i++) {
+        worst_keep(&worst, fabs(a[i] - b[i]));
+        scale = fmax(scale, fabs(a[i]));
+    }
+    return worst == 0 ? 0 : worst / scale;
 }

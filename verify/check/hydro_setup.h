@@ -20,6 +20,9 @@ const struct integrator *hydro_integrator(const char *name);
 /* Sets the kernel and its default width; the name is a built-in one. */
 void hydro_set_kernel(struct scheme *scheme, const char *name);
 
+/* The largest difference of two fields, relative to the largest value of the first. */
+double hydro_difference(size_t n, const double *a, const double *b);
+
 /* ---- in 1D ---- */
 
 /* Unequal masses and spacings (8:1), random velocities and energies; the order is not that of x,
