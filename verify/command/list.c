@@ -249,7 +249,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     const bool only_keys = chosen && strcmp(chosen->name, "keys") == 0;
     if (markdown && !only_keys)
         return command_usage(options, error, "--markdown goes with `list keys` only");
-    if (places && (n || markdown)) return command_usage(options, error, "--where stands alone");
+    if (places && n) return command_usage(options, error, "--where stands alone");
     json_t *families = json_object(), *installed = places ? where(options->speak) : NULL;
     for (size_t i = 0; i < LISTS && !places; i++) {
         const struct family *family = list_at(i);

@@ -195,13 +195,14 @@ struct scatter {
     const char *over;
 };
 
-static bool varies(const json_t *exact, const char *name)
+static bool moves(const json_t *exact, const char *name)
 {
     size_t n;
-    double *y = value_numbers(json_object_get(exact, name), &n), low = 0, high = 0;
-    for (size_t i = 0; i < n; i++) low = fmin(low, y[i]), high = fmax(high, y[i]);
+    double *y = value_numbers(json_object_get(exact, name), &n);
+    bool any = false;
+    for (size_t i = 0; i < n; i++) any = any || y[i] != 0;
     free(y);
-    return high > low;
+    return any;
 }
 
 /* False: there is no such curve, or no memory. */
@@ -213,7 +214,7 @@ static bool scatter_fill(struct scatter *scatter, const struct run_result *resul
     const char *name = names[field];
     size_t n[4];
     if (field == FIELD_VELOCITY && !json_object_get(profile, name))
-        name = varies(exact, "azimuthal") ? "azimuthal" : "radial";
+        name = moves(exact, "azimuthal") ? "azimuthal" : "radial";
     const json_t *from[4] = {json_object_get(exact, "x"), json_object_get(exact, name),
                              json_object_get(profile, "x"), json_object_get(profile, name)};
     for (int k = 0; k < 4; k++) scatter->arrays[k] = value_numbers(from[k], &n[k]);

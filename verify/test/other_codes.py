@@ -686,6 +686,7 @@ def test_bench():
         ours = [point for point in found["points"] if point["scheme"] == "as given"]
         for a, b in zip(ours, points):
             same(a["error"], b["error"], "error", 1e-10)
+        assert found["status"] == "ok", found["status"]
     write("bad.ini", GOOD.replace("good gresho", "exit gresho"))
     found = document("bench", "gresho", "--code", "bad.ini", *brief)
     reported = [scheme for scheme in found["excluded"] if scheme["scheme"] == "Broken" or "no such table" in json.dumps(scheme)]

@@ -76,6 +76,8 @@ def judge(line):
         names, text = said(json.loads(out))
     except ValueError as error:
         return "no document on standard output: %s" % error
+    if json.loads(out)["normalisation"] is None and [json.loads(out)["checks"][0][k] for k in ("value", "bound", "floor")] != [1, 0, 0]:
+        return "a kernel that does not return has %s" % json.loads(out)["checks"]
     if (code == 1) != bool(names):
         return "exit status %d and failing checks %s" % (code, names)
     if code == 1 and words in ("between", "continuity", "radial_derivative", "width_derivative", "runs",
