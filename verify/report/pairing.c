@@ -221,7 +221,9 @@ static json_t *judge_gradient(const struct pairing *pairing, const char *gradien
         snprintf(verdict, sizeof verdict, "not shown: runs broke down");
     else
         snprintf(verdict, sizeof verdict, "%s",
-                 balance.others && balance.kept ? "holds" : "not shown: no other kernel has pairs");
+                 !balance.kept     ? "not shown: no such kernel was certified"
+                 : !balance.others ? "not shown: no other kernel has pairs"
+                                   : "holds");
     return result_object("name=%s claim=%s verdict=%s bound=%g ladders=%p", name, text, verdict,
                          bound, (void *)ladders);
 }

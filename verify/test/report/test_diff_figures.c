@@ -27,6 +27,10 @@ static const struct kind {
     {"signal", NULL, "1", "\"nan\"", VERDICT_INCOMPARABLE, VERDICT_INCOMPARABLE, false},
     {"outcome", NULL, "\"ok\"", "\"wrong\"", VERDICT_WORSE, VERDICT_BETTER, true},
     {"state", NULL, "\"pass\"", "\"none\"", VERDICT_WORSE, VERDICT_BETTER, true},
+    {"state", NULL, "\"pass\"", "\"skip\"", VERDICT_WORSE, VERDICT_BETTER, true},
+    {"state", NULL, "\"pass\"", "\"smoke\"", VERDICT_WORSE, VERDICT_BETTER, true},
+    {"state", NULL, "\"pass\"", "\"diverging\"", VERDICT_WORSE, VERDICT_BETTER, false},
+    {"state", NULL, "\"ok\"", "\"none\"", VERDICT_WORSE, VERDICT_BETTER, false},
     {"status", NULL, "\"pass\"", "\"undetermined\"", VERDICT_WORSE, VERDICT_BETTER, true},
     {"same_bits", NULL, "true", "false", VERDICT_WORSE, VERDICT_BETTER, true},
     {"left_wave", NULL, "\"shock\"", "\"rarefaction\"", VERDICT_INCOMPARABLE, VERDICT_INCOMPARABLE,
@@ -134,6 +138,9 @@ TEST(limits)
     const struct metric number = {.kind = READING_PART, .value = 1},
                         word = {.path = "status", .word = "pass"};
     assert_true(metric_worse(&word, &number) && !metric_worse(&number, &word));
+    const struct metric nan = {.kind = READING_PART, .value = NAN};
+    assert_true(metric_worse(&nan, &number) && !metric_worse(&number, &nan));
+    assert_false(metric_worse(&nan, &nan));
 }
 
 /* ---- names ---- */
@@ -159,12 +166,15 @@ TEST(names)
         diff_free(&diff);
         json_decref(old), json_decref(new);
         /* two names, of which the first fills the field */
-        old = called("errors", 896 + more, "a"), new = json_deep_copy(old);
-        json_object_set_new(json_array_get(json_object_get(new, "errors"), 0), "name",
-                            json_string("x"));
-        assert_int_equal(differ(old, new, &diff), STATUS_BAD_INPUT);
-        diff_free(&diff);
-        json_decref(old), json_decref(new);
+        for (int letters = 895; letters < 900; letters++) {
+            old = called("errors", letters, "a"), new = json_deep_copy(old);
+            json_object_set_new(json_array_get(json_object_get(new, "errors"), 0), "name",
+                                json_string("x"));
+            assert_int_equal(differ(old, new, &diff),
+                             letters > 895 ? STATUS_BAD_INPUT : STATUS_CHECK_FAILED);
+            diff_free(&diff);
+            json_decref(old), json_decref(new);
+        }
         /* a path of 1535 characters and more */
         old = json_pack("{s:s, s:f, s:{}}", "command", "run", "error_l1", 1., "e");
         json_t *inside = json_object_get(old, "e");
@@ -191,6 +201,47 @@ TEST(names)
         diff_free(&diff);
         json_decref(old), json_decref(new);
     }
+}
+
+/* Settings are part of a name, if they are words, at most 64. */
+TEST(settings_in_names)
+{
+    for (int most = 1; most <= 65; most += most < 64 ? 63 : 1)
+        for (int number = 0; number < 2; number++) {
+            json_t *settings = json_object();
+            for (int k = 0; k < most; k++) {
+                char key[16];
+                snprintf(key, sizeof key, "k%02d", 99 - k);
+                json_object_set_new(settings, key,
+                                    number && k == most - 1 ? json_integer(1) : json_string("v"));
+            }
+            json_t *document = json_pack("{s:s, s:[{s:s, s:f, s:o}]}", "command", "run", "errors",
+                                         "label", "a", "error", 2., "settings", settings);
+            struct diff diff;
+            assert_int_equal(differ(document, document, &diff), STATUS_OK);
+            const char *path = diff.list[0].new->path;
+            const bool named = !number && most <= 64;
+            assert_int_equal(strstr(path, "k99=v") != NULL, named);
+            if (named && most == 64) assert_non_null(strstr(path, "errors[a, k36=v, k37=v, "));
+            diff_free(&diff);
+            json_decref(document);
+        }
+}
+
+/* Figures are left out of the object of a breakdown, and not of one whose name begins likewise. */
+TEST(figures_of_a_breakdown)
+{
+    json_t *old = json_pack("{s:s, s:{s:s, s:f}, s:{s:f}}", "command", "run", "part", "outcome",
+                            "ok", "error", 1., "parts", "error", 1.),
+           *new = json_pack("{s:s, s:{s:s, s:f}, s:{s:f}}", "command", "run", "part", "outcome",
+                            "broke_down", "error", 2., "parts", "error", 2.);
+    struct diff diff;
+    assert_int_equal(differ(old, new, &diff), STATUS_CHECK_FAILED);
+    assert_int_equal(diff.left_out, 1);
+    assert_int_equal(diff.count, 2);
+    assert_non_null(find(&diff, "parts.error"));
+    diff_free(&diff);
+    json_decref(old), json_decref(new);
 }
 
 /* ---- totals and parts ---- */
