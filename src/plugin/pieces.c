@@ -115,7 +115,8 @@ static void bisect(struct leaves *leaves, double a, double b)
 }
 
 /* Joins adjacent intervals that are resolved together, and shrinks intervals too narrow to be a
- * piece (a singular point) to that point. Returns the number of pieces on ]a, b[. */
+ * piece (a singular point) to that point, or to the end b. Returns the number of pieces on ]a, b[.
+ */
 static int join(const struct pieces *pieces, double a, double *edge, int n)
 {
     int m = 0;
@@ -125,7 +126,7 @@ static int join(const struct pieces *pieces, double a, double *edge, int n)
         const bool point =
             edge[last] - a < 1e3 * pieces->width_min && !resolved(pieces, a, edge[last]);
         if (point && m > 0)
-            edge[m - 1] = (a + edge[last]) / 2;
+            edge[m - 1] = last + 1 < n ? (a + edge[last]) / 2 : edge[last];
         else if (!point || last + 1 == n)
             edge[m++] = edge[last];
         a = edge[m ? m - 1 : 0];

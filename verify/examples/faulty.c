@@ -27,6 +27,13 @@ enum {
     KNOTS_TOO_MANY,
     KNOTS_NEGATIVE,
     KNOTS_DESCENDING,
+    KNOTS_EQUAL,
+    KNOT_NEGATIVE,
+    KNOT_BEYOND,
+    KNOT_UNSET,
+    CLASS_NEGATIVE,
+    ZERO,
+    CONSTANT_INFINITE,
     CRASH,
     EXIT
 };
@@ -36,6 +43,7 @@ static const double pi = 3.14159265358979323846;
 double sphproof_kernel_w(double q, int dim)
 {
     if (FAULT == NOT_A_NUMBER && q > 0.3) return sqrt(-q);
+    if (FAULT == ZERO) return 0;
     if (FAULT == EXIT) exit(0);
     if (FAULT == CRASH && q > 0.3) abort();
     if (FAULT == SUPPORT_SHORT) q /= 0.999;
@@ -69,6 +77,7 @@ double sphproof_kernel_constant(int dim)
     if (FAULT == CONSTANT_SEVENTH_DIGIT) return constant * (1 + 3e-7);
     if (FAULT == CONSTANT_WRONG_IN_2D && dim == 2) return 20 / (7 * pi);
     if (FAULT == CONSTANT_NEGATIVE) return -constant;
+    if (FAULT == CONSTANT_INFINITE) return HUGE_VAL;
     return constant * (FAULT == SUPPORT_SHORT ? pow(0.999, -dim) : 1);
 }
 
@@ -85,14 +94,18 @@ int sphproof_kernel_knots(int dim, double *knots)
 {
     (void)dim;
     knots[0] = FAULT == SUPPORT_SHORT ? 0.5 * 0.999 : 0.5;
-    knots[1] = 0.25;
+    knots[1] = FAULT == KNOTS_EQUAL ? 0.5 : FAULT == KNOT_BEYOND ? 1.25 : 0.25;
+    if (FAULT == KNOT_NEGATIVE) knots[0] = -0.001;
+    if (FAULT == NONE) knots[0] = 0, knots[1] = 0.5, knots[2] = 1; /* the ends may be named */
     if (FAULT == KNOTS_TOO_MANY) return SPHPROOF_KERNEL_KNOTS_MAX + 1;
     if (FAULT == KNOTS_NEGATIVE) return -1;
-    return FAULT == KNOTS_DESCENDING ? 2 : 1;
+    if (FAULT == KNOTS_DESCENDING || FAULT == KNOTS_EQUAL || FAULT == KNOT_BEYOND) return 2;
+    return FAULT == KNOT_UNSET || FAULT == NONE ? 3 : 1;
 }
 
 int sphproof_kernel_class(int dim)
 {
     (void)dim;
+    if (FAULT == CLASS_NEGATIVE) return -1;
     return FAULT == CLASS_OVERSTATED ? 3 : 2;
 }

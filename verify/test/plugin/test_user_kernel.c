@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 
 #include "certificate.h"
+#include "plugin_kernel.h"
 #include "user_figures.h"
 #include "user_kernel.h"
 
@@ -133,6 +134,99 @@ TEST(test_unusable)
     refused(path_of("no_such_file"), "No such file");
     refused(folder, "directory");
     refused(test_word(1), ""); /* an executable is no shared object */
+}
+
+/* The same without a process in between, word by word. */
+TEST(test_messages)
+{
+    static const struct {
+        const char *fault, *says;
+    } rows[] = {
+        {"CONSTANT_NEGATIVE", "the constant in 1 dimensions is -1.33333; allowed: above 0"},
+        {"CONSTANT_INFINITE", "the constant in 1 dimensions is inf; allowed: above 0"},
+        {"KNOTS_TOO_MANY", "sphproof_kernel_knots(1) = 4097; allowed: 0 to 4096"},
+        {"KNOTS_NEGATIVE", "sphproof_kernel_knots(1) = -1; allowed: 0 to 4096"},
+        {"KNOTS_DESCENDING",
+         "dim 1, knot 2 of 2 is 0.25; allowed: ascending values between 0 and 1"},
+        {"KNOTS_EQUAL", "dim 1, knot 2 of 2 is 0.5; allowed: ascending values between 0 and 1"},
+        {"KNOT_NEGATIVE", "dim 1, knot 1 of 1 is -0.001; allowed: ascending values between"},
+        {"KNOT_BEYOND", "dim 1, knot 2 of 2 is 1.25; allowed: ascending values between 0"},
+        {"KNOT_UNSET", "dim 1, knot 2 of 3 is 0.25; allowed: ascending values between 0 and 1"},
+        {"CLASS_NEGATIVE", "sphproof_kernel_class(1) = -1; allowed: 0 or more"},
+        {"ZERO", "dim 1: w is 0 everywhere"},
+        {"NOT_A_NUMBER", "dim 1, q = 0.303502: w = "}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        char name[60], says[200];
+        struct user_kernel user;
+        struct error error = {0};
+        snprintf(name, sizeof name, "faulty_%s", rows[k].fault);
+        snprintf(says, sizeof says, "kernel %s: %s", name, rows[k].says);
+        assert_int_equal(user_kernel_load(&user, path_of(name), 0, NULL, &error), STATUS_BAD_INPUT);
+        if (strncmp(error.message, says, strlen(says)) != 0) fail_msg("%s", error.message);
+        assert_null(user.library);
+    }
+}
+
+static enum status no_certificate(const struct kernel *kernel, int dim, const struct terms *terms,
+                                  json_t **failing, struct error *error)
+{
+    (void)kernel, (void)dim, (void)terms, (void)failing, (void)error;
+    return STATUS_OK;
+}
+
+TEST(test_paths)
+{
+    static const char *const paths[] = {"./a", "a.so", "a/", "a.so.so", "/"},
+                             *const names[] = {"a", ".so", "aso", "a.s", "a.so.", "b.sox"},
+                             *const hashed[] = {"a.so@0123456789abcDEF", "./a@0123456789abcdef"},
+                             *const unhashed[] = {"a.so@0123456789abcde", "a.so@0123456789abcdefa",
+                                                  "a.so@0123456789abcdeg", "a.so@", "a@b.s"};
+    static const struct {
+        const char *path, *name;
+    } rows[] = {{"x/a.so", "a"},  {"a.so.1", "a"}, {"b.so/a", "a"},   {".so", ".so"},
+                {"x/.so", ".so"}, {"a.c", "a.c"},  {"x/\x01.so", "?"}};
+    char name[64], path[400];
+    assert_false(plugin_allowed() || plugin_is_path("./a"));
+    plugin_allow(no_certificate, false);
+    assert_true(plugin_allowed());
+    for (size_t k = 0; k < sizeof paths / sizeof *paths; k++)
+        assert_true(user_kernel_is_path(paths[k]) && plugin_is_path(paths[k]));
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+        assert_false(user_kernel_is_path(names[k]) || plugin_is_path(names[k]));
+    for (size_t k = 0; k < sizeof hashed / sizeof *hashed; k++)
+        assert_true(plugin_is_path(hashed[k]));
+    for (size_t k = 0; k < sizeof unhashed / sizeof *unhashed; k++)
+        assert_false(plugin_is_path(unhashed[k]));
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        user_kernel_file_name(rows[k].path, name, sizeof name);
+        assert_string_equal(name, rows[k].name);
+    }
+    for (int k = 0; k < 5; k++) {
+        struct error error = {0};
+        char says[500];
+        int index;
+        if (k == 0)
+            snprintf(path, sizeof path, "./%0197d", 0), /* as long as a path may be, and longer */
+                snprintf(says, sizeof says, "kernel '%.200s': ", path);
+        if (k == 1) snprintf(path, sizeof path, "./%0198d", 0);
+        if (k == 1)
+            snprintf(says, sizeof says,
+                     "kernel '%.60s...': a path of 200 characters; allowed: up to 199", path);
+        if (k == 2)
+            snprintf(path, sizeof path, "%.300s", folder),
+                snprintf(says, sizeof says, "kernel '%.300s' is no file; allowed: a shared", path);
+        if (k == 3)
+            snprintf(path, sizeof path, "%.300s@0123456789abcdef", path_of("table")),
+                snprintf(says, sizeof says,
+                         "kernel '%.300s' is not the one that was meant: its content is ",
+                         path_of("table"));
+        if (k == 4)
+            snprintf(path, sizeof path, "./no"),
+                snprintf(says, sizeof says, "kernel './no': No such");
+        assert_int_equal(plugin_find(path, &index, &error), STATUS_BAD_INPUT);
+        if (strncmp(error.message, says, strlen(says)) != 0) fail_msg("%s", error.message);
+    }
+    plugin_allow(NULL, false);
 }
 
 /* Exit status of the program with these arguments (%s, at most twice, is the folder of the
