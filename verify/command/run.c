@@ -344,20 +344,16 @@ static enum status present(const struct options *options, const struct run_setti
             print_snapshots(snapshots, settings_real(&result->settings, SETTING_t_end));
     }
     /* all other files are written even if one cannot be; the first error is reported */
-    struct error trouble[5] = {0};
-    if (snapshots) trouble[0] = snapshots->trouble;
-    write_json(options, settings, result, &trouble[1]);
-    if (snapshot) run_write_snapshot(result, snapshot, &trouble[2]);
-    if (plot) draw_end(settings, snapshots, result, plot, &trouble[3]);
+    struct error later;
+    *error = snapshots ? snapshots->trouble : (struct error){0};
+    write_json(options, settings, result, error->status ? &later : error);
+    if (snapshot) run_write_snapshot(result, snapshot, error->status ? &later : error);
+    if (plot) draw_end(settings, snapshots, result, plot, error->status ? &later : error);
     const struct snapshot_writer *writer =
-        snapshots ? snapshot_writer_of(snapshots->path, &trouble[4]) : NULL;
-    if (writer && writer->collect) writer->collect(result, snapshots, &trouble[4]);
-    for (size_t i = 0; i < sizeof trouble / sizeof *trouble; i++)
-        if (trouble[i].status) {
-            *error = trouble[i];
-            return error->status;
-        }
-    return STATUS_OK;
+        snapshots ? snapshot_writer_of(snapshots->path, &later) : NULL;
+    if (writer && writer->collect)
+        writer->collect(result, snapshots, error->status ? &later : error);
+    return error->status;
 }
 
 /* Prepares intermediate snapshots; snapshots->path is NULL if none are requested. */
