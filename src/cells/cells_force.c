@@ -178,17 +178,18 @@ static double largest_signal(const struct signals *signals, double own_c, int64_
     return most;
 }
 
-/* Arrays from which the pressure terms a_i and a_j (with G = 1) of each neighbour follow. With the
- * number element, 1 also replaces the mass in f_ij = 1 - (m_j/Z_j)(1 - f_i), because h follows from
- * a sum of ones. */
+/* The values from which the pressure terms a_i and a_j (with G = 1) follow, of the particle and of
+ * its neighbours. With the number element, 1 also replaces the mass in f_ij = 1 - (m_j/Z_j)(1 -
+ * f_i), because h follows from a sum of ones. */
 struct pressure {
     struct pair_side own;
     const double *V, *P, *m, *b, *grad_h, *Z;
 };
 
-static struct pressure find_pressure(const struct cells_method *method, const struct pairs *pairs)
+ALWAYS_INLINE struct pressure find_pressure(enum formulation formulation, bool number,
+                                            const struct pairs *pairs)
 {
-    if (method->formulation == FORMULATION_VANILLA_ICE)
+    if (formulation == FORMULATION_VANILLA_ICE)
         return (struct pressure){
             .own = {.V = *pairs_own(pairs, RECORD_VOLUME), .P = *pairs_own(pairs, RECORD_PRESSURE)},
             .V = pairs_others(pairs, RECORD_VOLUME),
@@ -196,30 +197,30 @@ static struct pressure find_pressure(const struct cells_method *method, const st
     const double *own = pairs_own(pairs, RECORD_LAGRANGIAN),
                  *b = pairs_others(pairs, RECORD_LAGRANGIAN), *grad_h = b + pairs->lanes->stride,
                  *Z = grad_h + pairs->lanes->stride;
-    return (struct pressure){
-        .own = {.b = own[0],
-                .grad_h = own[1],
-                .Z = own[2],
-                .m = method->number ? own[2] : *pairs_own(pairs, RECORD_WEIGHT)},
-        .b = b,
-        .grad_h = grad_h,
-        .Z = Z,
-        .m = method->number ? Z : pairs_others(pairs, RECORD_WEIGHT)};
+    return (struct pressure){.own = {.b = own[0],
+                                     .grad_h = own[1],
+                                     .Z = own[2],
+                                     .m = number ? own[2] : *pairs_own(pairs, RECORD_WEIGHT)},
+                             .b = b,
+                             .grad_h = grad_h,
+                             .Z = Z,
+                             .m = number ? Z : pairs_others(pairs, RECORD_WEIGHT)};
 }
 
 /* Adds force, energy rate and signal speed of all neighbours in the lanes. With vanilla_ice both
  * particles of a pair have the same gradient. */
-ALWAYS_INLINE void add_body(enum formulation formulation, int dim, enum energy energy,
-                            const struct pairs *pairs, const struct pressure *pressure,
-                            struct totals *totals, int64_t *inside)
+ALWAYS_INLINE void add_body(enum formulation formulation, int dim,
+                            const struct cells_method *method, enum energy energy,
+                            const struct pairs *pairs, struct totals *totals, int64_t *inside)
 {
     const bool vanilla = formulation == FORMULATION_VANILLA_ICE;
+    const struct pressure pressure = find_pressure(formulation, method->number, pairs);
     const struct lanes *lanes = pairs->lanes;
     const ptrdiff_t stride = lanes->stride;
-    const struct pair_side own = pressure->own;
-    const double *restrict V = pressure->V, *restrict P = pressure->P, *restrict m = pressure->m,
-                           *restrict b = pressure->b, *restrict grad_h = pressure->grad_h,
-                           *restrict Z = pressure->Z;
+    const struct pair_side own = pressure.own;
+    const double *restrict V = pressure.V, *restrict P = pressure.P, *restrict m = pressure.m,
+                           *restrict b = pressure.b, *restrict grad_h = pressure.grad_h,
+                           *restrict Z = pressure.Z;
     const double *restrict K = lane(lanes, LANE_K), *restrict G = lane(lanes, LANE_GX),
                            *restrict G_i = lane(lanes, LANE_GX_I),
                            *restrict G_j = lane(lanes, LANE_GX_J),
@@ -272,18 +273,17 @@ ALWAYS_INLINE void add_body(enum formulation formulation, int dim, enum energy e
 }
 
 #define ADD(name, formulation)                                                                     \
-    CLONES static void name(int dim, enum energy energy, const struct pairs *pairs,                \
-                            const struct pressure *pressure, struct totals *totals,                \
-                            int64_t *inside)                                                       \
+    CLONES static void name(const struct cells_method *method, const struct pairs *pairs,          \
+                            struct totals *totals, int64_t *inside)                                \
     {                                                                                              \
-        if (dim == 2 && energy == ENERGY_TOTAL)                                                    \
-            add_body(formulation, 2, ENERGY_TOTAL, pairs, pressure, totals, inside);               \
-        else if (dim == 2)                                                                         \
-            add_body(formulation, 2, ENERGY_INTERNAL, pairs, pressure, totals, inside);            \
-        else if (energy == ENERGY_TOTAL)                                                           \
-            add_body(formulation, 3, ENERGY_TOTAL, pairs, pressure, totals, inside);               \
+        if (method->box.dim == 2 && method->energy == ENERGY_TOTAL)                                \
+            add_body(formulation, 2, method, ENERGY_TOTAL, pairs, totals, inside);                 \
+        else if (method->box.dim == 2)                                                             \
+            add_body(formulation, 2, method, ENERGY_INTERNAL, pairs, totals, inside);              \
+        else if (method->energy == ENERGY_TOTAL)                                                   \
+            add_body(formulation, 3, method, ENERGY_TOTAL, pairs, totals, inside);                 \
         else                                                                                       \
-            add_body(formulation, 3, ENERGY_INTERNAL, pairs, pressure, totals, inside);            \
+            add_body(formulation, 3, method, ENERGY_INTERNAL, pairs, totals, inside);              \
     }
 ADD(add_vanilla_ice, FORMULATION_VANILLA_ICE)
 ADD(add_lagrangian, FORMULATION_LAGRANGIAN)
@@ -328,12 +328,11 @@ static bool add_part(struct cells *cells, const struct pairs *pairs, int64_t *in
                      struct totals *totals)
 {
     const struct cells_method *method = &cells->method;
-    const struct pressure pressure = find_pressure(method, pairs);
     cells_pair_gradients(cells, pairs);
     if (method->closed) cells_close(cells, pairs);
     const bool viscous = cells_viscosity(cells, pairs);
     (method->formulation == FORMULATION_VANILLA_ICE ? add_vanilla_ice : add_lagrangian)(
-        method->box.dim, method->energy, pairs, &pressure, totals, inside);
+        method, pairs, totals, inside);
     if (method->shift) cells_exchange(cells, pairs, totals->gained);
     if (cells_conduct(method)) totals->conducts |= cells_conduction(cells, pairs, &totals->de);
     if (method->div_v) totals->div_v += cells_divergence(cells, pairs);
