@@ -219,12 +219,17 @@ bool cells_viscosity(const struct cells *cells, const struct pairs *pairs)
 /* True if the pressures of some pair differ enough for the conductivity of shocks. */
 CLONES static bool any_shock(const struct pairs *pairs)
 {
-    const double *restrict P = pairs_others(pairs, RECORD_PRESSURE);
-    const double own_P = *pairs_own(pairs, RECORD_PRESSURE);
-    int any = 0;
-#pragma omp simd reduction(| : any)
-    for (int k = 0; k < pairs->neighbours; k++) any |= pair_shocked(own_P, P[k]);
-    return any;
+    const double *restrict P = pairs_others(pairs, RECORD_PRESSURE),
+                           *restrict number = lane(pairs->lanes, LANE_NUMBER);
+    const double own_P = *pairs_own(pairs, RECORD_PRESSURE), neighbours = pairs->neighbours;
+    double any[GRID_LANES] = {0};
+    for (int k = 0; k < pairs->count; k += GRID_LANES)
+#pragma omp simd
+        for (int l = 0; l < GRID_LANES; l++) {
+            const double there = number[k + l] < neighbours ? 1 : 0;
+            any[l] += pair_shocked(own_P, P[k + l]) ? there : 0;
+        }
+    return TREE(any) > 0;
 }
 
 /* Heat by conductivity (CONVENTIONS eq. 6.8); the neighbours lose what the particle gains. */

@@ -4,10 +4,12 @@
 #include <float.h>
 #include <math.h>
 
+#include "specialise.h"
+
 enum { MAX = 3 };
 
 /* Largest magnitude; NaN if a value is NaN. */
-static double largest(int n, const double *a, int stride)
+static double largest_magnitude(int n, const double *a, int stride)
 {
     double m = 0;
     for (int i = 0; i < n; i++)
@@ -62,10 +64,11 @@ static bool eliminate(int dim, double *a)
 
 /* Inverts by cofactors if the determinant shows that nothing cancels: the usual case, five times
  * faster. Otherwise returns false and leaves inverse unchanged. */
-static bool invert_plainly(int dim, const double *a, double *inverse)
+ALWAYS_INLINE bool invert_plainly(int dim, const double *a, double *inverse)
 {
-    double b[MAX * MAX], c[MAX * MAX], determinant;
-    const double scale = largest(dim * dim, a, 1);
+    double b[MAX * MAX], c[MAX * MAX], determinant, scale = 0;
+    /* without branches; a NaN may go by here, but not by the determinant */
+    for (int i = 0; i < dim * dim; i++) scale = fabs(a[i]) > scale ? fabs(a[i]) : scale;
     if (!(scale > 1e-100 && scale < 1e100)) return false;
     const double unit = 1 / scale;
     for (int i = 0; i < dim * dim; i++) b[i] = a[i] * unit;
@@ -90,15 +93,18 @@ static bool invert_plainly(int dim, const double *a, double *inverse)
 
 bool matrix_invert(int dim, const double *a, double *inverse)
 {
-    if (invert_plainly(dim, a, inverse)) return true;
+    if (dim == 2   ? invert_plainly(2, a, inverse)
+        : dim == 3 ? invert_plainly(3, a, inverse)
+                   : invert_plainly(1, a, inverse))
+        return true;
     double scaled[MAX * MAX], result[MAX * MAX], r[MAX], c[MAX];
     for (int i = 0; i < dim; i++) {
-        r[i] = largest(dim, a + i * dim, 1);
+        r[i] = largest_magnitude(dim, a + i * dim, 1);
         if (!(r[i] > 0 && r[i] <= DBL_MAX)) return false;
         for (int j = 0; j < dim; j++) scaled[i * dim + j] = a[i * dim + j] / r[i];
     }
     for (int j = 0; j < dim; j++) {
-        c[j] = largest(dim, scaled + j, dim);
+        c[j] = largest_magnitude(dim, scaled + j, dim);
         if (!(c[j] > 0)) return false;
         for (int i = 0; i < dim; i++)
             result[i * dim + j] = scaled[i * dim + j] = scaled[i * dim + j] / c[j];
@@ -114,7 +120,7 @@ bool matrix_invert(int dim, const double *a, double *inverse)
 double matrix_condition(int dim, const double *a)
 {
     double u[MAX * MAX], norm[MAX];
-    const double scale = largest(dim * dim, a, 1);
+    const double scale = largest_magnitude(dim * dim, a, 1);
     if (!(scale <= DBL_MAX)) return nan("");
     if (scale == 0) return HUGE_VAL;
     for (int i = 0; i < dim * dim; i++) u[i] = a[i] / scale;
