@@ -13,7 +13,7 @@ CLONES static void widths(enum pair_width width, int count, const double *restri
                           double *restrict q_j)
 {
 #pragma omp simd
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < whole_vectors(count); k++) {
         if (width == PAIR_WIDTH_MEAN) {
             q[k] = r[k] * h_inverse;
             q_j[k] = r[k] * others[k];
@@ -40,7 +40,7 @@ CLONES static void standard_sizes(int dim, int count, double constant, double h_
                                   double *restrict dw)
 {
 #pragma omp simd
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < whole_vectors(count); k++) {
         const double inverse = others ? others[k] : h_inverse;
         dw[k] =
             constant * (dim == 2 ? power(inverse, 3) : power(inverse, 4)) * dw[k] * r_inverse[k];
@@ -60,7 +60,7 @@ ALWAYS_INLINE void standard_means_body(int dim, int count, double constant, doub
     double *restrict G = lane(lanes, LANE_GX);
     const double own = constant * power(h_inverse, dim + 1);
 #pragma omp simd
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < whole_vectors(count); k++) {
         const double other = constant * (dim == 2 ? power(others[k], 3) : power(others[k], 4));
         const double s = 0.5 * (own * dw[k] * r_inverse[k] + other * dw_j[k] * r_inverse[k]);
         for (int a = 0; a < dim; a++) G[a * stride + k] = s * x[a * stride + k];
@@ -82,7 +82,7 @@ ALWAYS_INLINE void weigh_body(enum gradient gradient, int count, const double *r
 {
     const bool by_both = gradient_of[gradient].weight == WEIGHT_BOTH;
 #pragma omp simd
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < whole_vectors(count); k++)
         w[k] = gradient_weight(gradient, by_both ? w[k] : 0, q[k] > 0 ? -dw[k] / q[k] : 0);
 }
 
@@ -103,7 +103,7 @@ CLONES static void along(int count, const double *restrict s, const double *rest
                          double *restrict G)
 {
 #pragma omp simd
-    for (int k = 0; k < count; k++) G[k] = s[k] * x[k];
+    for (int k = 0; k < whole_vectors(count); k++) G[k] = s[k] * x[k];
 }
 
 /* Arguments of matrix_along: lanes, and the matrices of the particle (own) and of its neighbours
@@ -152,7 +152,7 @@ ALWAYS_INLINE void matrix_body(int dim, bool both, int count, const struct lanes
                                   .G_j = lane(lanes, LANE_GX_J),
                                   .stride = lanes->stride};
 #pragma omp simd
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < whole_vectors(count); k++) {
         matrix_along(dim, both, 0, k, &m);
         matrix_along(dim, both, 1, k, &m);
         if (dim == 3) matrix_along(dim, both, 2, k, &m);
@@ -177,7 +177,7 @@ CLONES static int positive(int count, const double *restrict values)
 {
     int found = 0;
 #pragma omp simd reduction(+ : found)
-    for (int k = 0; k < count; k++) found += values[k] > 0 ? 1 : 0;
+    for (int k = 0; k < whole_vectors(count); k++) found += values[k] > 0 ? 1 : 0;
     return found;
 }
 
@@ -185,7 +185,7 @@ CLONES static void mean(int count, const double *restrict a, const double *restr
                         double *restrict m)
 {
 #pragma omp simd
-    for (int k = 0; k < count; k++) m[k] = 0.5 * (a[k] + b[k]);
+    for (int k = 0; k < whole_vectors(count); k++) m[k] = 0.5 * (a[k] + b[k]);
 }
 
 /* Weight of the standard gradient for each pair: 1 if either matrix is unusable, otherwise the mean
@@ -195,7 +195,7 @@ CLONES static void standard_shares(int count, double own, const double *restrict
                                    double *restrict part)
 {
 #pragma omp simd
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < whole_vectors(count); k++) {
         const double mean_share = shares ? 0.5 * (own_share + shares[k]) : 0;
         part[k] = least(own, others[k]) > 0 ? mean_share : 1;
     }
@@ -206,7 +206,7 @@ CLONES static void blend(int count, const double *restrict part, const double *r
                          const double *restrict x, double *restrict G)
 {
 #pragma omp simd
-    for (int k = 0; k < count; k++) G[k] = (1 - part[k]) * G[k] + part[k] * (s[k] * x[k]);
+    for (int k = 0; k < whole_vectors(count); k++) G[k] = (1 - part[k]) * G[k] + part[k] * (s[k] * x[k]);
 }
 
 /* w(q) or w'(q) at h_i and h_j. */

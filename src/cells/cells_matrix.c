@@ -35,7 +35,7 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
 CLONES static void scale(int count, const double *restrict r, double h_inverse, double *restrict q)
 {
 #pragma omp simd
-    for (int k = 0; k < count; k++) q[k] = r[k] * h_inverse;
+    for (int k = 0; k < whole_vectors(count); k++) q[k] = r[k] * h_inverse;
 }
 
 /* Writes V times the gradient's weight to LANE_W_J, from w'(q) in LANE_W and w(q) in LANE_SPARE;
@@ -49,7 +49,7 @@ ALWAYS_INLINE void weigh_body(enum gradient gradient, int count, double h,
     const bool by_both = gradient_of[gradient].weight == WEIGHT_BOTH;
     double *restrict weight = lane(lanes, LANE_W_J);
 #pragma omp simd
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < whole_vectors(count); k++)
         weight[k] =
             V[k] * gradient_weight(gradient, by_both ? w[k] : 0, -dw[k] * (r_inverse[k] * h));
 }

@@ -14,7 +14,7 @@ ALWAYS_INLINE void close_body(int dim, const struct pairs *pairs)
     const double *own = pairs_own(pairs, RECORD_POTENTIAL);
     double *restrict G = lane(lanes, LANE_GX);
 #pragma omp simd
-    for (int n = 0; n < pairs->count; n++) {
+    for (int n = 0; n < whole_vectors(pairs->count); n++) {
         double along = 0;
         for (int a = 0; a < dim; a++) along += G[a * stride + n] * x[a * stride + n];
         for (int a = 0; a < dim; a++)

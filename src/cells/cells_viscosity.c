@@ -57,7 +57,7 @@ ALWAYS_INLINE void slopes_body(int dim, bool projected, const struct pairs *pair
                      *restrict noise = lane(lanes, LANE_SPARE);
     const int count = pairs->count;
 #pragma omp simd
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < whole_vectors(count); k++) {
         const struct slope_terms x = slope_along(dim, projected, 0, k, &slopes),
                                  y = slope_along(dim, projected, 1, k, &slopes);
         struct slope_terms sum = {x.own + y.own, x.others + y.others, x.noise + y.noise};
@@ -124,7 +124,7 @@ ALWAYS_INLINE void viscous_body(enum viscosity viscosity, bool signal_form, int 
                  own_factor = method->balsara ? *pairs_own(pairs, RECORD_BALSARA) : 1;
     double *restrict K = lane(lanes, LANE_K);
 #pragma omp simd
-    for (int k = 0; k < pairs->count; k++) {
+    for (int k = 0; k < whole_vectors(pairs->count); k++) {
         const struct pair_side i = {.m = own_m,
                                     .h_inverse = own_h_inverse,
                                     .c = own_c,
@@ -255,10 +255,10 @@ CLONES static double conducted(int dim, double alpha_u, double alpha_s, const st
     for (int a = 0; a < dim; a++) {
         const double *restrict xa = x + a * stride, *restrict Ga = G + a * stride;
 #pragma omp simd
-        for (int k = 0; k < count; k++) s[k] += xa[k] * Ga[k];
+        for (int k = 0; k < whole_vectors(count); k++) s[k] += xa[k] * Ga[k];
     }
 #pragma omp simd
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < whole_vectors(count); k++) {
         const double conduction =
             pair_conduction(alpha_u, alpha_s, own_P, P[k], 0.5 * (own_rho + rho[k]));
         const double along_pair = least(s[k] * r_inverse[k], 0);
@@ -283,7 +283,7 @@ ALWAYS_INLINE void approaches_in(int dim, const struct pairs *pairs, double *res
                  *restrict v = pairs_others(pairs, RECORD_VELOCITY),
                  *restrict G = lane(lanes, LANE_GX);
 #pragma omp simd
-    for (int k = 0; k < pairs->count; k++) found[k] = approach(dim, lanes->stride, k, own_v, v, G);
+    for (int k = 0; k < whole_vectors(pairs->count); k++) found[k] = approach(dim, lanes->stride, k, own_v, v, G);
 }
 
 CLONES static void approaches(int dim, const struct pairs *pairs, double *restrict found)

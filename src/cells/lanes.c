@@ -66,7 +66,7 @@ ALWAYS_INLINE void geometry_body(int dim, bool wrapped, enum lanes_geometry geom
     double *restrict d = g->d, *restrict r = g->r, *restrict r_inverse = g->r_inverse,
                      *restrict closing = g->closing;
 #pragma omp simd
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < whole_vectors(count); k++) {
         double a = x[k] - x0, b = x[y + k] - y0, c = dim == 3 ? x[z + k] - z0 : 0;
         if (wrapped) {
             a = grid_nearest(a, side_x);
