@@ -147,6 +147,8 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
 
 struct totals {
     double F[3], de, div_v, signal, pace;
+    double shocked; /* positive if the pressures of some pair of the last sums differ enough for the
+                       conductivity of shocks */
     double gained[8]; /* by shifting: momentum, energy, mass; gradient of a constant */
     bool conducts;    /* some pair conducts heat */
 };
@@ -235,11 +237,16 @@ ALWAYS_INLINE void add_body(enum formulation formulation, int dim,
                  own_h_inverse = *pairs_own(pairs, RECORD_H_INVERSE);
     const double reacting = pairs->reacting, *restrict number = lane(lanes, LANE_NUMBER);
     double f[3][GRID_LANES] = {{0}}, e[GRID_LANES] = {0};
+    const double own_P = *pairs_own(pairs, RECORD_PRESSURE),
+                 *restrict all_V = pairs_others(pairs, RECORD_VOLUME),
+                 *restrict all_P = pairs_others(pairs, RECORD_PRESSURE);
+    double shocked[GRID_LANES] = {0}; /* the sentinel has no volume */
     struct signals signals = {{0}, {0}};
     for (int k = 0; k < pairs->count; k += GRID_LANES)
 #pragma omp simd
         for (int l = 0; l < GRID_LANES; l++) {
             const ptrdiff_t n = k + l;
+            shocked[l] += pair_shocked(own_P, all_P[n]) ? all_V[n] : 0;
             const struct pair_side j =
                 vanilla ? (struct pair_side){.V = V[n], .P = P[n]}
                         : (struct pair_side){.m = m[n], .Z = Z[n], .b = b[n], .grad_h = grad_h[n]};
@@ -269,6 +276,7 @@ ALWAYS_INLINE void add_body(enum formulation formulation, int dim,
         }
     for (int axis = 0; axis < dim; axis++) totals->F[axis] += TREE(f[axis]);
     totals->de += TREE(e);
+    totals->shocked = TREE(shocked);
     totals->signal = largest(totals->signal, largest_signal(&signals, own_c, inside));
 }
 
@@ -334,7 +342,10 @@ static bool add_part(struct cells *cells, const struct pairs *pairs, int64_t *in
     (method->formulation == FORMULATION_VANILLA_ICE ? add_vanilla_ice : add_lagrangian)(
         method, pairs, totals, inside);
     if (method->shift) cells_exchange(cells, pairs, totals->gained);
-    if (cells_conduct(method)) totals->conducts |= cells_conduction(cells, pairs, &totals->de);
+    if (method->conductivity > 0 || (method->shock_conductivity > 0 && totals->shocked > 0)) {
+        totals->de += cells_conduction(cells, pairs);
+        totals->conducts = true;
+    }
     if (method->div_v) totals->div_v += cells_divergence(cells, pairs);
     return viscous;
 }

@@ -206,7 +206,8 @@ CLONES static void blend(int count, const double *restrict part, const double *r
                          const double *restrict x, double *restrict G)
 {
 #pragma omp simd
-    for (int k = 0; k < whole_vectors(count); k++) G[k] = (1 - part[k]) * G[k] + part[k] * (s[k] * x[k]);
+    for (int k = 0; k < whole_vectors(count); k++)
+        G[k] = (1 - part[k]) * G[k] + part[k] * (s[k] * x[k]);
 }
 
 /* w(q) or w'(q) at h_i and h_j. */
@@ -316,7 +317,7 @@ void cells_pair_gradients(const struct cells *cells, const struct pairs *pairs)
     const double own_share = blended ? *pairs_own(pairs, RECORD_STEEP) : 0,
                  *shares = blended ? pairs_others(pairs, RECORD_STEEP) : NULL;
     /* the first entry is positive in a usable matrix, 0 in an unusable one */
-    const bool all_sound = own[0] > 0 && positive(count, others) == count,
+    const bool all_sound = cells->all_sound || (own[0] > 0 && positive(count, others) == count),
                any_steep = blended && (own_share > 0 || positive(count, shares) > 0);
     if (all_sound && !any_steep) return;
     double *part = lane(lanes, LANE_K);

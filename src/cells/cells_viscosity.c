@@ -216,22 +216,6 @@ bool cells_viscosity(const struct cells *cells, const struct pairs *pairs)
     return true;
 }
 
-/* True if the pressures of some pair differ enough for the conductivity of shocks. */
-CLONES static bool any_shock(const struct pairs *pairs)
-{
-    const double *restrict P = pairs_others(pairs, RECORD_PRESSURE),
-                           *restrict number = lane(pairs->lanes, LANE_NUMBER);
-    const double own_P = *pairs_own(pairs, RECORD_PRESSURE), neighbours = pairs->neighbours;
-    double any[GRID_LANES] = {0};
-    for (int k = 0; k < pairs->count; k += GRID_LANES)
-#pragma omp simd
-        for (int l = 0; l < GRID_LANES; l++) {
-            const double there = number[k + l] < neighbours ? 1 : 0;
-            any[l] += pair_shocked(own_P, P[k + l]) ? there : 0;
-        }
-    return TREE(any) > 0;
-}
-
 /* Heat by conductivity (CONVENTIONS eq. 6.8); the neighbours lose what the particle gains. */
 CLONES static double conducted(int dim, double alpha_u, double alpha_s, const struct pairs *pairs)
 {
@@ -268,12 +252,10 @@ CLONES static double conducted(int dim, double alpha_u, double alpha_s, const st
     return lanes_sum(s, count);
 }
 
-bool cells_conduction(const struct cells *cells, const struct pairs *pairs, double *gained)
+double cells_conduction(const struct cells *cells, const struct pairs *pairs)
 {
     const struct cells_method *method = &cells->method;
-    if (!(method->conductivity > 0) && !any_shock(pairs)) return false;
-    *gained += conducted(method->box.dim, method->conductivity, method->shock_conductivity, pairs);
-    return true;
+    return conducted(method->box.dim, method->conductivity, method->shock_conductivity, pairs);
 }
 
 ALWAYS_INLINE void approaches_in(int dim, const struct pairs *pairs, double *restrict found)
@@ -283,7 +265,8 @@ ALWAYS_INLINE void approaches_in(int dim, const struct pairs *pairs, double *res
                  *restrict v = pairs_others(pairs, RECORD_VELOCITY),
                  *restrict G = lane(lanes, LANE_GX);
 #pragma omp simd
-    for (int k = 0; k < whole_vectors(pairs->count); k++) found[k] = approach(dim, lanes->stride, k, own_v, v, G);
+    for (int k = 0; k < whole_vectors(pairs->count); k++)
+        found[k] = approach(dim, lanes->stride, k, own_v, v, G);
 }
 
 CLONES static void approaches(int dim, const struct pairs *pairs, double *restrict found)

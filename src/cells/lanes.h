@@ -87,6 +87,18 @@ enum lanes_array {
     LANE_REACTION = LANE_SLOPE_I /* reactions, see struct reactions */
 };
 
+/* Moments of several particles, one in each lane, and what their inverses are applied to. */
+struct moments_batch {
+    int count;
+    size_t particle[GRID_LANES];
+    bool sound[GRID_LANES]; /* the inverse is usable; otherwise it is 0 */
+    double moments[CELLS_SYMMETRIC][GRID_LANES], inverse[CELLS_SYMMETRIC][GRID_LANES],
+        condition[GRID_LANES];
+    /* sums of weight x (f - own), then gradients of f: the velocity, 1/h_inverse, and 1 with own =
+     * 0 */
+    double velocity[CELLS_SQUARE][GRID_LANES], width[3][GRID_LANES], one[3][GRID_LANES];
+};
+
 struct lanes {
     /* LANES_OWN arrays and one for each value of the longest record, stride each */
     _Alignas(TEAM_APART) double *block;
@@ -97,6 +109,7 @@ struct lanes {
     int32_t *slots;     /* a filtered list, used instead of the grid's */
     ptrdiff_t capacity; /* capacity, for two such lists */
     struct reactions_chunk chunk;
+    struct moments_batch by_w, by_gradient; /* moments with w(q), and with the gradient's weight */
 };
 
 /* Arguments of cells_widths, for its threads. */
@@ -113,6 +126,7 @@ struct cells {
     struct grid *grid;
     struct shapes shapes;
     double own_w;               /* w(0) */
+    bool all_sound;             /* every particle has a usable matrix */
     const unsigned char *parts; /* enum cells_part of each particle; NULL: all are active */
     /* for the force pass with local steps: */
     unsigned char *kinds; /* by slot: the role; in cells_correct, levels before and after */

@@ -134,17 +134,116 @@ void moments_gradient(int dim, int count, const struct lanes *lanes, const doubl
         rows_times_matrix(3, sums, inverse, gradient);
 }
 
-double moments_slope(int dim, int count, const struct lanes *lanes, const double *weight,
-                     const double inverse[CELLS_SQUARE], const double *f, double own,
-                     double slope[3])
+int moments_put(const struct cells_method *method, int count, const struct lanes *lanes,
+                const double *weight, size_t particle, struct moments_batch *batch)
 {
-    double sums[3], square = 0;
-    differences(dim, 1, count, lanes->stride, weight, lane(lanes, LANE_DX), f, &own, sums);
-    for (int a = 0; a < dim; a++) {
-        double g = 0;
-        for (int b = 0; b < dim; b++) g += inverse[a * dim + b] * sums[b];
-        slope[a] = g;
-        square += g * g;
+    const int dim = method->box.dim, l = batch->count++;
+    double sums[CELLS_SYMMETRIC];
+    squares(dim, count, lanes->stride, weight, lane(lanes, LANE_DX), sums);
+    for (int k = 0; k < dim * (dim + 1) / 2; k++) batch->moments[k][l] = sums[k];
+    batch->particle[l] = particle;
+    return l;
+}
+
+void moments_put_differences(int dim, int fields, int count, const struct lanes *lanes,
+                             const double *weight, const double *f, const double *own, int l,
+                             double (*sums)[GRID_LANES])
+{
+    double found[CELLS_SQUARE];
+    differences(dim, fields, count, lanes->stride, weight, lane(lanes, LANE_DX), f, own, found);
+    for (int k = 0; k < fields * dim; k++) sums[k][l] = found[k];
+}
+
+/* Inverts by cofactors where the determinant shows that nothing cancels. Elsewhere the condition is
+ * NaN. */
+ALWAYS_INLINE void solve_body(int dim, struct moments_batch *batch)
+{
+    const double *restrict xx = batch->moments[0], *restrict xy = batch->moments[1],
+                           *restrict xz = batch->moments[2],
+                           *restrict yy = batch->moments[dim == 2 ? 2 : 3],
+                           *restrict yz = batch->moments[4], *restrict zz = batch->moments[5];
+    double(*restrict inverse)[GRID_LANES] = batch->inverse;
+    SIMD_LANES
+    for (int l = 0; l < GRID_LANES; l++) {
+        const double a = xx[l], b = xy[l], c = dim == 3 ? xz[l] : 0, d = yy[l],
+                     e = dim == 3 ? yz[l] : 0, f = dim == 3 ? zz[l] : 1;
+        const double A = d * f - e * e, B = c * e - b * f, C = b * e - c * d, D = a * f - c * c,
+                     E = b * c - a * e, F = a * d - b * b,
+                     determinant = dim == 2 ? F : a * A + b * B + c * C;
+        const double trace = dim == 2 ? a + d : a + d + f,
+                     volume = dim == 2 ? trace * trace : trace * trace * trace;
+        /* no factor if the determinant is NaN or a product overflows */
+        const double factor = fabs(determinant) > 1e-3 * volume ? 1 / determinant : (double)NAN;
+        const double P = A * factor, Q = B * factor, R = C * factor, S = D * factor, T = E * factor,
+                     U = F * factor;
+        const double norm = a * a + d * d + 2 * (b * b), norm_inverse = P * P + S * S + 2 * (Q * Q),
+                     more = c * c + e * e, more_inverse = R * R + T * T;
+        inverse[0][l] = P;
+        inverse[1][l] = Q;
+        inverse[dim == 2 ? 2 : 3][l] = S;
+        if (dim == 3) inverse[2][l] = R, inverse[4][l] = T, inverse[5][l] = U;
+        batch->condition[l] =
+            dim == 2 ? sqrt(norm * norm_inverse)
+                     : sqrt((norm + f * f + 2 * more) * (norm_inverse + U * U + 2 * more_inverse));
     }
-    return sqrt(square);
+}
+
+CLONES static void solve(int dim, struct moments_batch *batch)
+{
+    if (dim == 2)
+        solve_body(2, batch);
+    else
+        solve_body(3, batch);
+}
+
+void moments_solve(const struct cells_method *method, struct moments_batch *batch)
+{
+    const int dim = method->box.dim, symmetric = dim * (dim + 1) / 2;
+    if (batch->count == 0) return;
+    solve(dim, batch);
+    for (int l = 0; l < batch->count; l++) {
+        batch->sound[l] = batch->condition[l] <= method->worst_condition;
+        if (batch->sound[l]) continue;
+        double sums[CELLS_SYMMETRIC], inverse[CELLS_SQUARE] = {0};
+        for (int k = 0; k < symmetric; k++) sums[k] = batch->moments[k][l];
+        batch->sound[l] = invert(dim, method->worst_condition, sums, inverse, &batch->condition[l]);
+        for (int a = 0, k = 0; a < dim; a++)
+            for (int b = a; b < dim; b++, k++)
+                batch->inverse[k][l] =
+                    batch->sound[l] ? 0.5 * (inverse[a * dim + b] + inverse[b * dim + a]) : 0;
+    }
+}
+
+ALWAYS_INLINE void apply_body(int dim, const double (*restrict inverse)[GRID_LANES],
+                              double (*restrict sums)[GRID_LANES])
+{
+    SIMD_LANES
+    for (int l = 0; l < GRID_LANES; l++) {
+        const double x = sums[0][l], y = sums[1][l];
+        if (dim == 2) {
+            sums[0][l] = inverse[0][l] * x + inverse[1][l] * y;
+            sums[1][l] = inverse[1][l] * x + inverse[2][l] * y;
+        } else {
+            const double z = sums[2][l];
+            sums[0][l] = inverse[0][l] * x + inverse[1][l] * y + inverse[2][l] * z;
+            sums[1][l] = inverse[1][l] * x + inverse[3][l] * y + inverse[4][l] * z;
+            sums[2][l] = inverse[2][l] * x + inverse[4][l] * y + inverse[5][l] * z;
+        }
+    }
+}
+
+CLONES static void apply(int dim, int fields, const double (*inverse)[GRID_LANES],
+                         double (*sums)[GRID_LANES])
+{
+    for (int a = 0; a < fields; a++)
+        if (dim == 2)
+            apply_body(2, inverse, sums + 2 * a);
+        else
+            apply_body(3, inverse, sums + 3 * a);
+}
+
+void moments_apply(int dim, int fields, const struct moments_batch *batch,
+                   double (*sums)[GRID_LANES])
+{
+    apply(dim, fields, batch->inverse, sums);
 }

@@ -22,10 +22,21 @@ void moments_gradient(int dim, int count, const struct lanes *lanes, const doubl
                       const double inverse[CELLS_SQUARE], const double *f, const double *own,
                       double gradient[CELLS_SQUARE]);
 
-/* The same gradient of a scalar; with f = 1 and own = 0 the gradient of a constant. Returns its
- * length. */
-double moments_slope(int dim, int count, const struct lanes *lanes, const double *weight,
-                     const double inverse[CELLS_SQUARE], const double *f, double own,
-                     double slope[3]);
+/* Puts a particle into the next lane of a batch, with its moments. Returns the lane. */
+int moments_put(const struct cells_method *method, int count, const struct lanes *lanes,
+                const double *weight, size_t particle, struct moments_batch *batch);
+
+/* Puts the sums weight x (f_a - own_a) of `fields` fields into a lane, those of field a along axis
+ * b at a dim + b. */
+void moments_put_differences(int dim, int fields, int count, const struct lanes *lanes,
+                             const double *weight, const double *f, const double *own, int lane,
+                             double (*sums)[GRID_LANES]);
+
+/* Inverts the moments of a batch, as moments_invert does. */
+void moments_solve(const struct cells_method *method, struct moments_batch *batch);
+
+/* Replaces such sums by gradients; 0 without a usable inverse. */
+void moments_apply(int dim, int fields, const struct moments_batch *batch,
+                   double (*sums)[GRID_LANES]);
 
 #endif

@@ -48,8 +48,8 @@ void cells_close(const struct cells *cells, const struct pairs *pairs);
  * remaining gradient of a constant with closed gradients. */
 void cells_exchange(const struct cells *cells, const struct pairs *pairs, double *gained);
 
-/* Adds to gained the heat conducted to the particle. Returns false if no pair conducts. */
-bool cells_conduction(const struct cells *cells, const struct pairs *pairs, double *gained);
+/* The heat conducted to the particle. */
+double cells_conduction(const struct cells *cells, const struct pairs *pairs);
 
 /* sum_j V_j v_ij . G: div v of CONVENTIONS with the pair gradient. */
 double cells_divergence(const struct cells *cells, const struct pairs *pairs);

@@ -35,7 +35,7 @@
         const struct kernel *kernel, size_t n, const double *restrict r, double h_inverse,         \
         const double *restrict V, double *restrict w, double *restrict weight)                     \
     {                                                                                              \
-        _Pragma("omp simd") for (size_t i = 0; i < (n & ~(size_t)7); i++)                                         \
+        _Pragma("omp simd") for (size_t i = 0; i < (n & ~(size_t)7); i++)                          \
         {                                                                                          \
             w[i] = shape(kernel, r[i] * h_inverse, dim);                                           \
             weight[i] = V[i] * w[i];                                                               \
@@ -47,7 +47,7 @@
         const struct kernel *kernel, size_t n, const double *restrict r, double h_inverse,         \
         const double *restrict others, double *restrict value, double *restrict value_j)           \
     {                                                                                              \
-        _Pragma("omp simd") for (size_t i = 0; i < (n & ~(size_t)7); i++)                                         \
+        _Pragma("omp simd") for (size_t i = 0; i < (n & ~(size_t)7); i++)                          \
         {                                                                                          \
             value[i] = shape(kernel, r[i] * h_inverse, dim);                                       \
             value_j[i] = shape(kernel, r[i] * others[i], dim);                                     \

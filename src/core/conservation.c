@@ -41,8 +41,8 @@ struct turning {
 };
 
 /* Adds the particles k to k + count - 1, at most LANES. */
-ALWAYS_INLINE void add_straight(int dim, const struct simulation *simulation,
-                                ptrdiff_t k, int count, struct straight *sums)
+ALWAYS_INLINE void add_straight(int dim, const struct simulation *simulation, ptrdiff_t k,
+                                int count, struct straight *sums)
 {
     const struct particles *a = &simulation->particles;
     const double *restrict m = a->m + k, *restrict c = a->c + k, *restrict e = a->e + k;
@@ -147,7 +147,7 @@ static void find_turning(const struct simulation *simulation, struct conservatio
 }
 
 /* Two threads compute whole sums each, so that the order of addition is the same as with one. */
-void simulation_conservation(const struct simulation *simulation, struct conservation *sums)
+void conservation_sums(const struct simulation *simulation, struct conservation *sums)
 {
     const struct particles *a = &simulation->particles;
     const bool shared = simulation->team.size > 1 && a->n >= WORTH_A_THREAD * BATCH_MAX;

@@ -211,7 +211,7 @@ enum status simulation_begin(struct simulation *simulation, struct error *error)
     sums->begin(simulation);
     enum status status = evaluate_rates(simulation, error);
     if (status) return status;
-    simulation_conservation(simulation, &sum);
+    conservation_sums(simulation, &sum);
     simulation->start_energy = sum.energy;
     status = sums->reserve(simulation, error);
     return status ? status : sums->sleep_begin(simulation, error);
@@ -296,7 +296,7 @@ static enum status check_energy(const struct simulation *simulation, struct erro
 {
     struct conservation sums;
     if (simulation->held) return STATUS_OK;
-    simulation_conservation(simulation, &sums);
+    conservation_sums(simulation, &sums);
     if (fabs(sums.energy - simulation->start_energy) <= 0.5 * simulation->start_energy)
         return STATUS_OK;
     return error_set(error, STATUS_BROKE_DOWN,

@@ -119,7 +119,7 @@ void simulation_snapshot(const struct simulation *simulation, struct snapshot *s
 /* asleep[i]: whether particle i, in the order of the snapshot, is skipped in the sums; n values. */
 void simulation_asleep(const struct simulation *simulation, bool *asleep);
 void simulation_rates(const struct simulation *simulation, struct rates *rates);
-void simulation_conservation(const struct simulation *simulation, struct conservation *sums);
+void conservation_sums(const struct simulation *simulation, struct conservation *sums);
 void simulation_cost(const struct simulation *simulation, struct simulation_cost *cost);
 /* Frees the neighbour lists. Afterwards no step and no description is allowed. */
 void simulation_end(struct simulation *simulation);

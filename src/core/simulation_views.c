@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What others read of a simulation: positions in the box, rates, conserved sums, cost. */
+ * What others read of a simulation: positions in the box, rates, cost. */
 #include <math.h>
 #include <string.h>
 
 #include "simulation.h"
 #include "solver.h"
-#include "width.h"
 
 void simulation_asleep(const struct simulation *simulation, bool *asleep)
 {

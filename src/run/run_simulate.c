@@ -59,7 +59,7 @@ static void take_sums(const struct run *run, const struct simulation *simulation
 {
     const struct prepared *p = &run->problem;
     bool layers = false;
-    simulation_conservation(simulation, sums);
+    conservation_sums(simulation, sums);
     for (int d = 0; d < p->domain.dim; d++)
         sums->kinetic -= p->boost[d] * (sums->momentum[d] - 0.5 * sums->mass * p->boost[d]);
     for (int d = 0; d < p->domain.dim; d++) layers |= p->boundary[d] == BOUNDARY_FIXED;

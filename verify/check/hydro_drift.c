@@ -46,9 +46,9 @@ static void drift(struct check_run *run, const struct scheme *scheme,
     hydro_describe(scheme, where);
     enum status status = simulation_create(&setup, &simulation, &error);
     if (!status) {
-        simulation_conservation(simulation, &before);
+        conservation_sums(simulation, &before);
         status = simulation_run(simulation, 0.1, NULL, NULL, &error);
-        simulation_conservation(simulation, &after);
+        conservation_sums(simulation, &after);
         simulation_destroy(simulation);
     }
     if (status) {

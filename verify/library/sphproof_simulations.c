@@ -151,7 +151,7 @@ double sphproof_simulations_state(const struct sphproof_simulation *simulation,
 struct sphproof_sums sphproof_simulations_sums(const struct sphproof_simulation *simulation)
 {
     struct conservation c;
-    simulation_conservation(simulation->simulation, &c);
+    conservation_sums(simulation->simulation, &c);
     return (struct sphproof_sums){c.mass, {c.momentum[0], c.momentum[1], c.momentum[2]}, c.energy};
 }
 

@@ -77,9 +77,9 @@ TEST(keeps_momentum_and_energy)
         struct simulation *simulation = blocks_of(&setup);
         struct conservation before, after;
         struct simulation_cost cost;
-        simulation_conservation(simulation, &before);
+        conservation_sums(simulation, &before);
         run_until(simulation, 1 / sqrt(heat[k / 2]), NULL);
-        simulation_conservation(simulation, &after);
+        conservation_sums(simulation, &after);
         simulation_cost(simulation, &cost);
         for (int a = 0; a < dim; a++)
             near_below(fabs(after.momentum[a] - before.momentum[a]), 1e-13 * after.momentum_scale);

@@ -386,6 +386,77 @@ static void draw_neighbours(int dim, double flat, struct drawn *drawn)
     }
 }
 
+/* A symmetric positive matrix, half of them with a condition above 1e4, and now and then one that
+ * is not finite or too small or too large. */
+static void draw_moments(int dim, double *a)
+{
+    const double scale = pow(10, (draw() > 0.5 ? 160 : 10) * draw());
+    double half[9];
+    with_singular_values(dim, pow(10, 4 * draw() - 3), pow(10, 4 * draw() - 3), half);
+    for (int i = 0; i < dim; i++)
+        for (int j = 0; j < dim; j++) {
+            a[i * dim + j] = 0;
+            for (int k = 0; k < dim; k++)
+                a[i * dim + j] += scale * half[i * dim + k] * half[j * dim + k];
+        }
+    static const double odd[] = {NAN, INFINITY, 0, 1e-200, 1e200};
+    if (draw() > 0.8)
+        for (int k = 0, which = (int)(2.5 + 2.5 * draw()); k < dim * dim; k++) a[k] *= odd[which];
+}
+
+/* Batches of moment matrices give the inverses, conditions and gradients that matrix_invert and
+ * matrix_condition give one by one, and nothing where these give no usable inverse. */
+TEST(test_batches)
+{
+    const struct cells_method methods[] = {{.box.dim = 2, .worst_condition = 1e4},
+                                           {.box.dim = 3, .worst_condition = 1e4}};
+    int usable = 0, plain = 0, unusable = 0;
+    for (int trial = 0; trial < 4000; trial++) {
+        const struct cells_method *method = &methods[trial % 2];
+        const int dim = method->box.dim, symmetric = dim * (dim + 1) / 2;
+        struct moments_batch batch = {.count = 1 + trial % GRID_LANES};
+        double a[GRID_LANES][9], f[9][GRID_LANES], sums[9][GRID_LANES];
+        for (int l = 0; l < batch.count; l++) {
+            draw_moments(dim, a[l]);
+            for (int i = 0, k = 0; i < dim; i++)
+                for (int j = i; j < dim; j++, k++) batch.moments[k][l] = a[l][i * dim + j];
+            for (int k = 0; k < 2 * dim; k++) f[k][l] = sums[k][l] = draw();
+        }
+        moments_solve(method, &batch);
+        moments_apply(dim, 2, &batch, sums);
+        for (int l = 0; l < batch.count; l++) {
+            double inverse[9] = {0};
+            const double condition = matrix_condition(dim, a[l]);
+            const bool sound = matrix_invert(dim, a[l], inverse) && condition <= 1e4;
+            if (fabs(condition / 1e4 - 1) > 1e-6) assert_true(batch.sound[l] == sound);
+            if (!batch.sound[l]) {
+                unusable++;
+                for (int k = 0; k < symmetric; k++) assert_true(batch.inverse[k][l] == 0);
+                for (int k = 0; k < 2 * dim; k++) assert_true(sums[k][l] == 0);
+                continue;
+            }
+            /* first the Frobenius norm, at most `dim` times as large */
+            assert_true(batch.condition[l] >= condition * (1 - 1e-9) &&
+                        batch.condition[l] <= condition * dim);
+            plain += batch.condition[l] > condition * (1 + 1e-9);
+            usable++;
+            double size = 0;
+            for (int k = 0; k < dim * dim; k++) size = fmax(size, fabs(inverse[k]));
+            for (int i = 0, k = 0; i < dim; i++)
+                for (int j = i; j < dim; j++, k++)
+                    near_below(fabs(batch.inverse[k][l] - inverse[i * dim + j]),
+                               1e-14 * condition * size);
+            for (int k = 0; k < 2 * dim; k++) {
+                double expected = 0;
+                for (int b = 0; b < dim; b++)
+                    expected += inverse[k % dim * dim + b] * f[k / dim * dim + b][l];
+                near_below(fabs(sums[k][l] - expected), 1e-13 * condition * size);
+            }
+        }
+    }
+    assert_true(usable > 1000 && plain > 1000 && unusable > 1000);
+}
+
 /* Compares w(q) and V w(q) of specialised and unspecialised kernel loops with the kernel. */
 TEST(test_weights)
 {

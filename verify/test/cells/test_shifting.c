@@ -58,9 +58,9 @@ TEST(keeps_mass_momentum_and_energy)
         struct simulation *simulation = simulation_of(&setup);
         struct conservation before, after;
         struct snapshot s;
-        simulation_conservation(simulation, &before);
+        conservation_sums(simulation, &before);
         run_until(simulation, dim == 2 ? 0.15 : 0.1, NULL);
-        simulation_conservation(simulation, &after);
+        conservation_sums(simulation, &after);
         simulation_snapshot(simulation, &s);
         near_relative(after.mass, before.mass, 1e-14);
         near_relative(after.energy, before.energy, 1e-13);

@@ -163,7 +163,7 @@ static enum status flow(int dim, const struct scheme *scheme, enum boundary ends
     if (status) return status;
     status = simulation_run(simulation, 0.02, NULL, NULL, error);
     struct conservation sums;
-    simulation_conservation(simulation, &sums);
+    conservation_sums(simulation, &sums);
     if (!status) assert_true(isfinite(sums.energy) && sums.energy > 0);
     simulation_destroy(simulation);
     return status;

@@ -130,7 +130,7 @@ static void run(const struct setup *setup, double t_end, struct gas *end)
         simulation_run(simulation, t_end, NULL, NULL, &error))
         fail_msg("%s", error.message);
     simulation_snapshot(simulation, &s);
-    simulation_conservation(simulation, &end->sums);
+    conservation_sums(simulation, &end->sums);
     simulation_cost(simulation, &end->cost);
     for (size_t i = 0; i < s.n; i++) {
         const size_t id = s.id[i];

@@ -173,7 +173,7 @@ TEST(the_state_of_a_setup)
             }
             if (dim == 2) assert_true(a->p[0][N] == 0 && a->e[N] == 0 && a->x_old[0][N] == 0);
             struct conservation sums;
-            simulation_conservation(s, &sums);
+            conservation_sums(s, &sums);
             assert_true(s->start_energy == sums.energy);
             simulation_destroy(s);
         }
@@ -248,7 +248,7 @@ TEST(conserved_sums)
                 const struct particles *a = &s.particles;
                 s.scheme.energy = total ? ENERGY_TOTAL : ENERGY_INTERNAL;
                 if (walls) s.boundary[dim - 1] = BOUNDARY_REFLECTING;
-                simulation_conservation(&s, &sums);
+                conservation_sums(&s, &sums);
                 real mass = 0, energy = 0, p[3] = {0}, L[3] = {0}, size = 0, sound = 0, turning = 0,
                      far = 0;
                 for (int i = 0; i < 40; i++) {

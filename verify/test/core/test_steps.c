@@ -271,7 +271,7 @@ TEST(runaway_energy)
             struct error error;
             struct conservation sums;
             s->scheme.energy = total ? ENERGY_TOTAL : ENERGY_INTERNAL;
-            simulation_conservation(s, &sums);
+            conservation_sums(s, &sums);
             s->start_energy = sums.energy / (k == 0   ? 1.5000001
                                              : k == 1 ? 1.4999999
                                              : k == 2 ? 0.5000001

@@ -72,7 +72,7 @@ static void run(struct setup *setup, bool skip, struct end *end)
         simulation_run(simulation, setup->t_end, NULL, NULL, &error))
         fail_msg("%s", error.message);
     simulation_snapshot(simulation, &s);
-    simulation_conservation(simulation, &end->sums);
+    conservation_sums(simulation, &end->sums);
     simulation_cost(simulation, &end->cost);
     memset(end->fields, 0, sizeof end->fields);
     const double *const fields[FIELDS_SEEN] = {s.x[0], s.x[1], s.x[2], s.v[0], s.v[1],
