@@ -38,6 +38,7 @@ static const char *const sections[] = {"case",    "domain",   "initial",  "schem
 struct parser {
     struct case_file *file;
     struct ini_text at;
+    char where[256]; /* path and line of the present pair */
     char reference[64];
     /* line of the first occurrence */
     int seen_settings[SETTINGS], seen_extras[EXTRAS], seen_gates[CASE_GATES_MAX],
@@ -46,15 +47,14 @@ struct parser {
 
 static void set_fields(struct parser *parser, const char *name, const char *value, bool *fields)
 {
-    char copy[INI_TEXT_LINE + 1], where[256], *rest = NULL;
+    char copy[INI_TEXT_LINE + 1], *rest = NULL;
     snprintf(copy, sizeof copy, "%s", value);
-    snprintf(where, sizeof where, "%.200s:%d", parser->at.path, parser->at.line);
     memset(fields, 0, FIELDS * sizeof *fields);
     if (!*value) ini_text_fail_value(&parser->at, name, value, "names of fields");
     for (char *word = strtok_r(copy, " \t,", &rest); word; word = strtok_r(NULL, " \t,", &rest)) {
         const int field = family_index(&field_family, word);
         if (field < 0) {
-            text_unknown_member(parser->at.error, where, "field", word, &field_family);
+            text_unknown_member(parser->at.error, parser->where, "field", word, &field_family);
             parser->at.failed = true;
             return;
         }
@@ -93,7 +93,6 @@ static void set_flag(struct parser *parser, const char *name, const char *value,
 
 static void set_reference(struct parser *parser, const char *value)
 {
-    char where[256];
     struct error reason;
     if (user_solution_is_named(value)) {
         snprintf(parser->reference, sizeof parser->reference, "%s", "");
@@ -109,11 +108,10 @@ static void set_reference(struct parser *parser, const char *value)
         known = strcmp(name, value) == 0;
         if (list_grow(&names, n, sizeof *names)) names[n++] = name;
     }
-    snprintf(where, sizeof where, "%.200s:%d", parser->at.path, parser->at.line);
     if (known) {
         snprintf(parser->reference, sizeof parser->reference, "%s", value);
     } else {
-        text_unknown(parser->at.error, where, "reference", value, names, n);
+        text_unknown(parser->at.error, parser->where, "reference", value, names, n);
         parser->at.failed = true;
     }
     free(names);
@@ -159,24 +157,22 @@ static void set_extra(struct parser *parser, enum extra extra, const char *value
     }
 }
 
-/* Splits a name such as "density_l1"; false if it is not a field and a norm. */
-static bool gate_name(const char *name, int *field, int *norm)
-{
-    for (*field = 0; *field < FIELDS; ++*field)
-        for (*norm = 0; *norm < NORMS; ++*norm) {
-            char text[64];
-            snprintf(text, sizeof text, "%s_%s", field_family.members[*field]->name,
-                     field_norm_family.members[*norm]->name);
-            if (strcmp(text, name) == 0) return true;
-        }
-    return false;
-}
-
-/* The static name of a functional or of a conservation figure; NULL: neither. */
-static const char *figure_name(const char *name)
+/* Finds what a gate of this name bounds: a field's norm such as "density_l1", a functional, or a
+ * conservation figure. */
+static bool find_subject(const char *name, struct case_gate *gate)
 {
     const size_t figure = trace_figure(name);
-    return figure < TRACE_FIGURES ? trace_figures[figure] : problem_functional_name(name);
+    *gate =
+        (struct case_gate){.functional = figure < TRACE_FIGURES ? trace_figures[figure]
+                                                                : problem_functional_name(name)};
+    for (int k = 0; k < FIELDS * NORMS && !gate->functional; k++) {
+        char text[64];
+        gate->field = (enum field)(k / NORMS), gate->norm = (enum norm)(k % NORMS);
+        snprintf(text, sizeof text, "%s_%s", field_family.members[gate->field]->name,
+                 field_norm_family.members[gate->norm]->name);
+        if (strcmp(text, name) == 0) return true;
+    }
+    return gate->functional != NULL;
 }
 
 #define ORDER_GATE    "least order, greatest order, bound; or "
@@ -215,14 +211,13 @@ static bool read_gate(const char *value, size_t count, double *numbers, double *
     return text_reals(text, " \t,", count, numbers) && numbers[count - 1] > *least;
 }
 
-/* Index of the gate of a functional or, with functional = NULL, of a field's norm; gate_count:
- * none. */
-static size_t find_gate(const struct case_file *file, const char *functional, enum field field,
-                        enum norm norm)
+/* Index of the gate with the subject of `of`; gate_count: none. */
+static size_t find_gate(const struct case_file *file, const struct case_gate *of)
 {
     size_t i = 0;
-    while (i < file->gate_count && (file->gates[i].functional != functional ||
-                                    file->gates[i].field != field || file->gates[i].norm != norm))
+    while (i < file->gate_count &&
+           (file->gates[i].functional != of->functional || file->gates[i].field != of->field ||
+            file->gates[i].norm != of->norm))
         i++;
     return i;
 }
@@ -231,7 +226,7 @@ static void add_gate(struct parser *parser, const char *name, struct case_gate g
                      const char *why)
 {
     struct case_file *file = parser->file;
-    const size_t there = find_gate(file, gate.functional, gate.field, gate.norm);
+    const size_t there = find_gate(file, &gate);
     if (there < file->gate_count) {
         ini_text_first(&parser->at, &parser->seen_gates[there], name);
         return;
@@ -289,12 +284,11 @@ static void set_finer(struct parser *parser, struct case_gate *gate, const char 
 }
 
 /* Applies a key of [compared] or [finer] to the gate of the same name in [converge]. */
-static void amend_gate(struct parser *parser, const char *section, const char *functional,
-                       int field, int norm, const char *name, const char *value)
+static void amend_gate(struct parser *parser, const char *section, const struct case_gate *of,
+                       const char *name, const char *value)
 {
     struct case_file *file = parser->file;
-    const size_t i = find_gate(file, functional, functional ? 0 : (enum field)field,
-                               functional ? 0 : (enum norm)norm);
+    const size_t i = find_gate(file, of);
     const bool finer = strcmp(section, "finer") == 0;
     char what[120];
     if (i == file->gate_count) {
@@ -307,22 +301,21 @@ static void amend_gate(struct parser *parser, const char *section, const char *f
     }
 }
 
-/* Adds a gate for a functional or, with functional = NULL, for a field's norm. */
-static void set_gate(struct parser *parser, const char *functional, int field, int norm,
-                     const char *name, const char *value)
+/* Adds a gate whose subject is set. */
+static void set_gate(struct parser *parser, struct case_gate gate, const char *name,
+                     const char *value)
 {
     double numbers[3];
     const char *why;
-    struct case_gate gate = {.functional = functional};
-    if (!functional) gate.field = (enum field)field, gate.norm = (enum norm)norm;
-    if (!functional && read_gate(value, 3, numbers, &gate.least, &why) && numbers[0] < numbers[1])
+    if (!gate.functional && read_gate(value, 3, numbers, &gate.least, &why) &&
+        numbers[0] < numbers[1])
         gate.gate = (struct order_gate){numbers[0], numbers[1], numbers[2]};
     else if (read_gate(value, 2, numbers, &gate.least, &why) && numbers[0] >= 0)
         gate.gate = (struct order_gate){numbers[0], INFINITY, numbers[1]};
     else {
         ini_text_fail_value(&parser->at, name, value,
-                            functional ? ERROR_GATE TWO_SIDES KNOWN_FAILURE
-                                       : ORDER_GATE ERROR_GATE TWO_SIDES KNOWN_FAILURE);
+                            gate.functional ? ERROR_GATE TWO_SIDES KNOWN_FAILURE
+                                            : ORDER_GATE ERROR_GATE TWO_SIDES KNOWN_FAILURE);
         return;
     }
     add_gate(parser, name, gate, why);
@@ -331,11 +324,10 @@ static void set_gate(struct parser *parser, const char *functional, int field, i
 /* Reports a key that is not allowed in its section: names its section, or the nearest known key. */
 static void unknown(struct parser *parser, const char *section, const char *name)
 {
-    char where[256], what[120];
+    char what[120];
     const char *names[SETTINGS + EXTRAS];
     size_t n = 0;
     parser->at.failed = true;
-    snprintf(where, sizeof where, "%.200s:%d", parser->at.path, parser->at.line);
     bool section_exists = false;
     for (size_t i = 0; i < sizeof sections / sizeof *sections; i++)
         section_exists |= strcmp(sections[i], section) == 0;
@@ -345,7 +337,7 @@ static void unknown(struct parser *parser, const char *section, const char *name
         return;
     }
     if (!section_exists) {
-        text_unknown(parser->at.error, where, "section", section, sections,
+        text_unknown(parser->at.error, parser->where, "section", section, sections,
                      sizeof sections / sizeof *sections);
         return;
     }
@@ -366,7 +358,7 @@ static void unknown(struct parser *parser, const char *section, const char *name
         for (int k = 0; k < TRACE_FIGURES; k++) names[n++] = trace_figures[k];
     }
     snprintf(what, sizeof what, "key in [%.20s]", section);
-    text_unknown(parser->at.error, where, what, name, names, n);
+    text_unknown(parser->at.error, parser->where, what, name, names, n);
 }
 
 /* Resolves a path relative to the case file. */
@@ -383,8 +375,8 @@ static const char *beside_case(const struct parser *parser, const char *value,
 static int take_pair(void *context, const char *section, const char *name, const char *value)
 {
     struct parser *parser = context;
-    char where[256];
-    int field, norm;
+    struct case_gate gate;
+    snprintf(parser->where, sizeof parser->where, "%.200s:%d", parser->at.path, parser->at.line);
     for (int i = 0; i < EXTRAS; i++)
         if (strcmp(extras[i].section, section) == 0 && strcmp(extras[i].name, name) == 0) {
             set_extra(parser, (enum extra)i, value);
@@ -392,20 +384,17 @@ static int take_pair(void *context, const char *section, const char *name, const
         }
     const int key = setting_find(name);
     if (key >= 0 && strcmp(setting_keys[key].section, section) == 0) {
-        snprintf(where, sizeof where, "%.200s:%d", parser->at.path, parser->at.line);
         char path[2 * SETTING_TEXT_MAX];
         if (setting_keys[key].type == SETTING_PATH) value = beside_case(parser, value, path);
         if (ini_text_first(&parser->at, &parser->seen_settings[key], name) &&
-            settings_set(&parser->file->settings, (enum setting)key, value, SOURCE_CASE, where,
-                         parser->at.error))
+            settings_set(&parser->file->settings, (enum setting)key, value, SOURCE_CASE,
+                         parser->where, parser->at.error))
             parser->at.failed = true;
-    } else if (strcmp(section, "converge") == 0 && gate_name(name, &field, &norm)) {
-        set_gate(parser, NULL, field, norm, name, value);
-    } else if (strcmp(section, "converge") == 0 && figure_name(name)) {
-        set_gate(parser, figure_name(name), 0, 0, name, value);
+    } else if (strcmp(section, "converge") == 0 && find_subject(name, &gate)) {
+        set_gate(parser, gate, name, value);
     } else if ((strcmp(section, "compared") == 0 || strcmp(section, "finer") == 0) &&
-               (gate_name(name, &field, &norm) || figure_name(name))) {
-        amend_gate(parser, section, figure_name(name), field, norm, name, value);
+               find_subject(name, &gate)) {
+        amend_gate(parser, section, &gate, name, value);
     } else {
         unknown(parser, section, name);
     }
@@ -566,15 +555,14 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
 bool case_amend(struct case_file *file, struct ini_text *at, const char *name, const char *value)
 {
     struct parser parser = {.file = file, .at = *at};
-    const char *functional = figure_name(name);
-    int field = 0, norm = 0;
+    struct case_gate gate;
     const bool ladder = strcmp(name, extras[EXTRA_n].name) == 0;
-    if (!ladder && !functional && !gate_name(name, &field, &norm)) return false;
+    if (!ladder && !find_subject(name, &gate)) return false;
     if (ladder) {
         file->ladder_count = 0;
         set_extra(&parser, EXTRA_n, value);
     } else {
-        set_gate(&parser, functional, field, norm, name, value);
+        set_gate(&parser, gate, name, value);
         for (size_t i = 0; i < file->gate_count; i++) parser.seen_gates[i] = at->line;
         if (!parser.at.failed) check_gates(&parser);
     }
