@@ -118,6 +118,9 @@ TEST(recorded_output_of_squeue)
     }
     queue_is(text, all, sizeof rows / sizeof *rows);
     queue_is("", NULL, 0); /* no task of this name */
+    /* lines that are about no task */
+    const struct expected two[] = {{7, 2, true, "RUNNING", ""}, {8, 1, false, "FAILED", "None"}};
+    queue_is("squeue: warning: slow\n7 1\n\n7 2 RUNNING\n8 1 FAILED None\n", two, 2);
 }
 
 /* ---- submitting ---- */
@@ -139,6 +142,7 @@ TEST(submissions)
         {"Submitted batch job 11\n", "", 0, 0, "sbatch answers 'Submitted batch job 11"},
         {"", "sbatch: error: invalid partition specified: none", 1, 0,
          "sbatch failed (exit status 1): sbatch: error: invalid partition specified: none"},
+        {"", "", 2, 0, "sbatch failed (exit status 2): it says nothing"},
         {"5\n", "sbatch: unrecognized option '--nonsense'", 255, 0,
          "sbatch failed (exit status 255): sbatch: unrecognized option '--nonsense'"},
     };
