@@ -135,7 +135,7 @@ static void plot_each(struct page_writer *writer, const char *case_name, const j
     double low = (double)INFINITY, high = -(double)INFINITY;
     size_t n = 0;
     for (size_t r = 0; r < count; r++) {
-        n += maps[r].cells && maps[r].z[k];
+        n += maps[r].z[k] != NULL;
         for (size_t c = 0; maps[r].z[k] && c < maps[r].cells; c++) {
             low = fmin(low, maps[r].z[k][c]);
             high = fmax(high, maps[r].z[k][c]);
@@ -148,7 +148,7 @@ static void plot_each(struct page_writer *writer, const char *case_name, const j
                   titles[k]);
     for (size_t r = 0; r < count; r++) {
         char what[32];
-        if (!maps[r].cells || !maps[r].z[k]) continue;
+        if (!maps[r].z[k]) continue;
         struct plot_heat heat = heat_of(&maps[r], k);
         heat.low = low, heat.high = high;
         snprintf(what, sizeof what, "scheme-%s-%zu", map_names[k], r + 1);
