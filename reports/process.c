@@ -78,14 +78,14 @@ static int start(struct process *child, char *const argv[], int file, const sigs
     return code;
 }
 
-/* Reads the available data; closes the descriptor at the end of the file. */
+/* Reads the available data, which takes no time; closes the descriptor at the end of the file. */
 static void drain(int *descriptor, struct buffer *into)
 {
     char buffer[65536];
     ssize_t n = read(*descriptor, buffer, sizeof buffer);
     if (n > 0) {
         buffer_add_bytes(into, buffer, (size_t)n);
-    } else if (n == 0 || (errno != EINTR && errno != EAGAIN)) {
+    } else {
         close(*descriptor);
         *descriptor = -1;
     }
@@ -123,7 +123,7 @@ static enum turn converse(struct process *child, const char *input, size_t size,
                 input += n;
                 size -= (size_t)n;
             }
-            if ((!size && !mark) || (n < 0 && errno != EAGAIN && errno != EINTR)) {
+            if ((!size && !mark) || n < 0) {
                 close(child->in);
                 child->in = -1;
             }

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -266,6 +267,36 @@ TEST(processes)
     sigset_t mask;
     sigprocmask(SIG_BLOCK, NULL, &mask);
     assert_false(sigismember(&mask, SIGPIPE));
+}
+
+static void nothing(int number)
+{
+    (void)number;
+}
+
+/* Signals may interrupt all waiting: for data, for room, and for the end of the program. */
+TEST(interrupted_processes)
+{
+    const struct sigaction action = {.sa_handler = nothing};
+    const struct itimerval often = {{0, 500}, {0, 500}}, never = {{0, 0}, {0, 0}};
+    struct sigaction before;
+    struct buffer output = {0};
+    const size_t size = 1 << 20;
+    char *input = malloc(size), message[512] = "";
+    assert_non_null(input);
+    memset(input, 'a', size);
+    assert_int_equal(sigaction(SIGALRM, &action, &before), 0);
+    setitimer(ITIMER_REAL, &often, NULL);
+    const enum process_status status = shell("sleep 0.1; cat; exec >&- 2>&-; sleep 0.1; exit 3",
+                                             input, size, 60, &output, message, sizeof message);
+    setitimer(ITIMER_REAL, &never, NULL);
+    sigaction(SIGALRM, &before, NULL);
+    assert_int_equal(status, PROCESS_FAILED);
+    assert_string_equal(message, "sh ended with status 3: ");
+    assert_int_equal(output.size, size);
+    assert_memory_equal(output.data, input, size);
+    buffer_free(&output);
+    free(input);
 }
 
 /* A persistent program answers each question; after a failure neither its output nor its end is
