@@ -123,6 +123,10 @@ static void split_plainly(struct split *split, const unsigned char *reach, const
 
 #if SPHPROOF_CLONES && defined __x86_64__
 
+/* Without optimisation gcc's header makes these calls macros, which convert their masks. */
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 /* As split_plainly. all: every slot has sums; otherwise `reach` is read up to three bytes beyond a
  * slot's own. */
 __attribute__((target("avx512f,popcnt"), always_inline)) static inline void
@@ -162,6 +166,8 @@ split_in_vectors(struct split *split, const struct reactions *reactions, const i
     else
         split_vectors(false, split, reactions->reach, slots, count);
 }
+
+#pragma GCC diagnostic pop
 
 #endif
 
