@@ -8,7 +8,7 @@ import os
 import random
 import sys
 
-from script import check, play, program, said
+from script import check, play, program, read, said
 
 folder = os.path.abspath(sys.argv[2] if sys.argv[2:] else os.path.join(os.path.dirname(program), "verify/examples"))
 CASE = """[case]
@@ -87,6 +87,14 @@ def main():
                   table["interpolation"][field])
         check(slip["density"]["l1"] > 1.2 * exact["density"]["l1"], "a wrong solution is not seen", slip["density"])
         check("interpolation" not in so, "interpolation without a table")
+    with open("swapped.csv", "w") as file:
+        file.write(read("fine.csv").replace("rho,vx,P", "P,vx,rho"))
+    with open("swapped.ini", "w") as file:
+        file.write(CASE % ("table swapped.csv", ""))
+    note = "sphproof: note: density is nearer the exact pressure than its own exact solution\n"
+    for quiet in (), ("--quiet",):
+        found = said("run", "./swapped.ini", "n=198", *quiet)
+        check((note in found[2]) == (not quiet), "exchanged columns of the table", found)
     check(said("run", "sod", "n=198", "--snapshot", "s.csv", "--quiet")[0] == 0, "no snapshot")
     exact, so, table = (result("judge", "s.csv", "--case", case)["errors"] for case in ("sod", "./so.ini", "./table.ini"))
     check(all(abs(so[f]["l1"] / exact[f]["l1"] - 1) < 1e-10 for f in FIELDS), "judge", so, exact)
