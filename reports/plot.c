@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include "layout.h"
-#include "process.h"
 #include "script.h"
 #include "style.h"
 

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include "specialise.h"
-#include "team.h"
 
 int lanes_longest_record(const struct cells *cells)
 {

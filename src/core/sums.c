@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "sums.h"
 
-#include <stddef.h>
-
 static const struct sums *const all[] = {&line_sums, &cells_sums};
 
 const struct sums *sums_find(int dim)

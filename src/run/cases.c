@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ini_text.h"
 #include "list.h"
 #include "place.h"
 #include "text.h"

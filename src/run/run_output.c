@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A run's result as JSON and as a snapshot. */
-#include "run.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "initial.h"
 #include "solver.h"
 
 static const double reaches = 3;

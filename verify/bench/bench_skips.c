@@ -8,7 +8,6 @@
 
 #include "bench_cells.h"
 #include "bench_loops.h"
-#include "bench_possible.h"
 #include "integrator.h"
 
 /* Work that keys restore; a case whose scheme does not skip it has no entry. */

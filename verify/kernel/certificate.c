@@ -2,7 +2,6 @@
 #include "certificate.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include <gsl/gsl_errno.h>

@@ -15,7 +15,6 @@
 #include "gates.h"
 #include "list.h"
 #include "pairing.h"
-#include "pool.h"
 #include "problem_list.h"
 #include "report_piece.h"
 #include "result.h"

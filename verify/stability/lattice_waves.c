@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "initial.h"
 #include "rate_table.h"
 
 /* A displacement in spacings: differences of forces lose 1e-12/STEP to round-off and STEP^2 to

@@ -3,9 +3,6 @@
  * which sides it refuses to compare. (The transcripts test whole calls, snapshots and pages.) */
 #include "test.h"
 
-#include <unistd.h>
-
-#include "near.h"
 #include "printed.h"
 
 /* the command itself, because its static functions are tested; progress is reported to this file */

@@ -6,7 +6,6 @@
 #include "test.h"
 
 #include <ctype.h>
-#include <unistd.h>
 
 #include "command.h"
 #include "failing_memory.h"

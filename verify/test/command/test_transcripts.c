@@ -18,13 +18,11 @@
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
-#include <stdbool.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "buffer.h"
 #include "command.h"
-#include "drawn_document.h"
 #include "drawn_pieces.h"
 #include "report.h"
 

@@ -7,7 +7,6 @@
 #include <stdatomic.h>
 
 #include "keyed.h"
-#include "run.h"
 
 static atomic_bool stepping;
 static atomic_int calls;

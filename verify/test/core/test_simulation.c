@@ -5,7 +5,6 @@
 
 #include "draw.h"
 #include "breakdown.h"
-#include "keyed.h"
 #include "sample_simulation.h"
 #include "solver.h"
 

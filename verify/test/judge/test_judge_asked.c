@@ -3,7 +3,6 @@
  * snapshot or from options, and which requests it refuses. */
 #include "test.h"
 
-#include "near.h"
 #include "riemann.h"
 #include "sample_snapshot.h"
 

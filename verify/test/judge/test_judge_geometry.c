@@ -3,7 +3,6 @@
  * completes missing columns, and which options it refuses because they would have no effect. */
 #include "test.h"
 
-#include "near.h"
 #include "sample_snapshot.h"
 
 /* ---- gamma, time ---- */

@@ -4,7 +4,6 @@
 #include "test.h"
 
 #include "judge_autopsy.h"
-#include "near.h"
 #include "sample_snapshot.h"
 
 static const struct {

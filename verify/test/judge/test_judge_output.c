@@ -2,7 +2,6 @@
  * Tests the JSON document of judged snapshots: one by one, and their orders and gates. */
 #include "test.h"
 
-#include "near.h"
 #include "sample_snapshot.h"
 
 /* Judges uniform gas in 2D with this density and total mass at this time. */

@@ -3,7 +3,6 @@
  * limits beyond which a snapshot is far from the solution. */
 #include "test.h"
 
-#include "near.h"
 #include "sample_snapshot.h"
 
 /* ---- noise ---- */

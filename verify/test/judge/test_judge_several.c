@@ -4,7 +4,6 @@
 #include "test.h"
 
 #include "judge.h"
-#include "near.h"
 #include "problem_list.h"
 
 enum { MOST = 5 };

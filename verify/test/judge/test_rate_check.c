@@ -3,7 +3,6 @@
  * rates, which reports differences and their likely causes. */
 #include "test.h"
 
-#include "near.h"
 #include "oracle.h"
 #include "rate_check.h"
 #include "settings.h"

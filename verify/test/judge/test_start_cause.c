@@ -3,7 +3,6 @@
  * values. The faults are planted here. (The transcripts test whole snapshots.) */
 #include "test.h"
 
-#include "near.h"
 #include "start_gas.h"
 
 enum { N = 20 };

@@ -5,7 +5,6 @@
 #include "test.h"
 
 #include "gradient_study.h"
-#include "near.h"
 #include "noh.h"
 #include "order.h"
 #include "riemann.h"

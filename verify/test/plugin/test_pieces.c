@@ -7,7 +7,6 @@
 #include <float.h>
 
 #include "measure.h"
-#include "near.h"
 #include "own_folder.h"
 #include "places.h"
 

@@ -4,7 +4,6 @@
 #include "test.h"
 
 #include "conventions.h"
-#include "near.h"
 #include "own_folder.h"
 #include "snapshot_csv.h"
 

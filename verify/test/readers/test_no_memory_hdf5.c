@@ -6,7 +6,6 @@
 #ifdef HAVE_HDF5
 #include "failing_memory.h"
 #include "sample_layouts.h"
-#include "snapshot_file.h"
 
 static enum status read_file(struct error *error)
 {

@@ -4,8 +4,6 @@
  * byte. verify/test/keep renews that file. */
 #include "test.h"
 
-#include <unistd.h>
-
 #include "buffer.h"
 #include "diff.h"
 #include "drawn_document.h"

@@ -7,10 +7,8 @@
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "history.h"
-#include "near.h"
 #include "own_folder.h"
 #include "result.h"
 #include "value.h"

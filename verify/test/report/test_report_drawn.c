@@ -6,12 +6,10 @@
 
 #include "buffer.h"
 #include "claims.h"
-#include "drawn_document.h"
 #include "drawn_pieces.h"
 #include "own_folder.h"
 #include "pairing.h"
 #include "report.h"
-#include "report_piece.h"
 #include "result.h"
 #include "value.h"
 

@@ -7,7 +7,6 @@
 
 #include "integrator.h"
 #include "keyed.h"
-#include "run.h"
 
 enum { ROWS = 32, CELL = 40 };
 

@@ -44,7 +44,6 @@ WRAP(void *, calloc, (size_t a, size_t b), (a, b), NULL)
 WRAP(void *, malloc, (size_t a), (a), NULL)
 
 #ifdef HAVE_HDF5
-#include <unistd.h>
 
 #include "h5.h"
 

@@ -7,7 +7,6 @@
 
 #include "check_registry.h"
 #include "sample_checks.h"
-#include "suite.h"
 #include "suite_output.h"
 #include "worst.h"
 

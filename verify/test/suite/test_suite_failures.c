@@ -4,7 +4,6 @@
 #include "test.h"
 
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "own_folder.h"
 #include "suite_output.h"

@@ -7,7 +7,6 @@
 #include <inttypes.h>
 #include <sys/stat.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "cache.h"
 #include "own_folder.h"
