@@ -335,3 +335,113 @@ TEST(differences)
             near_below(start_off(&gas, (enum start_field)field, 5, &exact[5]), 1e-15);
     }
 }
+
+/* ---- states of other positions ---- */
+
+enum { MANY = 200 };
+
+/* A flow without any symmetry but that of its box, whose sides differ. */
+static void wave(const struct prepared *p, const double at[3], double t,
+                 struct problem_state *state)
+{
+    double a[3] = {0};
+    (void)t;
+    for (int d = 0; d < p->domain.dim; d++)
+        a[d] = 2 * M_PI * (at[d] - p->domain.lo[d]) / domain_length(&p->domain, d);
+    *state = (struct problem_state){.rho = 1, .P = 1};
+    state->u = 4 + sin(a[0] + 0.5) + 0.7 * cos(a[1] + 0.3) + 0.4 * sin(a[2] + 0.1);
+    for (int d = 0; d < p->domain.dim; d++)
+        state->v[d] = sin(a[0] + d) + 0.5 * cos(a[1] + 2 * d) + 0.3 * sin(a[2] + 0.7 * d);
+}
+
+static double no_energy(const struct prepared *p, double r, double t)
+{
+    (void)p, (void)r, (void)t;
+    return 1;
+}
+
+/* Particles that have the states of other positions: with x and y exchanged, mirrored, or shifted;
+ * one in 20 may be an exception. */
+TEST(positions)
+{
+    static double far[MANY][3], fast[3][MANY], energy[MANY], ones[MANY];
+    static struct problem_state there[MANY];
+    static unsigned off[MANY];
+    static const struct problem flow = {.sample = wave};
+    static struct problem energetic = {.sample = wave, .mean_energy = no_energy};
+    static const struct {
+        int least;      /* number of dimensions */
+        int turn;       /* -1: x and y are exchanged; 1 to 3: this axis is mirrored */
+        double by[3];   /* a shift */
+        int each, odd;  /* each so many particles are right, 0: none; so many are exceptions */
+        bool energetic; /* energies are those of a mean, which is not known */
+        const char *words;
+    } rows[] = {
+        {2, -1, {0}, 0, 0, false, "x and y of their places are exchanged"},
+        {2, -1, {0}, 0, 10, false, "x and y of their places are exchanged"},
+        {2, -1, {0}, 0, 11, false, ""},
+        {1, 1, {0}, 0, 0, false, "x of their places is mirrored"},
+        {1, 1, {0}, 0, 10, false, "x of their places is mirrored"},
+        {1, 1, {0}, 0, 11, false, ""},
+        {2, 2, {0}, 3, 0, false, "y of their places is mirrored"},
+        {3, 3, {0}, 0, 0, false, "z of their places is mirrored"},
+        {1, 0, {0.375, -0.25, 0.125}, 0, 0, false, "all particles of the file are shifted by"},
+        {1, 0, {-0.8125, 0.5625, -0.25}, 0, 9, false, "all particles of the file are shifted by"},
+        {1, 0, {0.375, 0, 0}, 0, 0, false, "all particles of the file are shifted by"},
+        {1, 0, {0.375, -0.25, 0.125}, 2, 0, false, "they are shifted by"},
+        {1, 0, {0.375, -0.25, 0.125}, 0, 0, true, "all particles of the file are shifted by"},
+        {1, 0, {0.375, -0.25, 0.125}, 0, 30, false, ""}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        for (int dim = rows[k].least; dim <= 3; dim++) {
+            struct prepared box = {.problem = rows[k].energetic ? &energetic : &flow,
+                                   .gamma = 1.4,
+                                   .domain = {.dim = dim, .lo = {-1, 0.5, 2}, .hi = {1, 2, 3}}};
+            const struct snapshot particles = {.n = MANY,
+                                               .v = {fast[0], fast[1], fast[2]},
+                                               .u = energy,
+                                               .m = ones,
+                                               .rho = ones,
+                                               .P = ones};
+            const struct start_gas many = {.problem = &box,
+                                           .snapshot = &particles,
+                                           .exact = there,
+                                           .x = far,
+                                           .wrong = off,
+                                           .speed = 1};
+            char text[200] = "", words[200];
+            unsigned random = 5;
+            int count = 0;
+            for (int i = 0; i < MANY; i++) {
+                struct problem_state got;
+                double from[3];
+                for (int d = 0; d < 3; d++) {
+                    random = random * 1664525u + 1013904223u;
+                    far[i][d] = box.domain.lo[d] +
+                                domain_length(&box.domain, d) * (double)(random >> 8) / (1 << 24);
+                    from[d] = far[i][d];
+                }
+                wave(&box, far[i], 0, &there[i]);
+                const bool right = rows[k].each && i % rows[k].each == 0;
+                for (int d = 0; d < 3 && !right; d++) {
+                    if (rows[k].turn < 0) from[d] = far[i][d == 0 ? 1 : d == 1 ? 0 : 2];
+                    if (rows[k].turn == d + 1)
+                        from[d] = box.domain.lo[d] + box.domain.hi[d] - far[i][d];
+                    from[d] -= rows[k].by[d];
+                }
+                wave(&box, from, 0, &got);
+                off[i] = right ? 0 : 1u << START_VELOCITY | 1u << START_ENERGY;
+                const bool odd = !right && count < rows[k].odd;
+                count += !right;
+                for (int d = 0; d < 3; d++) fast[d][i] = got.v[d] + (odd ? 7 + i % 5 : 0);
+                energy[i] = rows[k].energetic ? 50 + i : got.u;
+                ones[i] = 1;
+            }
+            const bool found = start_cause_positions(&many, text, sizeof text);
+            snprintf(words, sizeof words, "%s", rows[k].words);
+            for (int d = 0; d < dim && strstr(words, "shifted"); d++)
+                snprintf(words + strlen(words), sizeof words - strlen(words), "%s%g",
+                         d ? ", " : " ", rows[k].by[d]);
+            if (found != (*words != '\0') || strcmp(text, words) != 0)
+                fail_msg("row %zu in %dD: '%s', not '%s'", k, dim, text, words);
+        }
+}
