@@ -206,6 +206,7 @@ TEST(windows)
         near_absolute(p->window.hi[0], rows[k].want[1], 2e-6);
         near_absolute(p->domain.lo[0], rows[k].lo, 2e-6);
         near_absolute(p->domain.hi[0], rows[k].hi, 2e-6);
+        near_relative(judged.case_n, N * 2 / (p->domain.hi[0] - p->domain.lo[0]), 1e-12);
         assert_true(is_noted(&judged, "window") == !!rows[k].note);
         snprintf(text, sizeof text, "%.17g %.17g", request.ends[0], request.ends[1]);
         if (rows[k].note)
@@ -446,6 +447,10 @@ TEST(open_ends_are_recognised)
         {{{1, 0.25, 1}, {0.905, 0.25, 1}}, 0.2, {0.02, 0.03}, 0, 0, false},
         {{{0.89, 0.25, 1}, {1, 0.25, 1}}, 0.2, {0.02, 0.03}, 0, 0, true},
         {{{0.905, 0.25, 1}, {1, 0.25, 1}}, 0.2, {0.02, 0.03}, 0, 0, false},
+        {{{1, 0.25, 4}, {1, 0.25, 3.56}}, 0.15, {0.02, 0.03}, 0, 0, true},
+        {{{1, 0.25, 4}, {1, 0.25, 3.62}}, 0.15, {0.02, 0.03}, 0, 0, false},
+        {{{4, 0.25, 1}, {3.56, 0.25, 1}}, 0.2, {0.02, 0.03}, 0, 0, true},
+        {{{4, 0.25, 1}, {3.62, 0.25, 1}}, 0.2, {0.02, 0.03}, 0, 0, false},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         for (int side = 0; side < 2; side++) {

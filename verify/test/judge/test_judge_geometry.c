@@ -38,6 +38,7 @@ TEST(sources_of_gamma)
             gas.rho[i] = uniform(1, 1.5), gas.u[i] = i == 5 ? 0 : uniform(2, 3);
             gas.P[i] = (rows[k].planted - 1) * gas.rho[i] * gas.u[i];
         }
+        gas.P[5] = 1;                                  /* nor does an energy of 0 */
         gas.P[11] = 0;                                 /* a pressure of 0 determines no gamma */
         gas.P[9] *= 1 + rows[k].scatter * 1.25 / 0.25; /* scatter of gamma itself */
         request.gamma = (struct snapshot_value){rows[k].said > 0, rows[k].said};
@@ -268,6 +269,7 @@ TEST(boxes_of_liquids)
             near_absolute(judged.file.box[d], rows[k].hi[d] - rows[k].lo[d], 1e-14);
         }
         assert_true(judged.boxed && judged.start.mass == 0);
+        for (int i = 0; i < N; i++) assert_true(isnan(judged.file.column[SNAPSHOT_P][i]));
         assert_string_equal(note(&judged, "box")->value, rows[k].value);
         if (!strstr(note(&judged, "box")->evidence, rows[k].evidence))
             fail_msg("row %zu: %s", k, note(&judged, "box")->evidence);

@@ -185,7 +185,7 @@ TEST(random_snapshots)
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
         for (int twice = 0; twice < 2; twice++) {
             const double noise = pow(10, uniform(-2, 0));
-            const int kernel = (int)uniform(-1, 4);
+            const int kernel = (int)floor(uniform(-1, 4));
             struct judge_request request = {.case_name = cases[k].name, .kernel = kernel};
             struct run_settings settings;
             struct run run;

@@ -62,7 +62,9 @@ TEST(spacing_of_a_slab)
         struct judged judged;
         plant(3, 0, "");
         if (!request.box)
-            snprintf(gas.head, sizeof gas.head, "# box = -0.5:0.5 -0.5:0.5 0:%g\n", thick);
+            snprintf(gas.head, sizeof gas.head,
+                     "# box = -0.5:0.5 -0.5:0.5 0:%g\n# boundary = periodic periodic periodic\n",
+                     thick);
         for (int i = 0; i < N; i++) {
             gas.x[0][i] = gas.x[0][i] / 2 - 0.5, gas.x[1][i] -= 0.5;
             gas.x[2][i] *= thick;
@@ -76,6 +78,7 @@ TEST(spacing_of_a_slab)
         }
         near_relative(judged.result.spacing, cbrt(thick / N), 1e-12);
         near_relative(judged.slab, thick, 1e-15);
+        assert_string_equal(judged.file.boundary, "periodic periodic");
         judge_free(&judged);
     }
 }
@@ -246,6 +249,48 @@ TEST(most_frequent_mass_is_right)
     }
 }
 
+/* A code's own pressures, which do not follow from density and energy, are not judged. */
+TEST(pressures_of_their_own)
+{
+    for (int own = N / 2 - 1; own <= N / 2; own++) {
+        struct judge_request request = uniform_gas();
+        struct judged judged;
+        request.time.value = 0;
+        plant(1, 0, boxes[1]);
+        gas.has_P = true;
+        for (int i = 0; i < N; i++) gas.m[i] = 2. / N, gas.P[i] = i < own ? 1.1 : 1;
+        judges(&request, &judged);
+        const double worst = judged.of_start.worst[START_PRESSURE];
+        if (own < N / 2)
+            near_relative(worst, 0.1, 1e-9);
+        else
+            assert_true(isnan(worst) && judged.of_start.wrong == 0);
+        judge_free(&judged);
+    }
+}
+
+/* Beside a jump a particle may have the state of the other side up to one spacing away. */
+TEST(particles_beside_a_jump)
+{
+    static const double away[] = {0.2, 0.45, 0.99, 1.01}; /* in spacings */
+    for (int k = 0; k < 4; k++) {
+        const struct judge_request request = {
+            .case_name = "sod", .time = {true, 0}, .kernel = -1, .boundary = "periodic"};
+        struct judged judged;
+        plant(1, 0, "# box = 0:2\n");
+        for (int i = 0; i < N; i++) {
+            gas.x[0][i] = i == 77 ? 1 + away[k] * 2 / N : 2 * (i + 0.5) / N;
+            const bool left = i == 77 || gas.x[0][i] < 1;
+            gas.rho[i] = left ? 1 : 0.125, gas.u[i] = (left ? 1 : 0.1) / (0.4 * gas.rho[i]);
+            gas.m[i] = gas.rho[i] * 2 / N;
+        }
+        judges(&request, &judged);
+        if (judged.of_start.wrong != (size_t)(k == 3))
+            fail_msg("%d: %zu: %s", k, judged.of_start.wrong, judged.of_start.message);
+        judge_free(&judged);
+    }
+}
+
 /* In flows with jumps, particles that were moved by less than a spacing after they had got their
  * state are not wrong, unless one in 50 is wrong otherwise, or a pressure is. */
 TEST(moved_particles)
@@ -254,8 +299,8 @@ TEST(moved_particles)
         double moved; /* in spacings */
         int others;   /* with a wrong energy */
         bool pressure, good;
-    } rows[] = {{0, 0, false, false},  {0, 0, false, true},    {0.5, 0, false, true},
-                {0.5, 4, false, true}, {0.5, 6, false, false}, {0.5, 0, true, false},
+    } rows[] = {{0, 0, false, false},  {0, 0, false, true},    {0.3, 0, false, true},
+                {0.3, 3, false, true}, {0.3, 6, false, false}, {0.3, 0, true, false},
                 {2.5, 0, false, false}};
     double mass = 1; /* of the case, after the first row */
     struct run_settings settings;
@@ -444,6 +489,42 @@ TEST(limits_for_uniform_gas)
             assert_true(!judged.foreign == !strstr(judged.verdict, "far from the solution"));
             judge_free(&judged);
         }
+}
+
+/* Gas ahead of all waves that moves by more than a tenth of the range of velocities: 3 % of the
+ * window's particles may do so. */
+TEST(gas_ahead_of_the_waves)
+{
+    for (int k = 0; k < 3; k++) {
+        const struct judge_request request = {
+            .case_name = "sod", .time = {true, 0.05}, .kernel = -1};
+        struct judged judged;
+        const int moving = k == 0 ? 3 : 4;
+        int inside = 0, moved = 0;
+        double most = 0;
+        plant(1, 0, "# box = 2\n");
+        for (int i = 0; i < N; i++) gas.x[0][i] = 2 * (i + 0.5) / N;
+        judges(&request, &judged);
+        const struct prepared problem = judged.run.problem;
+        judge_free(&judged);
+        for (int twice = 0; twice < 2; twice++)
+            for (int i = 0; i < N; i++) {
+                struct problem_state s;
+                problem_sample(&problem, (double[3]){gas.x[0][i]}, 0.05, &s);
+                gas.rho[i] = s.rho, gas.v[0][i] = s.v[0], gas.u[i] = s.u;
+                gas.m[i] = s.rho * 2 / N;
+                if (fabs(gas.x[0][i] - 1) > 0.5) continue;
+                if (!twice) inside++, most = fmax(most, s.v[0]);
+                if (twice && gas.x[0][i] > 1.3 && moved++ < moving)
+                    gas.v[0][i] = (k == 2 ? 0.099 : 0.101) * most;
+            }
+        judges(&request, &judged);
+        near_relative(judged.wrong / 0.06,
+                      k == 2 ? moving * 0.099 / inside / 0.2 : moving / (double)inside / 0.03,
+                      1e-2);
+        assert_true(judged.far == (k == 1));
+        judge_free(&judged);
+    }
 }
 
 /* Sod's tube, exact except for the same error everywhere: the median is that error. */

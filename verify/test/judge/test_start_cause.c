@@ -336,9 +336,29 @@ TEST(differences)
     }
 }
 
-/* ---- states of other positions ---- */
-
 enum { MANY = 200 };
+
+/* One particle in 50 within a range of wrong ones may be right. */
+TEST(exceptions_from_a_region)
+{
+    static double many_x[MANY][3];
+    static unsigned off[MANY];
+    const struct snapshot particles = {.n = MANY};
+    const struct start_gas many = {
+        .problem = &problem, .snapshot = &particles, .x = many_x, .wrong = off};
+    problem.domain.dim = 1;
+    for (int right = 3; right <= 4; right++) {
+        char text[128];
+        for (int i = 0; i < MANY; i++) {
+            many_x[i][0] = i;
+            off[i] = i >= 10 && i < 170 && (i % 30 || i / 30 > right);
+        }
+        start_where(&many, 1, text, sizeof text);
+        assert_string_equal(text, right == 3 ? ", at 9.5 < x < 169.5" : ", scattered over the box");
+    }
+}
+
+/* ---- states of other positions ---- */
 
 /* A flow without any symmetry but that of its box, whose sides differ. */
 static void wave(const struct prepared *p, const double at[3], double t,
