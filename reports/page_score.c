@@ -7,8 +7,11 @@
 
 static void killed(struct buffer *to, const json_t *file)
 {
-    html_digits(to, 100 * value_member(file, "killed") /
-                        (value_member(file, "mutants") - value_member(file, "listed")));
+    const double counted = value_member(file, "mutants") - value_member(file, "listed");
+    if (counted > 0)
+        html_digits(to, 100 * value_member(file, "killed") / counted);
+    else
+        buffer_add(to, "—"); /* all are listed */
 }
 
 static const struct html_column files[] = {COLUMN("file", "file", .kind = CELL_CODE),
