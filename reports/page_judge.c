@@ -192,9 +192,11 @@ static void together(struct buffer *to, const json_t *document)
         const char *file = json_string_value(json_array_get(json_object_get(drift, "between"), k));
         html_format(to, k ? "%s:" : "%s to ", file ? file : "");
     }
+    const char *before = " ";
     for (k = 0; k < sizeof kept / sizeof *kept; k++) {
         if (!isfinite(value_member(drift, kept[k]))) continue;
-        html_format(to, k ? ", %-s %f" : " %-s %f", kept[k], value_member(drift, kept[k]));
+        html_format(to, "%s%-s %f", before, kept[k], value_member(drift, kept[k]));
+        before = ", ";
     }
     buffer_add(to, " have changed.</p></section>\n");
 }
