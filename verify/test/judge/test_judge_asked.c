@@ -60,6 +60,28 @@ TEST(case_and_keys_of_the_file)
     }
 }
 
+/* Keys of the initial state make it another than the case's, and no other keys do. */
+TEST(altered_initial_states)
+{
+    static const struct {
+        const char *keys;
+        bool altered;
+    } rows[] = {{"mass_ratio=2", true},
+                {"kernel=cubic_spline", false},
+                {"left=1 0 1", true},
+                {"window=0.5 1.5", false}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct judge_request request = {.kernel = -1};
+        struct judged judged;
+        char head[200];
+        snprintf(head, sizeof head, "# case = sod\n# keys = %s\n" TIMED, rows[k].keys);
+        plant(1, 0, head);
+        judges(&request, &judged);
+        assert_true(judged.altered == rows[k].altered);
+        judge_free(&judged);
+    }
+}
+
 /* In 2D the boundaries are those that the file names, or else the case's. */
 TEST(boundaries)
 {
