@@ -78,12 +78,10 @@ enum status movie_add(struct movie *movie, const struct plot *plot, struct error
     struct plot wide = *plot;
     char *bytes, message[256] = "";
     size_t size;
-    if (plot->panel_count <= MOVIE_PANELS) {
-        memcpy(panels, plot->panels, plot->panel_count * sizeof *panels);
-        for (size_t k = 0; k < plot->panel_count; k++)
-            keep_range(&movie->range[k], &panels[k], &heats[k]);
-        wide.panels = panels;
-    }
+    memcpy(panels, plot->panels, plot->panel_count * sizeof *panels);
+    for (size_t k = 0; k < plot->panel_count; k++)
+        keep_range(&movie->range[k], &panels[k], &heats[k]);
+    wide.panels = panels;
     if (plot_draw(&wide, PLOT_PNG, &bytes, &size, message, sizeof message) != PLOT_OK)
         return error_set(error, STATUS_ENVIRONMENT, "a picture of a movie: %.250s", message);
     buffer_add_bytes(&movie->pictures, bytes, size);

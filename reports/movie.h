@@ -27,8 +27,8 @@ bool movie_wanted(const char *path);
  * so. */
 enum status movie_probe(const char *path, struct error *error);
 
-/* Adds a picture; all plots of a movie have the same size. STATUS_ENVIRONMENT: it cannot be
- * drawn. */
+/* Adds a picture; all plots of a movie have the same size, and at most MOVIE_PANELS panels.
+ * STATUS_ENVIRONMENT: it cannot be drawn. */
 enum status movie_add(struct movie *movie, const struct plot *plot, struct error *error);
 
 /* STATUS_ENVIRONMENT: ffmpeg failed, or the file cannot be written. */
