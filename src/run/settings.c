@@ -257,11 +257,11 @@ enum status settings_set(struct settings *settings, enum setting which, const ch
     return STATUS_OK;
 }
 
-static enum status unknown_key(struct error *error, const char *word)
+enum status setting_unknown(const char *where, const char *word, struct error *error)
 {
     const char *names[SETTINGS];
     for (int i = 0; i < SETTINGS; i++) names[i] = setting_keys[i].name;
-    return text_unknown(error, NULL, "key", word, names, SETTINGS);
+    return text_unknown(error, where, "key", word, names, SETTINGS);
 }
 
 enum status settings_apply(struct settings *settings, int n, char *const *arguments,
@@ -276,7 +276,7 @@ enum status settings_apply(struct settings *settings, int n, char *const *argume
                              arguments[i]);
         snprintf(name, sizeof name, "%.*s", (int)(equals - arguments[i]), arguments[i]);
         const int key = setting_find(name);
-        if (key < 0) return unknown_key(error, name);
+        if (key < 0) return setting_unknown(NULL, name, error);
         if (settings_set(settings, (enum setting)key, equals + 1, SOURCE_USER, NULL, error))
             return error->status;
     }

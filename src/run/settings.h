@@ -85,6 +85,9 @@ extern const struct family settings_lattice_family, settings_skip_family;
 /* Index of the key with this name, or -1. */
 int setting_find(const char *name);
 
+/* STATUS_BAD_INPUT: no key has this name; the message is that of text_unknown. */
+enum status setting_unknown(const char *where, const char *name, struct error *error);
+
 /* Describes the allowed values of a key: "an integer from 3 to 12", "one of a b c" ... */
 void setting_allowed(const struct setting_key *key, char *text, size_t size);
 

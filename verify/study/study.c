@@ -134,7 +134,5 @@ void study_free(struct study *study)
     free(study->results);
     free(study->runs);
     free(study->jobs);
-    study->results = NULL;
-    study->runs = NULL;
-    study->jobs = NULL;
+    study->results = NULL, study->runs = NULL, study->jobs = NULL;
 }

@@ -7,17 +7,10 @@
 
 #include "text.h"
 
-static enum status unknown_key(const char *word, struct error *error)
-{
-    const char *names[SETTINGS];
-    for (int i = 0; i < SETTINGS; i++) names[i] = setting_keys[i].name;
-    return text_unknown(error, "--vary", "key", word, names, SETTINGS);
-}
-
 static enum status add_key(struct sweep *sweep, const char *word, struct error *error)
 {
     const int key = setting_find(word);
-    if (key < 0) return unknown_key(word, error);
+    if (key < 0) return setting_unknown("--vary", word, error);
     if (key == SETTING_n)
         return error_set(error, STATUS_BAD_INPUT, "--vary n: the resolutions belong to --n");
     for (size_t i = 0; i < sweep->key_count; i++)
