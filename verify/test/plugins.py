@@ -122,7 +122,11 @@ def judge_words(name):
 
 def judge_derived(name, hows):
     """What a plug-in supplies, and how the rest is found."""
-    code, out, err = call("kernel", os.path.join(FOLDER, name + ".so"), "--dim", "1", "--color", "never")
+    path = os.path.join(FOLDER, name + ".so")
+    derived = json.loads(call("kernel", path, "--dim", "1", "--json", "-")[1])["derived"]
+    if derived != [what for what, how in zip(("constant", "dw_dh", "knots", "class"), hows) if how]:
+        return "derived: %s" % derived
+    code, out, err = call("kernel", path, "--dim", "1", "--color", "never")
     lines = ["  %-28s %s" % (what, "supplied and checked" if not how else "not supplied: found " + how)
              for what, how in zip(("constant", "dW/dh", "knots", "class"), hows)]
     return None if code == 0 and out.endswith(" bounds\n%s\n\n" % "\n".join(lines)) else "exit status %d: %r%r" % (code, out, err)
