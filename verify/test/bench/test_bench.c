@@ -56,7 +56,7 @@ static struct precision precision_of(const char *name, int n, char *const *keys,
                                      const size_t ladder[2])
 {
     struct sweep sweep;
-    struct precision precision;
+    struct precision precision = {0};
     struct error error;
     prepare(name, n, keys);
     if (sweep_parse(&sweep, vary, &error) ||
