@@ -90,6 +90,7 @@ enum status output_open(struct output *output, const char *path, struct error *e
     if (!*path) return cannot_write(path, ENOENT, error);
     if (exists && S_ISDIR(info.st_mode)) return cannot_write(path, EISDIR, error);
     if (exists && access(path, W_OK) != 0) return cannot_write(path, errno, error);
+    output->given = path;
     if (!(output->path = resolve(path))) return cannot_write(path, ENOMEM, error);
     if (exists && !S_ISREG(info.st_mode)) {
         output->stream = fopen(path, "w");
@@ -134,7 +135,7 @@ enum status output_close(struct output *output, struct error *error)
     if (fclose(output->stream) && !reason) reason = errno;
     if (!reason && output->temporary && rename(output->temporary, output->path)) reason = errno;
     if (reason && output->temporary) unlink(output->temporary);
-    const enum status status = reason ? cannot_write(output->path, reason, error) : STATUS_OK;
+    const enum status status = reason ? cannot_write(output->given, reason, error) : STATUS_OK;
     output_forget(output);
     return status;
 }

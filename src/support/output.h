@@ -8,13 +8,15 @@
 #include "status.h"
 
 struct output {
-    FILE *stream; /* write here; NULL when closed */
+    FILE *stream;      /* write here; NULL when closed */
+    const char *given; /* the path as the caller names it, for messages */
     char *path, *temporary;
     int slot; /* in the list of temporaries that an interrupt removes; -1: none */
 };
 
 /* Opens path for writing ("-": standard output; a device or a pipe is written directly).
- * STATUS_ENVIRONMENT: it cannot be written; nothing is left behind. */
+ * STATUS_ENVIRONMENT: it cannot be written; nothing is left behind. The path must stay valid until
+ * the output is closed. */
 enum status output_open(struct output *output, const char *path, struct error *error);
 
 /* Flushes the file and renames it to its path. On an error the old file is unchanged. */
