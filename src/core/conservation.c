@@ -31,18 +31,19 @@ static double sum_of(const struct lanes_sum *a, const struct lanes_sum *b)
     return (double)sum;
 }
 
-/* Sums of the motion along straight lines, and, below, of the rotation about the box's middle. */
-struct straight {
-    struct lanes_sum mass, energy, kinetic, momentum[3], momentum_size, sound;
+/* Sums of mass, energy and momentum, and the sizes |p| and m c that momentum is compared with. */
+struct linear {
+    struct lanes_sum mass, energy, kinetic, momentum[3], size, sound;
 };
 
-struct turning {
-    struct lanes_sum angular[3], size, sound;
+/* Sums of angular momentum L about the middle of the box, of |L| and of |r| m c. */
+struct angular {
+    struct lanes_sum momentum[3], size, sound;
 };
 
 /* Adds the particles k to k + count - 1, at most LANES. */
-ALWAYS_INLINE void add_straight(int dim, const struct simulation *simulation, ptrdiff_t k,
-                                int count, struct straight *sums)
+ALWAYS_INLINE void add_linear(int dim, const struct simulation *simulation, ptrdiff_t k, int count,
+                              struct linear *sums)
 {
     const struct particles *a = &simulation->particles;
     const double *restrict m = a->m + k, *restrict c = a->c + k, *restrict e = a->e + k;
@@ -58,7 +59,7 @@ ALWAYS_INLINE void add_straight(int dim, const struct simulation *simulation, pt
         add(&sums->mass, l, m[l]);
         add(&sums->energy, l, e[l]);
         add(&sums->kinetic, l, motion);
-        add(&sums->momentum_size, l, dim > 1 ? sqrt(square) : fabs(a->p[0][k + l]));
+        add(&sums->size, l, dim > 1 ? sqrt(square) : fabs(a->p[0][k + l]));
         add(&sums->sound, l, m[l] * c[l]);
     }
 }
@@ -70,8 +71,8 @@ ALWAYS_INLINE double from_middle(double x, double lo, double period, double wrap
     return inside - period * (wraps * floor(inside / period) + 0.5);
 }
 
-ALWAYS_INLINE void add_turning(int dim, const struct simulation *simulation, ptrdiff_t k, int count,
-                               struct turning *sums)
+ALWAYS_INLINE void add_angular(int dim, const struct simulation *simulation, ptrdiff_t k, int count,
+                               struct angular *sums)
 {
     const struct particles *a = &simulation->particles;
     const double *lo = simulation->lo, *period = a->period, *m = a->m + k, *c = a->c + k;
@@ -85,9 +86,9 @@ ALWAYS_INLINE void add_turning(int dim, const struct simulation *simulation, ptr
                      z = dim > 2 ? from_middle(a->x[2][k + l], lo[2], period[2], wraps[2]) : 0;
         const double px = a->p[0][k + l], py = a->p[1][k + l], pz = dim > 2 ? a->p[2][k + l] : 0;
         const double Lx = y * pz - z * py, Ly = z * px - x * pz, Lz = x * py - y * px;
-        if (dim > 2) add(&sums->angular[0], l, Lx);
-        if (dim > 2) add(&sums->angular[1], l, Ly);
-        add(&sums->angular[2], l, Lz);
+        if (dim > 2) add(&sums->momentum[0], l, Lx);
+        if (dim > 2) add(&sums->momentum[1], l, Ly);
+        add(&sums->momentum[2], l, Lz);
         add(&sums->size, l, dim > 2 ? sqrt(Lx * Lx + Ly * Ly + Lz * Lz) : fabs(Lz));
         add(&sums->sound, l, sqrt(x * x + y * y + z * z) * m[l] * c[l]);
     }
@@ -105,12 +106,13 @@ ALWAYS_INLINE void add_turning(int dim, const struct simulation *simulation, ptr
         sums[0] = vectors;                                                                         \
         sums[1] = end;                                                                             \
     }
-ALL(straight_1, straight, 1)
-ALL(straight_2, straight, 2)
-ALL(straight_3, straight, 3)
-ALL(turning_2, turning, 2)
-ALL(turning_3, turning, 3)
+ALL(linear_1, linear, 1)
+ALL(linear_2, linear, 2)
+ALL(linear_3, linear, 3)
+ALL(angular_2, angular, 2)
+ALL(angular_3, angular, 3)
 
+/* The sum of the potential energies -m g x. */
 static double gravitational(const struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
@@ -121,27 +123,27 @@ static double gravitational(const struct simulation *simulation)
     return (double)sum;
 }
 
-static void find_straight(const struct simulation *simulation, struct conservation *sums)
+static void find_linear(const struct simulation *simulation, struct conservation *sums)
 {
     const int dim = simulation->particles.dim;
-    struct straight of[2];
-    (dim == 1 ? straight_1 : dim == 2 ? straight_2 : straight_3)(simulation, of);
+    struct linear of[2];
+    (dim == 1 ? linear_1 : dim == 2 ? linear_2 : linear_3)(simulation, of);
     sums->mass = sum_of(&of[0].mass, &of[1].mass);
     for (int k = 0; k < dim; k++)
         sums->momentum[k] = sum_of(&of[0].momentum[k], &of[1].momentum[k]);
-    sums->momentum_scale = sum_of(&of[0].momentum_size, &of[1].momentum_size);
+    sums->momentum_scale = sum_of(&of[0].size, &of[1].size);
     sums->sound_scale = sum_of(&of[0].sound, &of[1].sound);
     sums->kinetic = sum_of(&of[0].kinetic, &of[1].kinetic);
     sums->energy = sum_of(&of[0].energy, &of[1].energy) + gravitational(simulation);
     if (simulation->scheme.energy == ENERGY_INTERNAL) sums->energy += sums->kinetic;
 }
 
-static void find_turning(const struct simulation *simulation, struct conservation *sums)
+static void find_angular(const struct simulation *simulation, struct conservation *sums)
 {
-    struct turning of[2];
-    (simulation->particles.dim == 2 ? turning_2 : turning_3)(simulation, of);
+    struct angular of[2];
+    (simulation->particles.dim == 2 ? angular_2 : angular_3)(simulation, of);
     for (int k = 0; k < 3; k++)
-        sums->angular_momentum[k] = sum_of(&of[0].angular[k], &of[1].angular[k]);
+        sums->angular_momentum[k] = sum_of(&of[0].momentum[k], &of[1].momentum[k]);
     sums->angular_scale = sum_of(&of[0].size, &of[1].size);
     sums->turning_scale = sum_of(&of[0].sound, &of[1].sound);
 }
@@ -154,8 +156,8 @@ void conservation_sums(const struct simulation *simulation, struct conservation 
     *sums = (struct conservation){0};
 #pragma omp parallel sections num_threads(2) if (shared && a->dim > 1)
     {
-        find_straight(simulation, sums);
+        find_linear(simulation, sums);
 #pragma omp section
-        if (a->dim > 1) find_turning(simulation, sums);
+        if (a->dim > 1) find_angular(simulation, sums);
     }
 }

@@ -285,11 +285,12 @@ enum status settings_apply(struct settings *settings, int n, char *const *argume
 
 enum status settings_apply_words(struct settings *settings, const char *words, struct error *error)
 {
-    char text[512], *rest = text;
-    snprintf(text, sizeof text, "%s", words);
-    for (char *word; (word = strtok_r(rest, " ", &rest));)
-        if (settings_apply(settings, 1, &word, error)) return error->status;
-    return STATUS_OK;
+    char *text = strdup(words), *rest = text;
+    enum status status = text ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory");
+    for (char *word; !status && (word = strtok_r(rest, " ", &rest));)
+        status = settings_apply(settings, 1, &word, error);
+    free(text);
+    return status;
 }
 
 double settings_real(const struct settings *settings, enum setting key)

@@ -107,7 +107,7 @@ enum status settings_set(struct settings *settings, enum setting key, const char
 enum status settings_apply(struct settings *settings, int n, char *const *arguments,
                            struct error *error);
 
-/* Applies KEY=VALUE words with blanks between them, of at most 511 characters. */
+/* Applies KEY=VALUE words with blanks between them. */
 enum status settings_apply_words(struct settings *settings, const char *words, struct error *error);
 
 /* The scheme for the settings, checked in dim dimensions; sets the automatic keys of the scheme.

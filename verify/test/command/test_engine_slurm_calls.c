@@ -217,6 +217,20 @@ static void write_state(void)
     planted = NULL;
 }
 
+/* Interrupts a call while a share still runs, and opens its state file to write another one. */
+static FILE *open_state(void)
+{
+    char path[300];
+    again();
+    slurm.fates[2][0] = STAYS;
+    slurm.interrupt = 130;
+    assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+    state_path(path);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    return file;
+}
+
 /* The state kept between calls, as another process may have changed it. */
 TEST(state_file)
 {
@@ -252,13 +266,8 @@ TEST(state_file)
     }
     /* the least and the greatest number of shares, and one too many */
     for (int tasks = 1; tasks <= ENGINE_TASKS_MAX + 1; tasks += tasks > 1 ? 1 : 999) {
-        char path[300], of[32];
-        again();
-        slurm.fates[2][0] = STAYS;
-        slurm.interrupt = 130;
-        assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
-        state_path(path);
-        FILE *file = fopen(path, "w");
+        char of[32];
+        FILE *file = open_state();
         fprintf(file, "{\"tasks\": %d", tasks);
         for (int k = 0; k < 2; k++) {
             fputs(k ? ", \"jobs\": [0" : ", \"tries\": [0", file);
@@ -282,13 +291,7 @@ TEST(state_file)
                                        "{\"tasks\": 2, \"tries\": [1, 1], \"jobs\": [7]}",
                                        "{\"tasks\": \"2\", \"tries\": [1, 1], \"jobs\": [7, 7]}"};
     for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
-        char path[300];
-        again();
-        slurm.fates[2][0] = STAYS;
-        slurm.interrupt = 130;
-        assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
-        state_path(path);
-        FILE *file = fopen(path, "w");
+        FILE *file = open_state();
         fputs(none[i], file);
         fclose(file);
         for (size_t k = 0; k < slurm.count; k++) slurm.tasks[k].fate = FORGOTTEN;
