@@ -188,18 +188,54 @@ static double difference(const struct junction *junction, double q, int m)
            pow(junction->half, -m);
 }
 
-/* Refines a break point found by bisection, whose error is limited only by the tolerance. With D
- * the difference of the two series, D/D' = (q - break)/s, where s is the order of the first
- * derivative of dw that jumps; derivative s - 1 of D has a simple zero at the break. */
+static void sample_beside(const struct pieces *pieces, kernel_shape *shape,
+                          struct junction *junction)
+{
+    const double at = junction->at, near = junction->margin, far = near + 2 * junction->half;
+    sample(pieces, shape, at - far, at - near, &junction->left);
+    sample(pieces, shape, at + near, at + far, &junction->right);
+}
+
+/* Error of a series due to its noise at x > 1. */
+static double noise_beyond(const struct series_fit *fit, double x)
+{
+    return fit->noise * fit->reach * cosh(fit->reach * acosh(x));
+}
+
+/* Bisects for the place where the values leave the left series for the right one. True if the
+ * function jumps there, which `difference` has no zero at. */
+static bool find_jump(const struct pieces *pieces, kernel_shape *shape, struct junction *junction,
+                      double *q, double *doubt)
+{
+    const double near = junction->margin, half = junction->half, edge = 1 + near / half;
+    double low = junction->at - near, high = junction->at + near;
+    sample_beside(pieces, shape, junction);
+    for (int i = 0; i < DBL_MANT_DIG; i++) {
+        const double middle = (low + high) / 2, x = middle - junction->at + near + half;
+        const double left = pieces_series_value(&junction->left, x / half) -
+                            shape(pieces->kernel, middle, pieces->dim);
+        *(fabs(left) < fabs(left - difference(junction, middle, 0)) ? &low : &high) = middle;
+    }
+    *q = high;
+    *doubt = high - low;
+    return fabs(difference(junction, high, 0)) >
+           30 * (noise_beyond(&junction->left, edge) + noise_beyond(&junction->right, edge));
+}
+
+/* Refines a break point found by bisection, whose error is limited only by the tolerance. Where
+ * neither w nor dw jumps: with D the difference of the two series of dw, D/D' = (q - break)/s,
+ * where s is the order of the first derivative of dw that jumps; derivative s - 1 of D has a simple
+ * zero at the break. */
 static double refine(const struct pieces *pieces, double before, double at, double after,
                      double margin, double *doubt)
 {
     const double length = fmin(at - before, after - at);
     struct junction junction = {
         .at = at, .margin = margin * length, .half = (0.5 - margin) * length};
-    const double near = junction.margin, far = near + 2 * junction.half;
-    sample(pieces, pieces->kernel->dw, at - far, at - near, &junction.left);
-    sample(pieces, pieces->kernel->dw, at + near, at + far, &junction.right);
+    double q;
+    if (find_jump(pieces, pieces->kernel->w, &junction, &q, doubt) ||
+        find_jump(pieces, pieces->kernel->dw, &junction, &q, doubt))
+        return q;
     const double a = at - length / 2, b = at - length / 4;
     const double ratio_a = difference(&junction, a, 0) / difference(&junction, a, 1);
     const double ratio_b = difference(&junction, b, 0) / difference(&junction, b, 1);
@@ -207,11 +243,11 @@ static double refine(const struct pieces *pieces, double before, double at, doub
     *doubt = 0.2 * length;
     if (!(order >= 1 && order <= 8)) return at;
     const int m = (int)order - 1;
-    double q = at;
+    q = at;
     for (int i = 0; i < 4; i++) q -= difference(&junction, q, m) / difference(&junction, q, m + 1);
     const double noise = end_noise(&junction.left, m) + end_noise(&junction.right, m);
     const double unsure = noise * pow(junction.half, -m) / fabs(difference(&junction, at, m + 1));
-    if (!(fabs(q - at) <= near)) return at;
+    if (!(fabs(q - at) <= junction.margin)) return at;
     *doubt = fabs(q - at) + 3 * unsure;
     return fabs(q - at) > 3 * unsure ? q : at;
 }

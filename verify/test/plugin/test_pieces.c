@@ -83,10 +83,12 @@ TEST(break_points)
 {
     static const struct {
         double at[MOST], power[MOST];
-        int n; /* number of break points within */
+        int n; /* number of break points within: of the first bumps */
     } rows[] = {{{0}, {0}, 0},
                 {{0.4}, {0}, 1},
                 {{0.4}, {1}, 1},
+                {{0.4, 0.4}, {0, 1}, 1},
+                {{0.123, 0.7, 0.123}, {0, 1, 2}, 2},
                 {{0.4}, {2}, 1},
                 {{0.4}, {3}, 1},
                 {{1. / 3}, {4}, 1},
@@ -101,9 +103,9 @@ TEST(break_points)
                 struct pieces pieces;
                 struct measure_class class;
                 memset(&set, 0, sizeof set);
-                for (int i = 0; i < rows[k].n; i++)
+                for (int i = 0; i < MOST; i++)
                     set.bump[i].at = rows[k].at[i], set.bump[i].power = rows[k].power[i],
-                    set.bump[i].a = 1;
+                    set.bump[i].a = rows[k].at[i] > 0;
                 if (declared) kernel.knots = rows[k].at, kernel.knot_count = rows[k].n;
                 find(&pieces, &kernel, dim, false);
                 if (pieces.n != rows[k].n + 1) {
@@ -117,22 +119,16 @@ TEST(break_points)
                 for (int i = 0; i < rows[k].n; i++) {
                     const double off = fabs(pieces.edge[i + 1] - rows[k].at[i]),
                                  doubt = pieces.doubt[i + 1];
-                    const bool jumps = rows[k].power[i] < 2; /* of dw are seen late */
-                    if (!(off <= (declared ? 0
-                                  : jumps  ? 1e-3
-                                           : 1e-12) &&
-                          off <= 1e-15 + doubt &&
-                          doubt <= (declared ? 0
-                                    : jumps  ? 0.1
-                                             : 1e-10)))
+                    if (!(off <= (declared ? 0 : 1e-12) && off <= 1e-15 + doubt &&
+                          doubt <= (declared ? 0 : 1e-10)))
                         fail_msg("row %zu: off %g, doubt %g", k, off, doubt);
                 }
                 measure_class(&pieces, &class);
                 assert_int_equal(class.class, rows[k].n ? -1 : 2); /* bumps do not end at 0 */
                 assert_int_equal(class.extra, declared ? 0 : rows[k].n);
-                if (class.extra) near_absolute(class.extra_at, rows[k].at[0], 1e-3);
-                if (declared && rows[k].n)
-                    near_absolute(class.at, rows[k].power[0] == 0 ? rows[k].at[0] : 1, 0);
+                if (class.extra) near_absolute(class.extra_at, rows[k].at[0], 1e-12);
+                if (rows[k].n)
+                    near_absolute(class.at, rows[k].power[0] == 0 ? rows[k].at[0] : 1, 1e-12);
                 pieces_free(&pieces);
             }
 }
