@@ -49,21 +49,23 @@ enum status places_find(struct pieces *pieces, struct error *error)
 {
     const size_t capacity = (size_t)pieces->n + 1 + DECIMALS + DENOMINATORS * DENOMINATORS +
                             3 * (size_t)pieces->terms.constant_count;
-    const size_t each = 1 + 2 * (DIGITS_TO - DIGITS_FROM + 1);
+    double off[DIGITS_TO - DIGITS_FROM + 1];
+    const size_t digits = sizeof off / sizeof *off;
     double *centre = malloc(capacity * sizeof *centre);
-    double *q = pieces->places = malloc(capacity * each * sizeof *q);
+    double *q = pieces->places = malloc(capacity * (1 + 2 * digits) * sizeof *q);
     const int centres = centre && q ? make_centres(pieces, centre) : 0;
-    int n = 0;
+    int n = 0, sorted = 0;
+    for (size_t k = 0; k < digits; k++) off[k] = pow(10, -DIGITS_FROM - (double)k);
     for (int i = 0; i < centres; i++) {
+        for (size_t k = 0; k < digits; k++) q[n++] = fabs(centre[i] - off[k]);
         q[n++] = centre[i];
-        for (int digit = DIGITS_FROM; digit <= DIGITS_TO; digit++) {
-            q[n++] = centre[i] + pow(10, -digit);
-            q[n++] = fabs(centre[i] - pow(10, -digit));
-        }
+        for (size_t k = digits; k-- > 0;) q[n++] = centre[i] + off[k];
+        /* most centres have neighbours that are far from those of the next one: sorted already */
+        if (i + 1 == centres || centre[i + 1] - centre[i] > 3 * off[0])
+            n = sorted += distinct(q + sorted, n - sorted);
     }
     free(centre);
     if (!centres) return error_set(error, STATUS_ENVIRONMENT, "no memory for places");
-    n = distinct(q, n);
     while (q[n - 1] >= 1) n--; /* 0 is the first */
     pieces->place_count = n;
     return STATUS_OK;
