@@ -17,6 +17,30 @@ static void growing_during(const struct prepared *p, double times[2])
     times[1] = log(small * mode->layer.width / (start->amplitude * mode->displacement)) / rate;
 }
 
+static bool same(const struct layer *a, const struct layer *b)
+{
+    return a->gamma == b->gamma && a->k == b->k && a->width == b->width && a->rho == b->rho &&
+           a->rho_step == b->rho_step && a->U == b->U && a->P == b->P && a->g == b->g &&
+           a->periodic == b->periodic && a->wall == b->wall && a->pressure_node == b->pressure_node;
+}
+
+/* Finds the mode, or takes it from those that this thread found last: a search takes as long as a
+ * short run, and a case is prepared when it is read, planned and run. */
+static bool find(const struct layer *layer, struct layer_mode *mode)
+{
+    enum { KEPT = 4 };
+    static _Thread_local struct layer_mode kept[KEPT];
+    static _Thread_local size_t next;
+    for (size_t i = 0; i < KEPT; i++)
+        if (same(layer, &kept[i].layer)) {
+            *mode = kept[i];
+            return true;
+        }
+    if (!layer_mode_find(layer, mode)) return false;
+    kept[next++ % KEPT] = *mode;
+    return true;
+}
+
 enum status mode_prepare(struct prepared *p, const struct layer *layer, const double origin[2],
                          double length, double speed, struct settings *settings,
                          struct error *error)
@@ -25,7 +49,7 @@ enum status mode_prepare(struct prepared *p, const struct layer *layer, const do
     const double amplitude = settings_real(settings, SETTING_amplitude);
     const char *fault = layer_fault(layer);
     if (fault) return error_set(error, STATUS_BAD_INPUT, "%s", fault);
-    const bool found = layer_mode_find(layer, &start->mode);
+    const bool found = find(layer, &start->mode);
     if (!found && isnan(creal(start->mode.omega)))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for a mode");
     if (!found)

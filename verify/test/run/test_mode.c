@@ -292,3 +292,34 @@ TEST(keys_choose_the_mode)
     assert_true(mode_start_of(&heavy)->mode.layer.g == 0.5);
     assert_true(heavy.boundary[1] == BOUNDARY_REFLECTING && heavy.boundary[0] == BOUNDARY_PERIODIC);
 }
+
+/* Modes that were found before are those of the layer that is asked for, whichever of its numbers
+ * differs from those of other layers. */
+TEST(modes_are_found_again)
+{
+    struct settings settings;
+    struct prepared p = prepared_of(&settings, 2, heavy_keys);
+    const struct layer first = mode_start_of(&p)->mode.layer;
+    for (int draw = 0; draw < 2; draw++)
+        for (int changed = 0; changed <= 11; changed++) {
+            struct layer layer = first;
+            double *const numbers[] = {&layer.gamma, &layer.k,        &layer.width,
+                                       &layer.rho,   &layer.rho_step, &layer.U,
+                                       &layer.P,     &layer.g,        &layer.wall};
+            if (changed < 9)
+                *numbers[changed] = 1.0625 * *numbers[changed] + (changed == 5) * 0.125;
+            if (changed >= 9) layer.U = 0.5, layer.g = 0, layer.k = 2 * M_PI;
+            layer.periodic = changed >= 10;
+            layer.pressure_node = changed == 11;
+            struct layer_mode found;
+            struct error error;
+            const double origin[2] = {0, 0};
+            /* the usual layer stays among those that were found last */
+            assert_int_equal(mode_prepare(&p, &first, origin, 4, 0.5, &settings, &error), 0);
+            assert_int_equal(mode_prepare(&p, &layer, origin, 4, 0.5, &settings, &error), 0);
+            assert_true(layer_mode_find(&layer, &found));
+            assert_true(mode_start_of(&p)->mode.omega == found.omega);
+            assert_true(mode_start_of(&p)->mode.displacement == found.displacement);
+            assert_true(mode_start_of(&p)->mode.layer.wall == layer.wall);
+        }
+}
