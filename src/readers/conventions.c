@@ -112,12 +112,14 @@ static enum status gather(const struct snapshot_file *file, const double box[3],
     return STATUS_OK;
 }
 
-/* rms of sum/rho - 1 over the sample. */
+/* rms of sum/rho - 1 over the sample; infinite if it is more than `most`, which a few particles
+ * mostly show. */
 static double residual(const struct sample *sample, const struct kernel *kernel,
-                       enum density_sum sum, double ratio)
+                       enum density_sum sum, double ratio, double most)
 {
     double squares = 0;
     for (size_t k = 0; k < sample->n; k++) {
+        if (squares > most * most * (double)sample->n) return INFINITY;
         const struct near *near = &sample->near[k];
         double rho = 0;
         for (size_t j = 0; j < near->count && near->neighbour[j].s < ratio; j++)
@@ -138,26 +140,27 @@ static struct convention fit(const struct sample *sample, const struct kernel *k
     struct convention best = {.kernel = *kernel, .sum = sum, .residual = INFINITY};
     if (given > 0) {
         best.ratio = given;
-        if (given <= sample->reach) best.residual = residual(sample, kernel, sum, given);
+        if (given <= sample->reach) best.residual = residual(sample, kernel, sum, given, INFINITY);
         return best;
     }
     for (int k = 0;; k++) {
         const double ratio = RATIO_LEAST * pow(step, k);
         if (ratio > sample->reach) break;
-        const double value = residual(sample, kernel, sum, ratio);
+        const double value = residual(sample, kernel, sum, ratio, best.residual);
         if (value < best.residual) best.ratio = ratio, best.residual = value;
     }
     if (!(best.ratio > 0)) return best;
     double lo = best.ratio / step, hi = fmin(best.ratio * step, sample->reach);
     double a = hi - golden * (hi - lo), b = lo + golden * (hi - lo);
-    double at_a = residual(sample, kernel, sum, a), at_b = residual(sample, kernel, sum, b);
+    double at_a = residual(sample, kernel, sum, a, INFINITY),
+           at_b = residual(sample, kernel, sum, b, INFINITY);
     for (int k = 0; k < GOLDEN_STEPS; k++) {
         if (at_a < at_b) {
             hi = b, b = a, at_b = at_a, a = hi - golden * (hi - lo);
-            at_a = residual(sample, kernel, sum, a);
+            at_a = residual(sample, kernel, sum, a, INFINITY);
         } else {
             lo = a, a = b, at_a = at_b, b = lo + golden * (hi - lo);
-            at_b = residual(sample, kernel, sum, b);
+            at_b = residual(sample, kernel, sum, b, INFINITY);
         }
     }
     best.ratio = at_a < at_b ? a : b;
