@@ -94,7 +94,7 @@ enum status bench_measure(struct bench_subject *subjects, size_t count,
             /* calibration costs about two more samples */
             const double done = (double)i + 1, all = (double)count;
             if (rules->progress)
-                rules->progress(rules->context, round == 0 ? 3 * done : (2 + round) * all + done,
+                progress_update(rules->progress, round == 0 ? 3 * done : (2 + round) * all + done,
                                 (2 + rules->samples) * all);
         }
     for (size_t i = 0; i < count; i++) finish(&subjects[i], &samples[i]);

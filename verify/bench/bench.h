@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "clock.h"
+#include "progress.h"
 #include "status.h"
 
 /* Does the work `times` times and adds the time of the work alone to *taken. */
@@ -29,16 +30,12 @@ struct bench_subject {
     struct error failure;   /* STATUS_OK, or why there is no result */
 };
 
-/* done of total samples. */
-typedef void bench_progress(void *context, double done, double total);
-
 enum { BENCH_SAMPLES_MAX = 64 };
 struct bench_rules {
-    double least_s;           /* least CPU time of a sample */
-    double most_s;            /* greatest CPU time of a subject's samples; at least two are taken */
-    int samples;              /* 1 .. BENCH_SAMPLES_MAX */
-    bench_progress *progress; /* called after each sample; may be NULL */
-    void *context;            /* passed to progress */
+    double least_s; /* least CPU time of a sample */
+    double most_s;  /* greatest CPU time of a subject's samples; at least two are taken */
+    int samples;    /* 1 .. BENCH_SAMPLES_MAX */
+    struct progress *progress; /* in samples; NULL: none is shown */
 };
 extern const struct bench_rules bench_usual;
 

@@ -27,19 +27,13 @@ struct request {
     const char *case_name; /* NULL: not named */
 };
 
-static void show_progress(void *context, double done, double total)
-{
-    progress_update(context, done, total);
-}
-
 static enum status read_rules(struct request *request, struct error *error)
 {
     const char *least = options_value(request->options, "time");
     const char *samples = options_value(request->options, "samples");
     double value;
     request->rules = bench_usual;
-    request->rules.progress = show_progress;
-    request->rules.context = &request->progress;
+    request->rules.progress = &request->progress;
     if (least) {
         if (!text_real(least, &value) || !(value > 0 && value <= 60))
             return command_usage(request->options, error,
@@ -124,12 +118,9 @@ static enum status in_shares(struct request *request, const struct run_settings 
     bool whole = false;
     enum status status =
         precision_plan(settings, sweep, ladder, count, &request->rules, &precision, &pool, error);
-    if (!status && sharing->list)
-        status = sharing_list(sharing, &pool, error);
-    else if (!status)
-        status = sharing_run(sharing, &pool, "bench", request->options, &whole, error);
-    if (!status && whole) status = precision_conclude(&precision, &pool, error);
-    if (!status && whole) status = present(request, &precision, plot, error);
+    if (!status) status = sharing_run(sharing, &pool, request->options, &whole, error);
+    if (whole) status = precision_conclude(&precision, &pool, error);
+    if (whole && !status) status = present(request, &precision, plot, error);
     precision_free(&precision);
     pool_free(&pool);
     return status;
@@ -214,6 +205,13 @@ static enum status kernels(struct request *request, struct error *error)
 
 /* --- what is left out ------------------------------------------------------------------------- */
 
+/* The k-th of the cases asked for; NULL: there are no more. */
+static const char *case_at(const struct request *request, size_t k)
+{
+    if (!request->case_name) return case_builtins[k].name;
+    return k ? NULL : request->case_name;
+}
+
 /* Settings of the named case, or of all built-in cases in 1D or, with clouds, in 2D and 3D. The
  * caller frees them. */
 static struct run_settings *all_cases(const struct request *request, size_t *count, bool clouds,
@@ -221,14 +219,12 @@ static struct run_settings *all_cases(const struct request *request, size_t *cou
 {
     size_t most = 0;
     *count = 0;
-    while (!request->case_name && case_builtins[most].name) most++;
-    if (request->case_name) most = 1;
+    while (case_at(request, most)) most++;
     struct run_settings *cases = calloc(most, sizeof *cases);
     if (!cases) error_set(error, STATUS_ENVIRONMENT, "no memory for %zu cases", most);
     for (size_t k = 0; cases && k < most; k++) {
-        const char *name = request->case_name ? request->case_name : case_builtins[k].name;
         const size_t c = *count;
-        if (run_prepare(&cases[c], name, request->n, request->arguments, error)) {
+        if (run_prepare(&cases[c], case_at(request, k), request->n, request->arguments, error)) {
             free(cases);
             return NULL;
         }
@@ -296,7 +292,7 @@ static enum status scaling(struct request *request, struct error *error)
     size_t ladder[CASE_LADDER_MAX], count;
     const char *sizes = options_value(request->options, "n");
     const char *plot = options_value(request->options, "plot");
-    const int threads = request->options->threads > 1 ? request->options->threads : 2;
+    const int threads = request->options->threads == 1 ? 2 : request->options->threads;
     if (refuse_option(request, "--scaling", "vary", error) ||
         prepare_case(request, NULL, NULL, &settings, error) ||
         sweep_ladder(sizes ? sizes : usual_sizes, 1, settings.file.dimension, ladder, &count,

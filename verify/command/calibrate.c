@@ -126,13 +126,9 @@ static enum status compute(struct calibrate *calibrate, const struct code *code,
                            char **names, const struct options *options, struct sharing *sharing,
                            struct pool *pool, bool *whole, struct error *error)
 {
-    *whole = false;
     enum status status = calibrate_plan(calibrate, code, runs, (size_t)n, names, pool, error);
-    if (status) return status;
-    if (sharing->list) return sharing_list(sharing, pool, error);
-    status = sharing_run(sharing, pool, code->way.value[CODE_title], options, whole, error);
-    if (!status && *whole) status = calibrate_judge(calibrate, pool, error);
-    return status;
+    if (!status) status = sharing_run(sharing, pool, options, whole, error);
+    return *whole ? calibrate_judge(calibrate, pool, error) : status;
 }
 
 static enum status calibrate_code(const struct options *options, const struct code *code, int n,

@@ -194,7 +194,7 @@ static enum status find_command(const char *word, struct options *options, struc
         names[i] = command_table[i]->name;
         if (strcmp(word, names[i]) != 0) continue;
         options->command = command_table[i];
-        options->values = calloc(count(command_table[i]->options) + 1, sizeof *options->values);
+        options->values = calloc(count(command_table[i]->options), sizeof *options->values);
         return options->values ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory");
     }
     return text_unknown(error, NULL, "command", word, names, COMMANDS);
@@ -249,7 +249,7 @@ static void print_help(const struct command *command)
 {
     if (command) {
         printf("usage: sphproof %s %s\n\n%s\n", command->name, command->synopsis, command->help);
-        if (command->options) printf("\noptions:\n");
+        printf("\noptions:\n");
         print_options(command->options);
     } else {
         printf("sphproof: verification and convergence of SPH\n\nusage: sphproof COMMAND "
@@ -312,8 +312,8 @@ int command_main(int argc, char **argv)
     struct error error = {0};
     output_prepare_process();
     struct line line = {.options = {.threads = 1}, .color = "auto"};
-    line.arguments = calloc((size_t)argc + 1, sizeof *line.arguments);
-    line.owned = calloc((size_t)argc + 1, sizeof *line.owned);
+    line.arguments = calloc((size_t)argc, sizeof *line.arguments);
+    line.owned = calloc((size_t)argc, sizeof *line.owned);
     enum status status = line.arguments && line.owned
                              ? execute(&line, argc, argv, &error)
                              : error_set(&error, STATUS_ENVIRONMENT, "no memory");

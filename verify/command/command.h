@@ -40,7 +40,7 @@ struct command {
      * everything after "--" are arguments). Returns the exit status; sets error unless that is
      * STATUS_OK or STATUS_CHECK_FAILED. With STATUS_BAD_INPUT nothing has been written. */
     enum status (*run)(const struct options *options, int n, char **arguments, struct error *error);
-    const struct command_option *options; /* NULL: only the common ones */
+    const struct command_option *options; /* of its own, at least one */
     const char *examples;                 /* complete command lines, one per line */
 };
 

@@ -247,13 +247,9 @@ static enum status serialise_out(struct study *study, const struct options *opti
                                  struct error *error)
 {
     struct pool pool = {0};
-    *whole = false;
     enum status status = study_plan(study, &pool, error);
-    if (!status && sharing->list)
-        status = sharing_list(sharing, &pool, error);
-    else if (!status)
-        status = sharing_run(sharing, &pool, study->settings.file.name, options, whole, error);
-    if (!status && *whole) status = study_judge(study, &pool, error);
+    if (!status) status = sharing_run(sharing, &pool, options, whole, error);
+    if (*whole) status = study_judge(study, &pool, error);
     pool_free(&pool);
     if (status || !*whole) return status;
     if (study->status == STATUS_BROKE_DOWN)
@@ -284,7 +280,7 @@ static enum status converge(const struct options *options, int n, char **argumen
     struct study study = {0};
     struct sharing sharing;
     struct code_external external;
-    bool whole;
+    bool whole = false;
     if (prepare(options, n, arguments, code, &external, &study.settings, error) ||
         sweep_parse(&study.sweep, options_value(options, "vary"), error) ||
         options_ladder(options, &study.settings, ORDER_LEVELS_MIN, study.ladder, &study.level_count,

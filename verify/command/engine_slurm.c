@@ -244,9 +244,9 @@ static enum status submit(struct array *array, const bool *chosen, struct error 
         one->state[0] = '\0';
         one->ended = 0;
     }
-    struct error later = {0};
-    if (save(array, &later) && !status) *error = later;
-    return status ? status : later.status;
+    struct error unsaid; /* the first error counts */
+    const enum status saved = save(array, status ? &unsaid : error);
+    return status ? status : saved;
 }
 
 /* ---- watching ---- */
@@ -345,7 +345,7 @@ static enum status step(struct array *array, struct error *error)
     size_t count = 0;
     const int lock = open(array->folder, O_RDONLY | O_CLOEXEC);
     if (lock >= 0) flock(lock, LOCK_EX);
-    struct error trouble = {0};
+    struct error trouble;
     enum status status = refresh(array, error);
     const bool answers = !status && !slurm_queue(array->name, &tasks, &count, &trouble);
     look(array); /* after the queue, since tasks that it lists as ended have written all results */

@@ -13,7 +13,7 @@
 const char *options_value(const struct options *options, const char *name)
 {
     const struct command_option *list = options->command->options;
-    for (size_t i = 0; list && list[i].name; i++)
+    for (size_t i = 0; list[i].name; i++)
         if (strcmp(list[i].name, name) == 0) return options->values[i];
     return NULL;
 }

@@ -133,6 +133,7 @@ static enum status prune(const struct paths *paths, const struct options *option
                          struct error *error)
 {
     struct cache_census census;
+    if (!options_value(options, "nightly")) return STATUS_OK;
     if (cache_prune(paths->cache, CACHE_MONTH, &census, error)) return error->status;
     if (census.removed && options->speak)
         printf("%zu results that nobody has used for a month were removed from %s\n",
@@ -165,6 +166,7 @@ static enum status tell(const struct options *options, const json_t *results,
     if (!status && page.plots.missing)
         status = error_set(error, STATUS_ENVIRONMENT, "%zu plots are missing: %s",
                            page.plots.missing, page.plots.message);
+    if (!status) status = prune(paths, options, error);
     page_free(&page);
     free(summary);
     if (status) return status;
@@ -183,17 +185,13 @@ static enum status serialise_out(const struct options *options, struct report *r
     if (take_paths(options, &paths, error) ||
         sharing_take(&sharing, options, cores, paths.cache, options_value(options, "force"), error))
         return error->status;
-    if (sharing.list) return sharing_list(&sharing, report_pool(report), error);
-    if (output_folder(paths.plots, error) || output_probe(paths.history, error) ||
-        sharing_run(&sharing, report_pool(report), "report", options, &whole, error))
+    if (!sharing.list && (output_folder(paths.plots, error) || output_probe(paths.history, error)))
         return error->status;
+    if (sharing_run(&sharing, report_pool(report), options, &whole, error)) return error->status;
     if (!whole) return STATUS_OK;
     if (judge(report, &paths, &results, error)) return error->status;
-    enum status status = tell(options, results, &paths, error);
+    const enum status status = tell(options, results, &paths, error);
     json_decref(results);
-    if (options_value(options, "nightly") && (!status || status == STATUS_CHECK_FAILED) &&
-        prune(&paths, options, error))
-        return error->status;
     return status;
 }
 

@@ -107,8 +107,8 @@ enum status sharing_take(struct sharing *sharing, const struct options *options,
     return check_build(sharing, options, error);
 }
 
-enum status sharing_list(const struct sharing *sharing, const struct pool *pool,
-                         struct error *error)
+/* Prints the computations for --list to standard output. */
+static enum status list(const struct sharing *sharing, const struct pool *pool, struct error *error)
 {
     const struct pool_share *share = &sharing->pool.share;
     int *shares = calloc(pool->count + 1, sizeof *shares);
@@ -156,7 +156,6 @@ static enum status say_share(const struct sharing *sharing, const struct pool *p
 static enum status compute_elsewhere(struct sharing *sharing, const struct pool *pool,
                                      const struct options *options, struct error *error)
 {
-    const char *what = sharing->progress.what;
     const struct engine_work work = {
         .options = options,
         .pool = pool,
@@ -168,25 +167,27 @@ static enum status compute_elsewhere(struct sharing *sharing, const struct pool 
     if (!sharing->engine->compute) return STATUS_OK;
     const enum status status = sharing->engine->compute(&work, error);
     progress_end(&sharing->progress);
-    progress_begin(&sharing->progress, what, options->quiet);
+    progress_begin(&sharing->progress, options->command->name, options->quiet);
     return status;
 }
 
-enum status sharing_run(struct sharing *sharing, struct pool *pool, const char *what,
-                        const struct options *options, bool *whole, struct error *error)
+enum status sharing_run(struct sharing *sharing, struct pool *pool, const struct options *options,
+                        bool *whole, struct error *error)
 {
-    progress_begin(&sharing->progress, what, options->quiet);
+    *whole = false;
+    if (sharing->list) return list(sharing, pool, error);
+    progress_begin(&sharing->progress, options->command->name, options->quiet);
     sharing->pool.progress = show_progress;
     sharing->pool.progress_context = &sharing->progress;
     enum status status = compute_elsewhere(sharing, pool, options, error);
     if (!status) status = pool_run(pool, &sharing->pool, error);
     progress_end(&sharing->progress);
-    *whole = !sharing->pool.share.of;
     if (status) return status;
     if (pool->damaged && !options->quiet)
         fprintf(stderr, "sphproof: note: %zu kept results were damaged: computed again\n",
                 pool->damaged);
-    if (!*whole) return say_share(sharing, pool, options, error);
+    if (sharing->pool.share.of) return say_share(sharing, pool, options, error);
     if (pool->note[0] && !options->quiet) fprintf(stderr, "sphproof: note: %s\n", pool->note);
+    *whole = true;
     return STATUS_OK;
 }

@@ -47,20 +47,17 @@ struct sharing {
 enum status sharing_take(struct sharing *sharing, const struct options *options, int jobs,
                          const char *folder, bool force, struct error *error);
 
-/* Prints the computations for --list to standard output. */
-enum status sharing_list(const struct sharing *sharing, const struct pool *pool,
-                         struct error *error);
-
 /* Runs the pool with a line of progress and prints remarks. With --shard prints what the share has
- * computed, and sets *whole to false: there is nothing to judge. */
-enum status sharing_run(struct sharing *sharing, struct pool *pool, const char *what,
-                        const struct options *options, bool *whole, struct error *error);
+ * computed; with --list only lists the computations. *whole: all results are there to be judged.
+ */
+enum status sharing_run(struct sharing *sharing, struct pool *pool, const struct options *options,
+                        bool *whole, struct error *error);
 
 /* True if --jobs or one of SHARING_OPTIONS is given. */
 bool verify_shares_wanted(const struct options *options);
 
-/* As suite_run for the chosen checks, each in a process of its own. With --shard or --list *whole
- * becomes false, and there is no suite. STATUS_BAD_INPUT: options exclude each other;
+/* As suite_run for the chosen checks, each in a process of its own. *whole, false before: there is
+ * a suite, unlike with --shard or --list. STATUS_BAD_INPUT: options exclude each other;
  * STATUS_ENVIRONMENT, STATUS_BROKE_DOWN: a check gave no result. */
 enum status verify_shares_run(struct suite *suite, const struct suite_choice *choice,
                               const struct options *options, bool *whole, struct error *error);

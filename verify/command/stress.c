@@ -87,9 +87,8 @@ static enum status serialise_out(struct stress *stress, struct pool *pool, struc
                                  const struct options *options, struct error *error)
 {
     bool whole;
-    if (sharing->list) return sharing_list(sharing, pool, error);
-    enum status status = sharing_run(sharing, pool, "stress", options, &whole, error);
-    if (status || !whole) return status;
+    enum status status = sharing_run(sharing, pool, options, &whole, error);
+    if (!whole) return status;
     json_t *document = result_new("stress");
     const size_t wrong = stress_judge(stress, pool, document);
     if (options->speak) print_all(document, wrong, options);
@@ -102,11 +101,11 @@ static enum status run(const struct options *options, int n, char **arguments, s
     struct stress stress;
     struct pool pool = {0};
     struct sharing sharing;
-    if (sharing_take(&sharing, options, options->threads, NULL, false, error)) return error->status;
     const bool nightly = options_value(options, "nightly");
     if (nightly && options_value(options, "quick"))
         return error_set(error, STATUS_BAD_INPUT,
                          "stress: --quick and --nightly exclude each other");
+    if (sharing_take(&sharing, options, options->threads, NULL, false, error)) return error->status;
     enum status status = stress_plan(&stress, nightly, (size_t)n, arguments, &pool, error);
     if (!status) {
         gsl_set_error_handler_off();

@@ -128,6 +128,23 @@ static enum status present(const struct options *options, struct suite *suite, e
     return written ? written : status;
 }
 
+/* Runs the checks one after another, with those of a kernel of the user's own. */
+static enum status run_here(struct suite *suite, const struct suite_choice *choice,
+                            const struct options *options, struct error *error)
+{
+    struct user_figures user = {0};
+    const char *plugin = options_value(options, "kernel-plugin");
+    if (plugin && user_figures_measure(&user, plugin, error)) return error->status;
+    check_kernel_plugin = plugin ? &user : NULL;
+    progress_begin(choice->context, "checks", options->quiet);
+    const enum status status =
+        suite_run(suite, check_registry, check_registry_count, choice, error);
+    progress_end(choice->context);
+    check_kernel_plugin = NULL;
+    user_figures_free(&user);
+    return status;
+}
+
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
     const char *junit = options_value(options, "junit");
@@ -147,25 +164,12 @@ static enum status run(const struct options *options, int n, char **arguments, s
         .context = &progress,
     };
     gsl_set_error_handler_off();
-    bool whole = true;
-    if (verify_shares_wanted(options)) {
-        status = verify_shares_run(&suite, &choice, options, &whole, error);
-        return !whole || (status != STATUS_OK && status != STATUS_CHECK_FAILED)
-                   ? status
-                   : present(options, &suite, status, error);
-    }
-    struct user_figures user = {0};
-    const char *plugin = options_value(options, "kernel-plugin");
-    if (plugin && user_figures_measure(&user, plugin, error)) return error->status;
-    check_kernel_plugin = plugin ? &user : NULL;
-    progress_begin(&progress, "checks", options->quiet);
-    status = suite_run(&suite, check_registry, check_registry_count, &choice, error);
-    progress_end(&progress);
-    check_kernel_plugin = NULL;
-    user_figures_free(&user);
-    if (status != STATUS_OK && status != STATUS_CHECK_FAILED) return status;
-
-    return present(options, &suite, status, error);
+    bool whole = !verify_shares_wanted(options);
+    status = whole ? run_here(&suite, &choice, options, error)
+                   : verify_shares_run(&suite, &choice, options, &whole, error);
+    return whole && (status == STATUS_OK || status == STATUS_CHECK_FAILED)
+               ? present(options, &suite, status, error)
+               : status;
 }
 
 const struct command command_verify = {

@@ -78,7 +78,6 @@ enum status verify_shares_run(struct suite *suite, const struct suite_choice *ch
     static const char *const others[] = {"first", "kernel-plugin"};
     struct sharing sharing;
     struct pool pool = {0};
-    *whole = false;
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         if (options_value(options, others[i]))
             return error_set(error, STATUS_BAD_INPUT,
@@ -88,11 +87,8 @@ enum status verify_shares_run(struct suite *suite, const struct suite_choice *ch
     struct part *parts = calloc(check_registry_count + 1, sizeof *parts);
     enum status status = parts ? plan(&pool, parts, choice, error)
                                : error_set(error, STATUS_ENVIRONMENT, "verify: no memory");
-    if (!status && sharing.list)
-        status = sharing_list(&sharing, &pool, error);
-    else if (!status)
-        status = sharing_run(&sharing, &pool, "checks", options, whole, error);
-    if (!status && *whole) status = join(suite, &pool, parts, error);
+    if (!status) status = sharing_run(&sharing, &pool, options, whole, error);
+    if (*whole) status = join(suite, &pool, parts, error);
     pool_free(&pool);
     free(parts);
     return status;

@@ -68,7 +68,8 @@ static struct fake_slurm {
     const char *answers; /* what sbatch prints after the number */
     double interrupt;    /* time of Ctrl-C; 0: never */
     bool terminal;
-    void (*meanwhile)(void); /* called at every squeue */
+    void (*meanwhile)(void);  /* called at every squeue */
+    void (*submitting)(void); /* called at every sbatch */
 } slurm;
 
 double __wrap_clock_wall(void);
@@ -255,6 +256,7 @@ static inline enum status fake_sbatch(const char *const *words, struct child_sai
     const char *array = NULL, *wrap = NULL;
     bool parsable = false;
     char text[80];
+    if (slurm.submitting) slurm.submitting();
     if (slurm.no_sbatch)
         return error_set(error, STATUS_ENVIRONMENT, "sbatch: No such file or directory");
     if (slurm.refuses) return answer(said, 1, "", slurm.refuses);

@@ -120,6 +120,7 @@ BRIEF = ["--time", "1e-5", "--samples", "2"]
 COMMANDS = [
     ["list"],
     ["list", "keys"],
+    ["list", "--where"],
     ["run", "sod", "n=60"],
     ["run", "sound_wave", "n=32", "t_end=0.1"],
     ["run", "sod", "n=60", "--explain"],

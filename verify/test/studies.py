@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """studies.py SPHPROOF: `sphproof converge` with a cache on a processor with other mathematics; its progress on a terminal;
-what is deleted from a cache by its age. (Damaged entries, kill -9 and two at once: test_cache, faults.py; cold and warm: exits.py.)"""
+what is deleted from a cache by its age; where the program finds its files. (Damaged entries, kill -9 and two at once: test_cache, faults.py; cold and warm: exits.py.)"""
 import glob
 import json
 import os
 import pty
+import shutil
 import subprocess
 import sys
 import time
 
-from script import call, expect, play, program
+from script import call, expect, json_of, play, program, write
 
 QUICK = ["converge", "sod", "--n", "40,60,80,120", "t_end=0.1", "--vary", "gradient",
          "--replicates", "1"]
@@ -90,4 +91,28 @@ def test_prune():
         expect("entries not used for %s days" % days, len(entries()) == left and found["removed"] == 8 - left, found)
 
 
-play(test_mathematics, test_progress, test_colors, test_prune)
+def test_where():
+    """Files beside the program are found before those that are installed elsewhere."""
+    names = "cases", "sphproof-1.schema.json"
+    os.makedirs("own/bin")
+    shutil.copy(program, "own/bin/sphproof")
+    elsewhere = None
+    for beside in range(3):
+        if beside == 1:
+            os.makedirs("own/share/sphproof/cases")
+        if beside == 2:
+            write("own/share/sphproof/" + names[1], "{}")
+        found = json.loads(subprocess.run(["own/bin/sphproof", "list", "--where", "--json", "-"], capture_output=True).stdout)
+        elsewhere = elsewhere or found["installed"]
+        paths = [os.path.abspath("own/share/sphproof/" + name) if k < beside else elsewhere[name] for k, name in enumerate(names)]
+        expect("places, %d beside the program" % beside, list(found["installed"]) == list(names) and not found["families"]
+               and [p and os.path.realpath(p) for p in found["installed"].values()] == [p and os.path.realpath(p) for p in paths], found)
+        said = subprocess.run(["own/bin/sphproof", "list", "--where"], capture_output=True, text=True).stdout
+        expect("places printed, %d beside the program" % beside, said == "".join(
+            "%-24s %s\n" % (name, path or "not installed") for name, path in found["installed"].items()), said)
+    for words in (["list", "keys", "--where"], ["list", "--markdown", "--where"]):
+        expect("refused: %s" % words, call(*words, status=2).stdout == "")
+    expect("no families: a document without places", "installed" not in json_of("list", "fields"))
+
+
+play(test_mathematics, test_progress, test_colors, test_prune, test_where)

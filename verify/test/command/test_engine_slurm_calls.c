@@ -29,6 +29,28 @@ TEST(answers_of_sbatch)
     assert_string_equal(slurm.arrays, "1-3 2 2 ");
 }
 
+static void lose_folder(void)
+{
+    char path[200], other[220];
+    snprintf(path, sizeof path, "%s/slurm", call.folder.cache_folder);
+    snprintf(other, sizeof other, "%s.lost", path);
+    assert_int_equal(rename(path, other), 0);
+}
+
+/* The folder of the state disappears while tasks are submitted. If sbatch fails, too, the message
+ * is about that. */
+TEST(state_that_cannot_be_saved)
+{
+    for (int refused = 0; refused < 2; refused++) {
+        again();
+        slurm.submitting = lose_folder;
+        slurm.refuses = refused ? "sbatch: error: invalid partition specified: none" : NULL;
+        assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+        says_error(refused ? "invalid partition" : ".json': No such file or directory");
+        assert_int_equal(slurm.submissions, !refused);
+    }
+}
+
 TEST(controller_that_does_not_answer)
 {
     static const struct {

@@ -11,17 +11,14 @@ static const struct command command = {.name = "judge", .synopsis = "FILE", .opt
 
 TEST(values_by_name)
 {
-    const struct command bare = {.name = "list"};
     const char *values[] = {"2.385", "sinc"}, *none[] = {NULL, NULL};
     const struct options given = {.command = &command, .values = values},
-                         absent = {.command = &command, .values = none},
-                         without = {.command = &bare};
+                         absent = {.command = &command, .values = none};
     assert_string_equal(options_value(&given, "eta"), "2.385");
     assert_string_equal(options_value(&given, "kernel"), "sinc");
     assert_null(options_value(&given, "kern"));
     assert_null(options_value(&given, "kernels"));
     assert_null(options_value(&absent, "kernel"));
-    assert_null(options_value(&without, "kernel"));
 }
 
 TEST(kernels_by_name)

@@ -115,7 +115,7 @@ static enum status run_share(const char *shard)
     fill_planned();
     listen_to(said, usual);
     const enum status status =
-        sharing_run(&call.sharing, &call.pool, "converge", &call.options, &call.whole, &call.error);
+        sharing_run(&call.sharing, &call.pool, &call.options, &call.whole, &call.error);
     listened(said, usual);
     assert_int_equal(status, call.error.status);
     assert_int_equal(call.whole, shard == NULL);
@@ -286,11 +286,10 @@ TEST(engines)
             planted.status = s, planted.jobs = k == 2 ? 3 : 1;
             fill_planned();
             listen_to(said, usual);
-            assert_int_equal(sharing_run(&call.sharing, &call.pool, "converge", &call.options,
-                                         &call.whole, &call.error),
-                             s);
+            assert_int_equal(
+                sharing_run(&call.sharing, &call.pool, &call.options, &call.whole, &call.error), s);
             listened(said, usual);
-            assert_true(call.whole);
+            assert_int_equal(call.whole, !s);
             assert_string_equal(call.said, "\r\033[K");
             assert_string_not_equal(call.sharing.progress.what, "tasks");
             assert_string_equal(call.error.message, s ? "no tasks" : "");
@@ -331,8 +330,12 @@ TEST(list_of_computations)
             assert_true(call.sharing.list);
             fill_planned();
             listen_to(said, usual);
-            assert_int_equal(sharing_list(&call.sharing, &call.pool, &call.error), STATUS_OK);
+            call.whole = true;
+            assert_int_equal(
+                sharing_run(&call.sharing, &call.pool, &call.options, &call.whole, &call.error),
+                STATUS_OK);
             listened(said, usual);
+            assert_false(call.whole);
             for (int i = 0; i < N; i++) {
                 if (k && shares[i] != (int)k) continue;
                 snprintf(expected + strlen(expected), sizeof expected - strlen(expected),
