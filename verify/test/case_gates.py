@@ -67,6 +67,10 @@ def main():
     cases = [c["name"] for c in json_of("list", "cases")["families"]["cases"]]
     assert len(cases) > 20
     for case in sys.argv[2:] or cases:
+        said = call("run", case, "--explain", status=None)
+        if said.returncode == 2 and "weakly compressible liquid" in said.stderr:
+            print("%s: is not run here" % case)
+            continue
         one_case(case)
 
 
