@@ -43,19 +43,26 @@ enum status hdf5_gas(const struct snapshot_source *source, const char *group,
     return STATUS_OK;
 }
 
+struct snapshot_value hdf5_number(const struct snapshot_source *source, const char *group,
+                                  const char *name)
+{
+    struct snapshot_value found = {0};
+    found.known = hdf5_numbers(source, group, name, &found.value, 1) > 0;
+    return found;
+}
+
 struct snapshot_value hdf5_first(const struct snapshot_source *source, const char *const *from,
                                  const char **used)
 {
-    for (; *from; from++) {
+    struct snapshot_value found = {0};
+    for (; *from && !found.known; from++) {
         char group[40];
         const char *colon = strchr(*from, ':');
         snprintf(group, sizeof group, "%.*s", (int)(colon - *from), *from);
-        double value;
-        if (hdf5_numbers(source, group, colon + 1, &value, 1) < 1) continue;
-        if (used) *used = *from;
-        return (struct snapshot_value){true, value};
+        found = hdf5_number(source, group, colon + 1);
+        *used = *from;
     }
-    return (struct snapshot_value){0};
+    return found;
 }
 
 static bool comoving(const struct snapshot_source *source, const struct snapshot_file *file)
@@ -63,9 +70,9 @@ static bool comoving(const struct snapshot_source *source, const struct snapshot
     static const char *const says[] = {"Header:ComovingIntegrationOn",
                                        "Parameters:ComovingIntegrationOn",
                                        "Cosmology:Cosmological run", NULL};
-    static const char *const redshifts[] = {"Header:Redshift", NULL};
-    const struct snapshot_value said = hdf5_first(source, says, NULL),
-                                redshift = hdf5_first(source, redshifts, NULL);
+    const char *from;
+    const struct snapshot_value said = hdf5_first(source, says, &from),
+                                redshift = hdf5_number(source, "Header", "Redshift");
     if (said.known) return said.value != 0;
     return redshift.value > 0 && fabs(file->time.value * (1 + redshift.value) - 1) < 1e-6;
 }
@@ -73,15 +80,15 @@ static bool comoving(const struct snapshot_source *source, const struct snapshot
 static enum status take_masses(const struct snapshot_source *source, struct snapshot_file *file,
                                struct error *error)
 {
-    double mass = 0;
     char there[48] = "Header/MassTable";
     if (file->column[SNAPSHOT_M]) return STATUS_OK;
-    const bool table = hdf5_numbers(source, "Header", "MassTable", &mass, 1) >= 1;
-    if (table) snprintf(there, sizeof there, "Header/MassTable[0] = %g", mass);
-    if (!table || !(mass > 0))
+    const struct snapshot_value table = hdf5_number(source, "Header", "MassTable");
+    const double mass = table.value;
+    if (table.known) snprintf(there, sizeof there, "Header/MassTable[0] = %g", mass);
+    if (!(mass > 0))
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s: no masses: no PartType0/Masses, and %s%s; allowed: above 0",
-                         source->path, table ? "" : "no ", there);
+                         source->path, table.known ? "" : "no ", there);
     if (!snapshot_file_make(file, SNAPSHOT_M))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
     for (size_t i = 0; i < file->n; i++) file->column[SNAPSHOT_M][i] = mass;
@@ -91,12 +98,13 @@ static enum status take_masses(const struct snapshot_source *source, struct snap
 
 static void take_box(const struct snapshot_source *source, struct snapshot_file *file)
 {
-    double box[3] = {0};
+    double *box = file->box;
     const int count = hdf5_numbers(source, "Header", "BoxSize", box, 3);
-    for (int d = 0; count == 1 && d < 3; d++) box[d] = box[0];
-    file->boxed = count >= 1 && box[0] > 0 && isfinite(box[0]);
-    for (int d = 0; file->boxed && d < 3; d++)
-        file->box[d] = isfinite(box[d]) && box[d] > 0 ? box[d] : 0;
+    for (int d = 0; d < 3; d++) {
+        if (count == 1) box[d] = box[0];
+        if (!(box[d] > 0 && isfinite(box[d]))) box[d] = 0;
+    }
+    file->boxed = box[0] > 0;
 }
 
 /* Notes units other than 1, to which no column is converted. */
@@ -123,15 +131,12 @@ static void note_units(const struct snapshot_source *source, struct snapshot_fil
 enum status hdf5_header(const struct snapshot_source *source, struct snapshot_file *file,
                         struct error *error)
 {
-    static const char *const times[] = {"Header:Time", NULL};
     static const char *const dims[] = {"Header:Dimension", "HydroScheme:Dimension", NULL};
-    static const char *const parts[] = {"Header:NumFilesPerSnapshot", NULL};
-    static const char *const counts[] = {"Header:NumPart_ThisFile", NULL};
-    static const char *const totals[] = {"Header:NumPart_Total", NULL};
-    file->time = hdf5_first(source, times, NULL);
-    const struct snapshot_value dim = hdf5_first(source, dims, NULL),
-                                part = hdf5_first(source, parts, NULL),
-                                count = hdf5_first(source, counts, NULL);
+    const char *from;
+    file->time = hdf5_number(source, "Header", "Time");
+    const struct snapshot_value dim = hdf5_first(source, dims, &from),
+                                part = hdf5_number(source, "Header", "NumFilesPerSnapshot"),
+                                count = hdf5_number(source, "Header", "NumPart_ThisFile");
     if (comoving(source, file))
         return error_set(
             error, STATUS_BAD_INPUT,
@@ -148,7 +153,7 @@ enum status hdf5_header(const struct snapshot_source *source, struct snapshot_fi
                          "%.200s: Header/NumFilesPerSnapshot = %g; allowed: 1 to %d", source->path,
                          part.value, SNAPSHOT_PARTS_MAX);
     file->parts = part.known ? (int)part.value : 1;
-    file->total = hdf5_first(source, totals, NULL).value;
+    file->total = hdf5_number(source, "Header", "NumPart_Total").value;
     if (dim.known && dim.value >= 1 && dim.value <= 3) file->dim = (int)dim.value;
     take_box(source, file);
     note_units(source, file);

@@ -17,6 +17,10 @@ enum status hdf5_gas(const struct snapshot_source *source, const char *group,
                      const struct hdf5_names *names, size_t n, struct snapshot_file *file,
                      struct error *error);
 
+/* One number of the header, or the first of several. */
+struct snapshot_value hdf5_number(const struct snapshot_source *source, const char *group,
+                                  const char *name);
+
 /* The first attribute "group:name" that exists. */
 struct snapshot_value hdf5_first(const struct snapshot_source *source, const char *const *from,
                                  const char **used);

@@ -100,10 +100,10 @@ static int by_position(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+/* The periodic image in the box, also where rounding would leave it a digit below the box. */
 static double wrapped(double x, double lo, double period)
 {
-    if (!(period > 0)) return x;
-    return x - period * floor((x - lo) / period);
+    return period > 0 ? fmax(lo, x - period * floor((x - lo) / period)) : x;
 }
 
 static double width_of_volume(const struct judged *judged, size_t i)
@@ -342,7 +342,7 @@ static double median_error(const struct judged *judged, int f, double *errors, d
     const struct snapshot *s = &judged->result.snapshot;
     const int dim = judged->run.problem.domain.dim;
     const double *const values[FIELDS] = {s->rho, s->v[0], s->P, s->u};
-    double least = INFINITY, most = -INFINITY, sound = 0, motion = 0;
+    double least = INFINITY, most = -least, sound = most, motion = most;
     for (int all = 0; all < 2; all++) {
         size_t n = 0;
         for (size_t i = 0; i < s->n; i++) {

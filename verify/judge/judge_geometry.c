@@ -7,12 +7,13 @@
 #include "judge.h"
 #include "problem_list.h"
 
-static enum status set_real(struct settings *settings, enum setting key, double value,
-                            struct error *error)
+/* A refusal names the file. */
+static enum status set_real(const struct judged *judged, struct settings *settings,
+                            enum setting key, double value, struct error *error)
 {
     char text[40];
     snprintf(text, sizeof text, "%.17g", value);
-    return settings_set(settings, key, text, SOURCE_USER, NULL, error);
+    return settings_set(settings, key, text, SOURCE_USER, judged->path, error);
 }
 
 /* Replaces a gamma stored in single precision by the nearest short number. */
@@ -65,7 +66,7 @@ static enum status take_gamma(const struct judge_request *request, struct judged
                   proved && fabs(stored - gamma) > 1e-4
                       ? "; but the file's own P/(rho u) says something else"
                       : "");
-    return set_real(settings, SETTING_gamma, gamma, error);
+    return set_real(judged, settings, SETTING_gamma, gamma, error);
 }
 
 static enum status take_time(const struct judge_request *request, struct judged *judged,
@@ -90,7 +91,7 @@ static enum status take_time(const struct judge_request *request, struct judged 
     snprintf(value, sizeof value, "%.9g", time.value);
     snapshot_note(&file->notes, "time", value, "%s",
                   request->time.known ? "--time" : "the file says so");
-    return set_real(settings, SETTING_t_end, time.value, error);
+    return set_real(judged, settings, SETTING_t_end, time.value, error);
 }
 
 /* ---- the box ---- */
@@ -344,7 +345,7 @@ static enum status set_window(const struct judge_request *request, struct judged
         snapshot_note(&judged->file.notes, "window", text, "--window");
         return settings_set(settings, SETTING_window, "auto", SOURCE_USER, NULL, error)
                    ? error->status
-                   : set_real(settings, SETTING_window_radius, request->radius, error);
+                   : set_real(judged, settings, SETTING_window_radius, request->radius, error);
     }
     if (request->window) {
         snprintf(text, sizeof text, "%.17g %.17g", request->ends[0], request->ends[1]);
@@ -528,7 +529,7 @@ enum status judge_geometry(const struct judge_request *given, struct judged *jud
     const double n = fmin(1e7, judged->slab > 0 ? round(judged->case_n) : (double)judged->file.gas);
     if ((!ended && set_window(request, judged, settings, &box, case_hi - case_lo,
                               0.5 * (case_lo + case_hi), error)) ||
-        (!settings->file[0] && set_real(settings, SETTING_n, n, error)) ||
+        (!settings->file[0] && set_real(judged, settings, SETTING_n, n, error)) ||
         set_ends(settings, SETTING_lo, box.lo, dim, error) ||
         set_ends(settings, SETTING_hi, box.hi, dim, error))
         return error->status;

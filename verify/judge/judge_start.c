@@ -31,23 +31,31 @@ static bool fills_space(const struct start_gas *gas, size_t i)
     return space > 0.95 * fmin(before, after) && space < 1.05 * fmax(before, after);
 }
 
+/* The exact state at this distance from the particle along one direction. */
+static void state_beside(const struct start_gas *gas, size_t i, int direction, double by,
+                         struct problem_state *state)
+{
+    double *x = gas->x[i];
+    const double from = x[direction];
+    x[direction] += by;
+    problem_sample(gas->problem, x, 0, state);
+    x[direction] = from;
+}
+
 /* The smallest difference from the exact states near the particle: beside a jump, particles that
  * were displaced keep their original state. */
 static double least_off(const struct start_gas *gas, enum start_field field, size_t i)
 {
     static const double steps[] = {0.25, 0.5, 1};
     const struct prepared *p = gas->problem;
-    double x[3], least = start_off(gas, field, i, &gas->exact[i]);
-    memcpy(x, gas->x[i], sizeof x);
+    double least = start_off(gas, field, i, &gas->exact[i]);
     if (field == START_MASS && least > WRONG && fills_space(gas, i)) return 0;
     if (p->problem->smooth || least <= WRONG) return least;
     for (int d = 0; d < p->domain.dim; d++)
         for (int k = 0; k < 6; k++) {
             struct problem_state beside;
-            x[d] = gas->x[i][d] + (k % 2 ? -1 : 1) * steps[k / 2] * gas->spacing;
-            problem_sample(p, x, 0, &beside);
+            state_beside(gas, i, d, (k % 2 ? -1 : 1) * steps[k / 2] * gas->spacing, &beside);
             least = fmin(least, start_off(gas, field, i, &beside));
-            x[d] = gas->x[i][d];
         }
     return least;
 }
@@ -222,10 +230,8 @@ static bool are_moved(const struct start_gas *gas)
             return false;
         for (int k = 0; gas->wrong[i] && k < 2 * dim; k++) {
             struct problem_state beside;
-            double x[3], squares = 0;
-            memcpy(x, gas->x[i], sizeof x);
-            x[k / 2] += (k % 2 ? -1 : 1) * gas->spacing;
-            problem_sample(gas->problem, x, 0, &beside);
+            double squares = 0;
+            state_beside(gas, i, k / 2, (k % 2 ? -1 : 1) * gas->spacing, &beside);
             for (int d = 0; d < dim; d++)
                 squares += (beside.v[d] - gas->exact[i].v[d]) * (beside.v[d] - gas->exact[i].v[d]);
             most[0] = fmax(most[0], sqrt(squares) / gas->speed);
@@ -237,9 +243,10 @@ static bool are_moved(const struct start_gas *gas)
             gas->problem->problem->mean_energy ? 0
                                                : start_off(gas, START_ENERGY, i, &gas->exact[i]),
             gas->wrong[i] & 1u << START_MASS ? start_off(gas, START_MASS, i, &gas->exact[i]) : 0};
+        bool near = gas->wrong[i];
+        for (int k = 0; k < 3; k++) near = near && off[k] <= most[k] + WRONG;
         wrong += gas->wrong[i] != 0;
-        moved += gas->wrong[i] && off[0] <= most[0] + WRONG && off[1] <= most[1] + WRONG &&
-                 off[2] <= most[2] + WRONG;
+        moved += near;
     }
     return PER_CENT * moved >= 98 * wrong;
 }

@@ -79,7 +79,7 @@ CHANGE(constant_viscosity, scheme.viscosity, VISCOSITY_CONSTANT)
 CHANGE(no_beta, scheme.beta, 0)
 CHANGE(beta_alpha, scheme.beta, setup->scheme.alpha)
 CHANGE(twice_alpha, scheme.alpha, 2 * setup->scheme.alpha)
-CHANGE(half_alpha, scheme.alpha, 0.5 * setup->scheme.alpha)
+CHANGE(half_alpha, scheme.alpha, setup->scheme.alpha / 2)
 CHANGE(mu_form, scheme.viscosity_form, VISCOSITY_FORM_MU)
 CHANGE(signal_form, scheme.viscosity_form, VISCOSITY_FORM_SIGNAL)
 CHANGE(with_balsara, scheme.balsara, BALSARA_ON)
@@ -98,7 +98,7 @@ CHANGE(energy, scheme.volume_element, VOLUME_ENERGY)
 CHANGE(number, scheme.volume_element, VOLUME_NUMBER)
 CHANGE(gamma_5_3, gamma, 5. / 3)
 CHANGE(gamma_7_5, gamma, 1.4)
-CHANGE(half_eta, scheme.eta, 0.5 * setup->scheme.eta)
+CHANGE(half_eta, scheme.eta, setup->scheme.eta / 2)
 CHANGE(twice_eta, scheme.eta, 2 * setup->scheme.eta)
 #undef CHANGE
 
@@ -121,7 +121,7 @@ static void twice_viscosity(struct setup *setup)
 static void half_viscosity(struct setup *setup)
 {
     half_alpha(setup);
-    setup->scheme.beta *= 0.5;
+    setup->scheme.beta /= 2;
 }
 
 static void open_box(struct setup *setup)

@@ -227,23 +227,21 @@ static bool scalar_cause(const struct start_gas *gas, enum start_field field, ch
             snprintf(text + strlen(text), size - strlen(text), "%s%s", *text ? ", or " : "it is ",
                      usual[k].words);
     }
-    const double multiple = factor_of(gas, field, value, exact_density);
-    if (!*text && field == START_ENERGY && isfinite(multiple) && !isfinite(scaled) &&
-        isfinite(misfit(gas, field, value, exact_density, multiple)))
-        snprintf(text, size, "it is the mass, or another multiple of the density");
     if (!*text && isfinite(scaled)) snprintf(text, size, "it is %.6g times %s", factor, should);
-    if (!*text) { /* a constant offset, measured at the first wrong particle */
-        double more = 0;
-        size_t all = 0, near = 0;
-        for (size_t i = 0; i < s->n; i++) {
-            if (!(gas->wrong[i] & 1u << field)) continue;
-            if (!all++) more = value[i] - exact(gas, i, 1);
-            near += fabs(value[i] - exact(gas, i, 1) - more) <= 1e-3 * fabs(more);
-        }
-        if (all > 1 && PER_CENT * near >= 95 * all)
-            snprintf(text, size, "it is %.4g %s than %s", fabs(more), more > 0 ? "more" : "less",
-                     should);
+    double more = 0; /* at the first wrong particle; an offset if it is constant */
+    size_t all = 0, near = 0;
+    for (size_t i = 0; i < s->n; i++) {
+        if (!(gas->wrong[i] & 1u << field)) continue;
+        if (!all++) more = value[i] - exact(gas, i, 1);
+        near += fabs(value[i] - exact(gas, i, 1) - more) <= 1e-3 * fabs(more);
     }
+    if (*text || all < 2) return *text; /* any offset or multiple fits one value */
+    const double multiple = factor_of(gas, field, value, exact_density);
+    if (PER_CENT * near >= 95 * all)
+        snprintf(text, size, "it is %.4g %s than %s", fabs(more), more > 0 ? "more" : "less",
+                 should);
+    else if (field == START_ENERGY && isfinite(misfit(gas, field, value, exact_density, multiple)))
+        snprintf(text, size, "it is the mass, or another multiple of the density");
     return *text;
 }
 
@@ -335,7 +333,7 @@ static void take(struct trial *trial, bool all)
 
 /* Mean misfit, from 0 to 1, of the particles displaced by `by`; *near: the number of those that
  * fit. */
-static double miss(const struct trial *trial, const double by[3], double limit, size_t *near)
+static double miss(const struct trial *trial, const double by[3], size_t *near)
 {
     const struct start_gas *gas = trial->gas;
     double sum = 0;
@@ -353,7 +351,7 @@ static double miss(const struct trial *trial, const double by[3], double limit, 
         double off = start_off(gas, START_VELOCITY, i, &there);
         if (!gas->problem->problem->mean_energy)
             off = fmax(off, start_off(gas, START_ENERGY, i, &there));
-        sum += fmin(off, limit) / limit;
+        sum += fmin(off, 1);
         *near += off <= 1e-3;
     }
     return sum / (double)trial->n;
@@ -364,7 +362,7 @@ static size_t settle(const struct trial *trial, double by[3], double step)
 {
     const int dim = trial->gas->problem->domain.dim;
     size_t near;
-    double best = miss(trial, by, 1, &near);
+    double best = miss(trial, by, &near);
     for (int rounds = 0; rounds < 80; rounds++) {
         bool moved = false;
         for (int k = 0; k < 2 * dim; k++) {
@@ -372,7 +370,7 @@ static size_t settle(const struct trial *trial, double by[3], double step)
             memcpy(to, by, sizeof to);
             to[k / 2] += k % 2 ? step : -step;
             size_t now;
-            const double other = miss(trial, to, 1, &now);
+            const double other = miss(trial, to, &now);
             if (other >= best) continue;
             best = other, near = now, moved = true;
             memcpy(by, to, sizeof to);
@@ -398,7 +396,7 @@ static bool find_shift(const struct trial *trial, double by[3])
         for (int d = 0; d < box->dim; d++)
             to[d] =
                 domain_length(box, d) * (position[d] - (position[d] > side / 2 ? side : 0)) / side;
-        const double now = miss(trial, to, 1, &near);
+        const double now = miss(trial, to, &near);
         int k = KEPT - 1;
         if (now >= best[k]) continue;
         for (; k > 0 && now < best[k - 1]; k--) {
@@ -455,7 +453,7 @@ bool start_cause_positions(const struct start_gas *gas, char *text, size_t size)
         if (!find_shift(&trial, by)) continue;
         size_t near;
         take(&trial, false); /* a sample of all particles may consist mostly of right ones */
-        miss(&trial, by, 1, &near);
+        miss(&trial, by, &near);
         if (PER_CENT * near < 95 * trial.n) continue;
         snprintf(text, size,
                  all ? "all particles of the file are shifted by" : "they are shifted by");

@@ -238,7 +238,10 @@ static void is_read(const struct layout *l, const struct item *items,
     const struct field *kernel = field_of(l, items, KERNEL), *box = field_of(l, items, BOX);
     assert_string_equal(file->kernel, kernel ? kernel->text : "");
     assert_true(file->boxed == (box || field_of(l, items, BOX_ENDS)));
-    for (int d = 0; d < 3 && file->boxed; d++) assert_true(file->box[d] == (box ? 100 + 3 * d : 3));
+    for (int d = 0; d < 3 && file->boxed; d++) {
+        assert_true(file->box[d] == (box ? 100 + 3 * d : 3));
+        assert_true(file->corner[d] == 0);
+    }
     assert_int_equal(file->n, N);
     assert_int_equal(file->gas, field_of(l, items, TYPES) ? N - 3 : N);
     assert_int_equal(file->parts, 1);

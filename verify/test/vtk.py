@@ -20,6 +20,7 @@ def judged(path):
 LETTERS = {b"unsigned_int": "I", b"vtkIdType": "i", b"char": "b", b"unsigned_char": "B", b"short": "h", b"unsigned_short": "H",
            b"int": "i", b"long": "q", b"unsigned_long": "Q", b"vtktypeint64": "q"}
 WHOLE = itertools.cycle(LETTERS)
+METADATA = b"METADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 1 7\n\n"
 
 
 def make(points, binary, field, grid, kind):
@@ -62,8 +63,9 @@ def make(points, binary, field, grid, kind):
             text += b"SCALARS %s %s%s\nLOOKUP_TABLE default\n" % (name, type_, draw.choice((b"", b" 1")))
         text += numbers(rows, LETTERS.get(type_, type_.decode()))
         if field and paired and name != arrays[-1][0]:
-            text += b"METADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 1 7\n\n"
-    return text[:-1]  # the last number ends the file
+            text += METADATA
+    # the last number ends the file, or the last metadata do, with an empty line or in the middle of a line
+    return text[:-1] if not field or grid else text + METADATA[:draw.choice((None, -2))]
 
 
 def main():

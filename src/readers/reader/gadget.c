@@ -248,9 +248,10 @@ static enum status infer(const struct binary *b, struct layout *layout,
 
 static enum status refuse_block(const struct binary *b, const char *tag, struct error *error)
 {
-    char names[200] = "";
-    for (size_t r = 1, used = 0; r < b->count && used < sizeof names - 8; r++)
-        used += (size_t)snprintf(names + used, 8, " '%s'", b->record[r].tag);
+    enum { NAMES = 28, LENGTH = 7 };
+    char names[NAMES * LENGTH + 1] = "";
+    for (size_t r = 1; r < b->count && r <= NAMES; r++)
+        snprintf(names + strlen(names), sizeof names - strlen(names), " '%s'", b->record[r].tag);
     return error_set(error, STATUS_BAD_INPUT, "%.200s: no block '%s'; it has:%s", b->source->path,
                      tag, names);
 }

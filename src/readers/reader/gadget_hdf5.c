@@ -26,13 +26,14 @@ static const struct hdf5_names names[] = {
  * file are relative. */
 static void place(const struct snapshot_source *source, struct snapshot_file *file)
 {
-    double corner[3];
+    enum { DIRECTIONS = 3 };
+    double corner[DIRECTIONS];
     hdf5_text(source, "Header", "Case", file->case_name, sizeof file->case_name);
     hdf5_text(source, "Header", "Boundary", file->boundary, sizeof file->boundary);
     hdf5_text(source, "Header", "Keys", file->keys, sizeof file->keys);
-    if (!file->boxed || hdf5_numbers(source, "Header", "Origin", corner, 3) != 3) return;
+    if (!file->boxed || hdf5_numbers(source, "Header", "Origin", corner, DIRECTIONS) != DIRECTIONS) return;
     file->placed = true;
-    for (int d = 0; d < 3 && file->column[d]; d++) {
+    for (int d = 0; d < DIRECTIONS && file->column[d]; d++) {
         file->corner[d] = corner[d];
         for (size_t i = 0; i < file->n; i++) file->column[d][i] += corner[d];
     }
@@ -55,8 +56,7 @@ static enum status read(const struct snapshot_source *source,
     if (hdf5_gas(source, "PartType0", names, sizeof names / sizeof *names, file, error) ||
         hdf5_header(source, file, error))
         return error->status;
-    const struct snapshot_value version =
-        hdf5_first(source, (const char *const[]){"Header:GIZMO_version", NULL}, NULL);
+    const struct snapshot_value version = hdf5_number(source, "Header", "GIZMO_version");
     const char *from = "";
     place(source, file);
     file->gamma = hdf5_first(source, gammas, &from);

@@ -30,21 +30,20 @@ static enum status take_types(const struct snapshot_source *source, size_t n, do
 
 static void take_header(const struct snapshot_source *source, struct phantom_header *header)
 {
-    static const char
-        *const hfacts[] = {"header:hfact", NULL},
-               *const times[] = {"header:time", NULL}, *const gammas[] = {"header:gamma", NULL},
-               *const ends[3][2] = {{"xmin", "xmax"}, {"ymin", "ymax"}, {"zmin", "zmax"}};
+    static const char *const ends[3][2] = {{"xmin", "xmax"}, {"ymin", "ymax"}, {"zmin", "zmax"}};
     const int types =
         hdf5_numbers(source, "header", "massoftype", header->masses, PHANTOM_TYPES_MAX);
     header->types = types < 0 ? 0 : types < PHANTOM_TYPES_MAX ? types : PHANTOM_TYPES_MAX;
-    header->hfact = hdf5_first(source, hfacts, NULL);
-    header->time = hdf5_first(source, times, NULL);
-    header->gamma = hdf5_first(source, gammas, NULL);
+    header->hfact = hdf5_number(source, "header", "hfact");
+    header->time = hdf5_number(source, "header", "time");
+    header->gamma = hdf5_number(source, "header", "gamma");
     header->boxed = true;
-    for (int d = 0; d < 3; d++)
-        header->boxed = hdf5_numbers(source, "header", ends[d][0], &header->lo[d], 1) >= 1 &&
-                        hdf5_numbers(source, "header", ends[d][1], &header->hi[d], 1) >= 1 &&
-                        header->boxed;
+    for (int d = 0; d < 3; d++) {
+        const struct snapshot_value lo = hdf5_number(source, "header", ends[d][0]),
+                                    hi = hdf5_number(source, "header", ends[d][1]);
+        header->boxed = header->boxed && lo.known && hi.known;
+        header->lo[d] = lo.value, header->hi[d] = hi.value;
+    }
 }
 
 static enum status read(const struct snapshot_source *source,

@@ -27,8 +27,9 @@ static const struct hdf5_names names[] = {
 static void take_box(const struct snapshot_source *source, const char *step,
                      struct snapshot_file *file)
 {
-    double box[6];
-    if (hdf5_numbers(source, step, "box", box, 6) != 6) return;
+    enum { ENDS = 6 };
+    double box[ENDS];
+    if (hdf5_numbers(source, step, "box", box, ENDS) != ENDS) return;
     file->boxed = true;
     for (int d = 0; d < 3; d++) {
         file->box[d] = box[2 * d + 1] - box[2 * d];
@@ -47,25 +48,23 @@ static enum status read(const struct snapshot_source *source,
                         struct error *error)
 {
     char step[40];
-    double number;
     (void)options;
     hdf5_last(source, "/", "Step#", step, sizeof step);
     if (hdf5_gas(source, step, names, sizeof names / sizeof *names, file, error))
         return error->status;
-    if (hdf5_numbers(source, step, "time", &number, 1) >= 1)
-        file->time = (struct snapshot_value){true, number};
-    if (hdf5_numbers(source, step, "gamma", &number, 1) >= 1) {
-        file->gamma = (struct snapshot_value){true, number};
+    file->time = hdf5_number(source, step, "time");
+    file->gamma = hdf5_number(source, step, "gamma");
+    if (file->gamma.known)
         snapshot_note(&file->notes, "gamma", "in the file", "attribute %s/gamma", step);
-    }
     if (!file->column[SNAPSHOT_M]) {
-        if (hdf5_numbers(source, step, "particleMass", &number, 1) < 1)
+        const struct snapshot_value mass = hdf5_number(source, step, "particleMass");
+        if (!mass.known)
             return error_set(error, STATUS_BAD_INPUT,
                              "%.200s: no masses: neither %s/m nor its attribute particleMass",
                              source->path, step);
         if (!snapshot_file_make(file, SNAPSHOT_M))
             return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
-        for (size_t i = 0; i < file->n; i++) file->column[SNAPSHOT_M][i] = number;
+        for (size_t i = 0; i < file->n; i++) file->column[SNAPSHOT_M][i] = mass.value;
     }
     take_box(source, step, file);
     file->parts = 1;

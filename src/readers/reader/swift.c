@@ -23,8 +23,6 @@ static enum status read(const struct snapshot_source *source,
                         const struct snapshot_options *options, struct snapshot_file *file,
                         struct error *error)
 {
-    static const char *const gammas[] = {"HydroScheme:Adiabatic index", NULL},
-                             *const ratios[] = {"HydroScheme:Kernel gamma", NULL};
     char revision[40];
     (void)options;
     if (!hdf5_has(source, "PartType0")) {
@@ -36,12 +34,11 @@ static enum status read(const struct snapshot_source *source,
     if (hdf5_gas(source, "PartType0", names, sizeof names / sizeof *names, file, error) ||
         hdf5_header(source, file, error))
         return error->status;
-    file->gamma = hdf5_first(source, gammas, NULL);
+    file->gamma = hdf5_number(source, "HydroScheme", "Adiabatic index");
     if (file->gamma.known)
         snapshot_note(&file->notes, "gamma", "in the file",
                       "HydroScheme/Adiabatic index, in float32 %.9g", file->gamma.value);
-    const struct snapshot_value ratio = hdf5_first(source, ratios, NULL);
-    file->ratio = ratio.known ? ratio.value : 0;
+    file->ratio = hdf5_number(source, "HydroScheme", "Kernel gamma").value;
     hdf5_text(source, "HydroScheme", "Kernel function", file->kernel, sizeof file->kernel);
     hdf5_text(source, "Code", "Git Revision", revision, sizeof revision);
     const bool known = revision[0] && strcmp(revision, "unknown") != 0;

@@ -159,10 +159,11 @@ static bool take_points(struct vtk *vtk, const struct array *array, int column,
     return well;
 }
 
-/* Skips what VTK writes behind an array about its components; it ends with an empty line. */
+/* Skips what VTK writes behind an array about its components; it ends with an empty line, or with
+ * the file. */
 static void skip_metadata(struct vtk *vtk)
 {
-    while (vtk->at + 1 < vtk->end && !(vtk->at[0] == '\n' && vtk->at[1] == '\n')) vtk->at++;
+    while (vtk->at < vtk->end && strncmp(vtk->at, "\n\n", 2) != 0) vtk->at++;
 }
 
 /* Reads FIELD name count, then arrays of the part of the file. */

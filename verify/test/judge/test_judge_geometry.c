@@ -52,6 +52,14 @@ TEST(sources_of_gamma)
     }
 }
 
+TEST(gamma_out_of_range)
+{
+    struct judge_request request = uniform_gas();
+    request.gamma.known = false;
+    plant(1, 0, "# gamma = 0.5\n");
+    refuses(&request, "a.csv: gamma=0.5: allowed: ");
+}
+
 TEST(sources_of_time)
 {
     struct judge_request request = uniform_gas();

@@ -237,16 +237,29 @@ TEST(scalars)
     }
 }
 
-/* One wrong pressure of cold gas, whose right pressure is 0, shows no sum, which two do. */
-TEST(pressures_of_cold_gas)
+/* One wrong value of cold gas, whose right value is 0, shows no sum or multiple, which two do. */
+TEST(values_of_cold_gas)
 {
-    for (int count = 1; count <= 2; count++) {
-        char text[200] = "";
-        plant(1, 1);
-        for (int i = 3; i < 3 + count; i++) u[i] = 0, P[i] = 0.5, wrong[i] = 1u << START_PRESSURE;
-        assert_true(start_cause(&gas, START_PRESSURE, text, sizeof text) == (count == 2));
-        assert_string_equal(text, count == 2 ? "it is 0.5 more than (gamma - 1) rho u" : "");
-    }
+    for (int count = 1; count <= 2; count++)
+        for (int pressure = 0; pressure < 2; pressure++)
+            for (int even = 0; even < 2; even++) {
+                const enum start_field field = pressure ? START_PRESSURE : START_ENERGY;
+                char text[200] = "";
+                plant(1, 1);
+                for (int i = 3; i < 3 + count; i++) {
+                    exact[i].u = exact[i].P = u[i] = 0;
+                    (pressure ? P : u)[i] = even ? 0.5 : 3 * exact[i].rho;
+                    wrong[i] = 1u << field;
+                }
+                start_cause(&gas, field, text, sizeof text);
+                assert_string_equal(text, count < 2  ? ""
+                                          : even     ? pressure
+                                                           ? "it is 0.5 more than (gamma - 1) rho u"
+                                                           : "it is 0.5 more than the case's"
+                                          : pressure ? ""
+                                                     : "it is the mass, or another multiple of "
+                                                       "the density");
+            }
 }
 
 /* Where the density is 1 within a thousandth, both rho u and a constant factor may fit u: the

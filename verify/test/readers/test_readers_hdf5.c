@@ -156,6 +156,9 @@ TEST(other_forms)
                 if (f->text) items[k].stored = form / 4 ? TEXT_VARIABLE : TEXT;
                 reads(l, items, f->path);
             }
+            items_of(l, items);
+            items[k].shape[0]++; /* a list that is longer than what is taken of it */
+            if (f->meaning == BOX || f->meaning == MASS) reads(l, items, f->path);
         }
     }
 }
