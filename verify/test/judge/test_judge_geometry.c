@@ -135,6 +135,8 @@ TEST(positions_of_tubes)
         {-1.5, 2.3, "", 9, -1.5, 2.3, {-0.55, 1.35}, false, "as far as particles reach"},
         {-0.9, 1, "# box = -0.95:1.05\n", 9, -0.95, 1.05, {-0.45, 0.55}, true, "the file says so"},
         {-1.1, 0.8, "# box = -1.1:0.9\n", 9, -1.1, 0.9, {-0.6, 0.4}, true, "the file says so"},
+        /* the upper end, less the length, is a digit below the lower end */
+        {-0.88, 0.72, "# box = -0.88:0.72\n", 9, -0.88, 0.72, {-0.48, 0.32}, true, "file says so"},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct judge_request request = uniform_gas();
@@ -149,6 +151,8 @@ TEST(positions_of_tubes)
         judges(&request, &judged);
         const struct prepared *p = &judged.run.problem;
         const double middle = 0.5 * (rows[k].want_lo + rows[k].want_hi);
+        for (int i = 0; i < N && rows[k].periodic; i++)
+            assert_true(judged.result.snapshot.x[0][i] >= p->domain.lo[0]);
         near_absolute(p->domain.lo[0] - rows[k].want_lo, 0, 1e-14);
         near_absolute(p->domain.hi[0] - rows[k].want_hi, 0, 1e-14);
         near_absolute(p->window.lo[0] - rows[k].window[0], 0, 1e-14);
