@@ -5,12 +5,12 @@
  * gamma, except that a FIELD array TimeValue or TIME before the points is the time. */
 #include <ctype.h>
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "text_table.h"
+#include "vtk_type.h"
 
 enum { WORD = 64 };
 
@@ -71,53 +71,15 @@ static void skip_line(struct vtk *vtk)
 
 /* ---- numbers ---- */
 
-#define KINDS                                                                                      \
-    KIND("double", double)                                                                         \
-    KIND("float", float)                                                                           \
-    KIND("char", int8_t)                                                                           \
-    KIND("unsigned_char", uint8_t)                                                                 \
-    KIND("short", int16_t)                                                                         \
-    KIND("unsigned_short", uint16_t)                                                               \
-    KIND("int", int32_t)                                                                           \
-    KIND("unsigned_int", uint32_t)                                                                 \
-    KIND("long", int64_t)                                                                          \
-    KIND("unsigned_long", uint64_t)                                                                \
-    KIND("vtktypeint64", int64_t)                                                                  \
-    KIND("vtkIdType", int32_t)
-
-static size_t width_of(const char *type)
-{
-#define KIND(word, c_type)                                                                         \
-    if (!strcmp(type, word)) return sizeof(c_type);
-    KINDS
-#undef KIND
-    return 0;
-}
-
-static double number_at(const char *type, const char *at)
-{
-    unsigned char bytes[8];
-    const size_t width = width_of(type);
-    const bool little = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__;
-    for (size_t k = 0; k < width; k++) bytes[k] = (unsigned char)at[little ? width - 1 - k : k];
-#define KIND(word, c_type)                                                                         \
-    if (!strcmp(type, word)) {                                                                     \
-        c_type value;                                                                              \
-        memcpy(&value, bytes, sizeof value);                                                       \
-        return (double)value;                                                                      \
-    }
-    KINDS
-#undef KIND
-    return NAN;
-}
-
 /* Reads the numbers of an array; to = NULL skips them. */
 static bool take_numbers(struct vtk *vtk, const struct array *array, double *to)
 {
-    const size_t n = array->components * array->tuples, width = width_of(array->type);
+    const size_t n = array->components * array->tuples;
+    const struct vtk_type *type = vtk_type_of(array->type);
+    const bool little = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__;
     char word[WORD];
     double value;
-    if (!width) return refuse(vtk, "numbers of an unknown type: ", array->type);
+    if (!type) return refuse(vtk, "numbers of an unknown type: ", array->type);
     if (!vtk->binary) {
         for (size_t i = 0; i < n; i++) {
             if (!text_table_number(next_word(vtk, word), &value))
@@ -128,9 +90,10 @@ static bool take_numbers(struct vtk *vtk, const struct array *array, double *to)
         return true;
     }
     skip_line(vtk);
-    if (n > (size_t)(vtk->end - vtk->at) / width) return refuse(vtk, "is cut off in ", array->name);
-    for (size_t i = 0; i < n && to; i++) to[i] = number_at(array->type, vtk->at + i * width);
-    vtk->at += n * width;
+    if (n > (size_t)(vtk->end - vtk->at) / type->width)
+        return refuse(vtk, "is cut off in ", array->name);
+    for (size_t i = 0; i < n; i++, vtk->at += type->width)
+        if (to) to[i] = vtk_number(type, (const unsigned char *)vtk->at, little);
     return true;
 }
 

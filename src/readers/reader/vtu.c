@@ -6,7 +6,6 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,8 +13,10 @@
 #include <zlib.h>
 #endif
 
+#include "fortran.h"
 #include "text.h"
 #include "text_table.h"
+#include "vtk_type.h"
 
 enum { WORD = 64, FIELD_MOST = 1200 };
 
@@ -140,23 +141,9 @@ static bool fetch(const struct array *array, size_t n, unsigned char *to, const 
     return true;
 }
 
-static void turn(unsigned char *bytes, size_t count, size_t width)
+static uint64_t size_at(const struct vtk *vtk, const unsigned char *at)
 {
-    for (size_t i = 0; i < count; i++)
-        for (size_t a = i * width, b = a + width - 1; a < b; a++, b--) {
-            const unsigned char one = bytes[a];
-            bytes[a] = bytes[b], bytes[b] = one;
-        }
-}
-
-static uint64_t size_at(const struct vtk *vtk, unsigned char *at)
-{
-    uint32_t small;
-    uint64_t large;
-    if (vtk->swapped) turn(at, 1, vtk->head);
-    memcpy(&small, at, sizeof small);
-    memcpy(&large, at, sizeof large);
-    return vtk->head == sizeof small ? small : large;
+    return fortran_unsigned(at, vtk->head, vtk->swapped);
 }
 
 #ifdef HAVE_ZLIB
@@ -167,7 +154,7 @@ static bool unpack(const struct vtk *vtk, struct array array, size_t blocks, uns
 {
     if (blocks > want) return false;
     const size_t sizes = (3 + blocks) * vtk->head;
-    unsigned char *head = allocate(vtk, sizes + sizeof(uint64_t));
+    unsigned char *head = allocate(vtk, sizes);
     bool well = head && fetch(&array, sizes, head, &array.at);
     const size_t left = (size_t)(array.end - array.at);
     const uint64_t block = well ? size_at(vtk, head + vtk->head) : 0;
@@ -219,40 +206,6 @@ static bool take_bytes(const struct vtk *vtk, const struct array *array, unsigne
 
 /* ---- numbers ---- */
 
-#define KINDS                                                                                      \
-    KIND("Float64", double)                                                                        \
-    KIND("Float32", float)                                                                         \
-    KIND("Int8", int8_t)                                                                           \
-    KIND("UInt8", uint8_t)                                                                         \
-    KIND("Int16", int16_t)                                                                         \
-    KIND("UInt16", uint16_t)                                                                       \
-    KIND("Int32", int32_t)                                                                         \
-    KIND("UInt32", uint32_t)                                                                       \
-    KIND("Int64", int64_t)                                                                         \
-    KIND("UInt64", uint64_t)
-
-static size_t width_of(const char *type)
-{
-#define KIND(word, c_type)                                                                         \
-    if (!strcmp(type, word)) return sizeof(c_type);
-    KINDS
-#undef KIND
-    return 0;
-}
-
-static double number_at(const char *type, const unsigned char *at)
-{
-#define KIND(word, c_type)                                                                         \
-    if (!strcmp(type, word)) {                                                                     \
-        c_type value;                                                                              \
-        memcpy(&value, at, sizeof value);                                                          \
-        return (double)value;                                                                      \
-    }
-    KINDS
-#undef KIND
-    return NAN;
-}
-
 static bool take_text(const struct vtk *vtk, const struct array *array, double *to, size_t n)
 {
     const char *at = array->at;
@@ -273,18 +226,17 @@ static bool take_text(const struct vtk *vtk, const struct array *array, double *
 /* Reads n numbers. False: see error. */
 static bool take_numbers(const struct vtk *vtk, const struct array *array, double *to, size_t n)
 {
-    const size_t width = width_of(array->type);
-    if (!width)
+    const struct vtk_type *type = vtk_type_of(array->type);
+    if (!type)
         return refuse(vtk,
                       "the array '%s' has numbers of the type '%s'; allowed: Float64, Float32, "
                       "and Int and UInt of 8 to 64 bits",
                       array->name, array->type);
     if (array->text) return take_text(vtk, array, to, n);
-    unsigned char *bytes = allocate(vtk, width * n + sizeof(uint64_t));
-    bool well = bytes && take_bytes(vtk, array, bytes, width * n);
-    if (well && vtk->swapped) turn(bytes + vtk->head, n, width);
+    unsigned char *bytes = allocate(vtk, type->width * n + vtk->head);
+    bool well = bytes && take_bytes(vtk, array, bytes, type->width * n);
     for (size_t i = 0; well && i < n; i++)
-        to[i] = number_at(array->type, bytes + vtk->head + i * width);
+        to[i] = vtk_number(type, bytes + vtk->head + i * type->width, vtk->swapped);
     free(bytes);
     if (!well && !vtk->error->status)
         refuse(vtk, "the array '%s' is cut off or damaged; its points need %zu numbers of type %s",
@@ -369,7 +321,7 @@ static bool take_field(const struct vtk *vtk, const struct tag *tag, const struc
     char word[WORD];
     int which = 0;
     while (known[which] && strcmp(known[which], array->name)) which++;
-    if (!known[which] || !width_of(array->type)) return true;
+    if (!known[which] || !vtk_type_of(array->type)) return true;
     text_real(value_of(tag, "NumberOfTuples", word), &tuples);
     if (!(tuples >= 1 && tuples * (double)array->components <= FIELD_MOST))
         return refuse(vtk, "the field '%s' has %g x %zu numbers; allowed: 1 to %d", array->name,
