@@ -24,7 +24,7 @@ static char message[256];
         assert_int_equal(refused, 0);                                                              \
     } while (0)
 
-TEST(test_accepts)
+TEST(accepts)
 {
     ACCEPTS(near_absolute(1 + 1e-9, 1, 1e-8));
     ACCEPTS(near_absolute(-1e-17, 0, 1e-16));
@@ -33,7 +33,7 @@ TEST(test_accepts)
     ACCEPTS(near_inside(2, 2, 2));
 }
 
-TEST(test_refuses_far)
+TEST(refuses_far)
 {
     REFUSES(near_absolute(1 + 5e-8, 1, 1e-8));
     REFUSES(near_relative(1e-18, 2e-18, 1e-10));
@@ -42,7 +42,7 @@ TEST(test_refuses_far)
     REFUSES(near_inside(4, 2, 3));
 }
 
-TEST(test_refuses_nan)
+TEST(refuses_nan)
 {
     REFUSES(near_absolute((double)NAN, 1, 1e-8));
     REFUSES(near_absolute(1, (double)NAN, 1e-8));
@@ -54,13 +54,13 @@ TEST(test_refuses_nan)
     REFUSES(near_inside((double)NAN, 0, 1));
 }
 
-TEST(test_refuses_idle_bounds)
+TEST(refuses_idle_bounds)
 {
     REFUSES(near_absolute(1e-18, 1e-18, 1e-10));
     REFUSES(near_relative(1, 1, 1));
 }
 
-TEST(test_message)
+TEST(messages)
 {
     const double rho = 1.5;
     REFUSES(near_absolute(rho, 1, 0.125));

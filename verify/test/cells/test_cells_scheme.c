@@ -13,7 +13,7 @@ static void find_forces(struct simulation *simulation)
 
 /* Where alpha varies, beta is a multiple of it, the scheme's beta/alpha; 2 where the scheme has no
  * alpha. */
-TEST(test_beta)
+TEST(ratio_of_beta)
 {
     static const double numbers[][2] = {{1, 2}, {0, 5}, {2, 4}, {0.5, 1.5}};
     static double F[N], de[N];

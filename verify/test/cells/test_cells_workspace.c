@@ -22,7 +22,7 @@ static struct setup setup_of(int dim, size_t side, const struct scheme *scheme)
 }
 
 /* The search for a root increases its reach by a factor of 1.5 at most 63 times. */
-TEST(test_search_widens_63_times)
+TEST(search_widens_63_times)
 {
     struct error error;
     for (int dim = 2; dim <= 3; dim++) {
@@ -63,7 +63,7 @@ static bool ten_steps(void *context, double time, uint64_t steps)
 
 /* A state that is saved and restored continues to the last bit, inactive particles included, and is
  * sorted at the same steps. */
-TEST(test_restored_state_continues)
+TEST(restored_state_continues)
 {
     static struct byte_buffer kept;
     for (int kind = 0; kind < 3; kind++) { /* inactive particles; predicted widths; all moving */
@@ -119,7 +119,7 @@ static void count_neighbours(void *context, size_t particle, const struct descri
 }
 
 /* The description of inactive particles, in a box whose far end no signal has reached. */
-TEST(test_description_of_inactive_particles)
+TEST(description_of_inactive_particles)
 {
     struct scheme scheme = plain_scheme();
     scheme.gradient = GRADIENT_IA;
@@ -149,7 +149,7 @@ TEST(test_description_of_inactive_particles)
 }
 
 /* Smoothing lengths too wide for the box are bad input at the start. */
-TEST(test_width_too_large_for_the_box)
+TEST(width_too_large_for_the_box)
 {
     struct simulation *simulation = NULL;
     struct error error;
@@ -174,7 +174,7 @@ TEST(test_width_too_large_for_the_box)
 
 /* In an open box one particle is so heavy that all others together have too little mass around
  * it. */
-TEST(test_mass_too_large_for_a_root)
+TEST(mass_too_large_for_a_root)
 {
     for (int dim = 2; dim <= 3; dim++) {
         struct simulation *simulation = NULL;
@@ -196,7 +196,7 @@ TEST(test_mass_too_large_for_a_root)
 
 /* Widths that grow too wide later are a breakdown, which names the particle that reaches
  * furthest. */
-TEST(test_width_grows_too_large)
+TEST(width_grows_too_large)
 {
     for (int predicted = 0; predicted < 2; predicted++) {
         struct scheme scheme = plain_scheme();
@@ -239,7 +239,7 @@ TEST(test_width_grows_too_large)
 }
 
 /* The message about a position that is not a number names the particle and the value. */
-TEST(test_position_that_is_not_a_number)
+TEST(position_that_is_not_a_number)
 {
     for (int dim = 2; dim <= 3; dim++)
         for (int a = 0; a < dim; a++)
@@ -281,7 +281,7 @@ static void expect_bytes(int dim, const struct scheme *scheme, int arrays, int r
 
 /* Arrays: radius, two sums; two sums of U; condition, matrix, slope, switch, share, factor.
  * Records: position, v, 1/h, V, P, c. Comments give the fields added and the sizes in 2D and 3D. */
-TEST(test_bytes_per_particle)
+TEST(bytes_per_particle)
 {
     for (int dim = 2; dim <= 3; dim++) {
         const bool plane = dim == 2;

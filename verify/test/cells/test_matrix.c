@@ -98,7 +98,7 @@ static void with_singular_values(int dim, double s, double t, double *a)
 
 /* Random matrices, ordinary and nearly singular; then with a unit of length along each axis that
  * differs by powers of 2, which must not matter to the inverse of a moment matrix. */
-TEST(test_inverse)
+TEST(inverses_of_matrices)
 {
     double worst[4] = {0}, in_units[4] = {0};
     for (int trial = 0; trial < 6000; trial++) {
@@ -135,7 +135,7 @@ TEST(test_inverse)
 }
 
 /* The condition number is as accurate for columns of very different size. */
-TEST(test_condition)
+TEST(condition_numbers)
 {
     double worst[2] = {0};
     for (int trial = 0; trial < 3000; trial++) {
@@ -168,7 +168,7 @@ TEST(test_condition)
 
 /* A NaN or infinity in any element, an overflow, or a singular matrix: no inverse and no condition
  * number; the caller's array is not written. */
-TEST(test_no_inverse)
+TEST(no_inverse)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (int k = 0; k < dim * dim; k++)
@@ -251,7 +251,7 @@ static double norm_of(int n, const double *a)
 
 /* A matrix is singular from a scaled condition number of 1/(16 epsilon) in Frobenius' norm on; that
  * of (1 1; 1 1 + e) is a little less than 4/e. */
-TEST(test_limit_of_singular)
+TEST(limit_of_singular)
 {
     for (int e = 60; e < 69; e++) {
         double inverse[4];
@@ -276,7 +276,7 @@ TEST(test_limit_of_singular)
 
 /* The last bits show which method is used: in 1D elimination gives 1/a, correctly rounded, and
  * cofactors give 1/(a/|a| |a|); for diag(1, d) elimination gives 1 and 1/d, cofactors d (1/d). */
-TEST(test_choice_of_method)
+TEST(choice_of_method)
 {
     int plain[2] = {0};
     for (int trial = 0; trial < 4000; trial++) {
@@ -316,7 +316,7 @@ TEST(test_choice_of_method)
 
 /* Nothing behind the last element of the matrix is read, and nothing behind the inverse is
  * written. */
-TEST(test_no_access_beyond_the_arrays)
+TEST(no_access_beyond_the_arrays)
 {
     const size_t page = (size_t)sysconf(_SC_PAGESIZE);
     char *pages = mmap(NULL, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -335,7 +335,7 @@ TEST(test_no_access_beyond_the_arrays)
 }
 
 /* Equal pivots give the same bits: the first of them is taken. */
-TEST(test_pivots)
+TEST(choice_of_pivots)
 {
     static const double elements[] = {1, -1, 0.999, -0.999, 0.3, 0};
     int met = 0;
@@ -406,7 +406,7 @@ static void draw_moments(int dim, double *a)
 
 /* Batches of moment matrices give the inverses, conditions and gradients that matrix_invert and
  * matrix_condition give one by one, and nothing where these give no usable inverse. */
-TEST(test_batches)
+TEST(batches)
 {
     const struct cells_method methods[] = {{.box.dim = 2, .worst_condition = 1e4},
                                            {.box.dim = 3, .worst_condition = 1e4}};
@@ -458,7 +458,7 @@ TEST(test_batches)
 }
 
 /* Compares w(q) and V w(q) of specialised and unspecialised kernel loops with the kernel. */
-TEST(test_weights)
+TEST(weights_of_neighbours)
 {
     for (int trial = 0; trial < 40; trial++) {
         const int dim = 2 + trial % 2, count = GRID_LANES * (1 + trial % 3);

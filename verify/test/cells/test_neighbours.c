@@ -43,7 +43,7 @@ static void refused(const struct points *points, const char *message)
     assert_string_equal(error.message, message);
 }
 
-TEST(test_refused)
+TEST(refusals)
 {
     struct points points;
     cloud_of(&points, 3, 9, false);

@@ -123,7 +123,7 @@ static size_t same_in(int length, int volume, const int *field, const struct ope
 }
 
 /* Units of length, volume and fields, extreme alone or together, change no bit. */
-TEST(test_units)
+TEST(other_units)
 {
     static const struct {
         int length, volume, field[FIELDS];
@@ -150,7 +150,7 @@ TEST(test_units)
 }
 
 /* The smallest normal number counts as normal. */
-TEST(test_smallest_normal_number)
+TEST(smallest_normal_number)
 {
     size_t found = 0;
     for (int trial = 0; trial < 40; trial++) {
@@ -180,7 +180,7 @@ static void refused(const char *message)
     assert_int_equal(apply(&one, form_at(1), NULL), STATUS_BAD_INPUT);
 }
 
-TEST(test_refused)
+TEST(refusals)
 {
     fill(&one, 2, 20, true);
     one.h[0] = -0.5;

@@ -21,7 +21,7 @@ static void expect_layout(const struct lanes_layout *layout, const int values[RE
 }
 
 /* Records hold the fields that their passes read, and no others. */
-TEST(test_records)
+TEST(records_of_pairs)
 {
     struct kernel kernel;
     assert_int_equal(kernel_select(&kernel, "cubic_spline", 5, NULL), STATUS_OK);

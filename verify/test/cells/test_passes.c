@@ -9,7 +9,7 @@
 enum { N = 60 };
 
 /* The largest condition number allowed is itself allowed. */
-TEST(test_largest_condition_number)
+TEST(largest_condition_number)
 {
     static double x[2][N], V[N], h_inverse[N], radius[N], condition[N], matrix[CELLS_SYMMETRIC][N];
     struct kernel kernel;

@@ -120,7 +120,7 @@ static int check(const struct summation *sum)
 
 static const double tolerances[] = {1e-12, 0.03, 0.4};
 
-TEST(test_random_clouds)
+TEST(random_clouds)
 {
     int grown = 0;
     for (int dim = 1; dim <= 3; dim++)
@@ -134,7 +134,7 @@ TEST(test_random_clouds)
 }
 
 /* A cloud stretched along each axis in turn, so that this axis alone sets the distances. */
-TEST(test_stretched_clouds)
+TEST(stretched_clouds)
 {
     for (int dim = 2; dim <= 3; dim++)
         for (int along = 0; along < dim; along++)
@@ -148,7 +148,7 @@ TEST(test_stretched_clouds)
 
 /* Eight or more points at one position or close together, and the others far away; all at one
  * position of a periodic box. */
-TEST(test_coincident_points)
+TEST(coincident_points)
 {
     int most = 0;
     for (int dim = 1; dim <= 3; dim++)
@@ -178,7 +178,7 @@ static void refused(const struct summation *sum, enum status status, const char 
     assert_int_equal(summation_solve(sum, h, rho, NULL), status);
 }
 
-TEST(test_refused)
+TEST(refusals)
 {
     char text[200];
     for (int dim = 1; dim <= 3; dim++) {
@@ -239,7 +239,7 @@ TEST(test_refused)
 }
 
 /* Masses near the smallest normal number are summed like others. */
-TEST(test_tiny_masses)
+TEST(tiny_masses)
 {
     for (int dim = 1; dim <= 3; dim++) {
         struct summation sum = cloud_of(dim, 40, false, 1.8, 1e-12);
@@ -258,7 +258,7 @@ TEST(test_tiny_masses)
 }
 
 /* A cloud without points is solved. */
-TEST(test_cloud_without_points)
+TEST(cloud_without_points)
 {
     for (int periodic = 0; periodic < 2; periodic++) {
         const struct summation sum = cloud_of(2, 0, periodic, 2, 1e-10);
@@ -269,7 +269,7 @@ TEST(test_cloud_without_points)
 }
 
 /* In extreme units widths and densities are the same as long as they are normal numbers. */
-TEST(test_units)
+TEST(other_units)
 {
     static const int lengths[] = {-600, -129, 0, 129, 600}, weights[] = {-900, 0, 900};
     static double plain_h[N], plain_rho[N], plain_x[3][N], plain_m[N];

@@ -6,7 +6,7 @@
 #include "shapes.h"
 #include "cells/units.h"
 
-TEST(test_ordinary_numbers_are_not_scaled)
+TEST(ordinary_numbers_are_not_scaled)
 {
     static const struct {
         double value;
@@ -35,7 +35,7 @@ TEST(test_ordinary_numbers_are_not_scaled)
     assert_true(units_ordinary(0, (double[]){0x1p200}));
 }
 
-TEST(test_exponents)
+TEST(exponents)
 {
     for (int e = -1073; e <= 1024; e++) {
         const double largest = ldexp(e < -1021 ? 0.5 : 0.7, e);
@@ -50,7 +50,7 @@ TEST(test_exponents)
     assert_int_equal(units_exponent(1, (double[]){1}), 1);
 }
 
-TEST(test_copies)
+TEST(copies_of_units)
 {
     const double x[] = {3, -0.1, 0x1p900, 0}, y[] = {5, 7, -0x1p901, 1};
     struct points copy, points = {2, 4, {x, y}, true, {-2, 3}, {4, 5}};
@@ -73,7 +73,7 @@ TEST(test_copies)
 }
 
 /* A plug-in with a kernel's function or derivative alone has no specialised loops. */
-TEST(test_loops_of_plugins)
+TEST(loops_of_plugins)
 {
     for (size_t k = 0; k < kernel_family.n; k++)
         for (int dim = 1; dim <= 3; dim++) {

@@ -212,7 +212,7 @@ static long refused_in_turn(work *doing, int dim, size_t n)
     }
 }
 
-TEST(test_every_allocation_fails_once)
+TEST(every_allocation_fails_once)
 {
     static const struct {
         work *doing;
@@ -239,7 +239,7 @@ TEST(test_every_allocation_fails_once)
 }
 
 /* For any number of points, from zero: no access goes beyond an array. */
-TEST(test_no_access_beyond_arrays)
+TEST(no_access_beyond_arrays)
 {
     static work *const all[] = {find, differentiate, differentiate_all, weigh, list, arrange};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++)
@@ -297,7 +297,7 @@ static long reserve(const struct grid *grid, struct grid_reader *reader)
 
 /* Entries up to the capacity need no call for memory; one more needs a call for each array that is
  * full, and leaves spare capacity. */
-TEST(test_capacity_of_grids)
+TEST(capacity_of_grids)
 {
     for (int dim = 2; dim <= 3; dim++) {
         const struct grid_box box = open_box(dim);
@@ -343,7 +343,7 @@ static long arrange_together(struct cells *cells, size_t n)
     return watched_calls - before;
 }
 
-TEST(test_capacity_of_cells)
+TEST(capacity_of_cells)
 {
     static const struct {
         size_t n;
@@ -377,7 +377,7 @@ struct shapes __wrap_shapes_of(const struct kernel *of, int dim, bool specialise
     return __real_shapes_of(of, dim, specialised);
 }
 
-TEST(test_unspecialised_loops_on_request)
+TEST(unspecialised_loops_on_request)
 {
     const struct cloud cloud = {points_of(2, 30, false), volume, width};
     make(30, 0.45, 1);

@@ -41,7 +41,7 @@ static int gradient(const char *arguments, json_t **document)
 
 /* A missing gradient is null, an infinite condition number is "inf", and both leave exit status
  * 0. */
-TEST(test_points_without_gradient)
+TEST(points_without_gradient)
 {
     static const char text[] = "x,y,volume,f\n0,0,1,3\n0.5,0.5,1,2\n1,1,1,1\n9,9,1,0\n";
     json_t *document;
@@ -68,7 +68,7 @@ TEST(test_points_without_gradient)
     json_decref(document);
 }
 
-TEST(test_bad_files)
+TEST(bad_files)
 {
     static const struct {
         const char *text, *place; /* what the message must contain */

@@ -82,7 +82,7 @@ static bool waste(void *context, double time, uint64_t steps)
     return true;
 }
 
-TEST(test_counts)
+TEST(allocations_are_counted)
 {
     if (calls_in("sod", "n=200", 1, waste) < 2) {
         print_message("this linker does not wrap: allocations cannot be counted here\n");
@@ -90,7 +90,7 @@ TEST(test_counts)
     }
 }
 
-TEST(test_no_calls)
+TEST(no_calls)
 {
     static const char *const schemes[] = {
         "",
@@ -116,7 +116,7 @@ TEST(test_no_calls)
 }
 
 /* Widths of half the box, whose neighbours are images of images: memory is extended rarely. */
-TEST(test_memory_is_extended_rarely)
+TEST(memory_is_extended_rarely)
 {
     const int found = calls_in("two_rarefactions", "n=100 kernel=cubic_spline eta=40", 1, NULL);
     assert_in_range(found, 0, 8);
@@ -124,7 +124,7 @@ TEST(test_memory_is_extended_rarely)
 
 /* In 2D and 3D lists of neighbours may grow by half of their first length without a call for
  * memory. */
-TEST(test_no_calls_in_2d_and_3d)
+TEST(no_calls_in_2d_and_3d)
 {
     static const char *const flows[][2] = {
         {"gresho", "n=16^2 t_end=0.1"},

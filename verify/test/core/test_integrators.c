@@ -16,7 +16,7 @@ static bool is_used(const double *array, ptrdiff_t n)
     return false;
 }
 
-TEST(test_start_of_a_step)
+TEST(start_of_a_step)
 {
     size_t keep = 0;
     for (size_t k = 0; k < integrator_family.n; k++) {
@@ -96,7 +96,7 @@ static size_t list(const struct particles *a, unsigned uses, double *arrays[ARRA
 }
 
 /* A particle that loses all internal energy in a step is named with its remaining energy. */
-TEST(test_particle_that_loses_its_energy)
+TEST(particle_that_loses_its_energy)
 {
     static const char *const energies[] = {
         "integrator=predicted_midpoint viscosity=none energy=internal",
@@ -123,7 +123,7 @@ TEST(test_particle_that_loses_its_energy)
 
 /* The estimate counts the arrays that are written, those of the snapshot and three more; no
  * others. */
-TEST(test_estimate_counts_arrays)
+TEST(estimate_counts_arrays)
 {
     static const char *const schemes[] = {
         "viscosity=constant gradient=standard formulation=vanilla_ice",

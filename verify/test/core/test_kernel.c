@@ -9,7 +9,7 @@
 
 /* Constants of the sinc family to 20 digits: C_d = 1/(S_d int_0^1 q^(d-1) w dq), computed with
  * 30-digit quadrature. */
-TEST(test_sinc_constants)
+TEST(sinc_constants)
 {
     static const struct {
         int n;
@@ -44,7 +44,7 @@ TEST(test_sinc_constants)
 }
 
 /* s^n and its derivative at small and large q against the series and the expansion at the edge. */
-TEST(test_sinc_limits)
+TEST(sinc_limits)
 {
     struct kernel kernel;
     assert_int_equal(kernel_select(&kernel, "sinc", 5, NULL), STATUS_OK);
@@ -65,7 +65,7 @@ TEST(test_sinc_limits)
     assert_true(kernel.w(&kernel, 7, 3) == 0 && kernel.dw(&kernel, INFINITY, 3) == 0);
 }
 
-TEST(test_select)
+TEST(selected_kernels)
 {
     for (size_t i = 0; i < kernel_family.n; i++) {
         struct kernel kernel;
@@ -103,7 +103,7 @@ enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* The descriptor's knots and class are those of the kernel's kind; lattice sums of a spline are
  * exact from n/2 on, those of other kernels never. */
-TEST(test_descriptors)
+TEST(descriptors_of_kernels)
 {
     assert_int_equal(kernel_family.n, KINDS);
     for (int k = 0; k < KINDS; k++) {
@@ -129,7 +129,7 @@ TEST(test_descriptors)
 }
 
 /* Each kernel has the specialisations of its own shape; no other pair of functions has any. */
-TEST(test_specialisations)
+TEST(specialised_kernels)
 {
     for (int k = 0; k < KINDS; k++) {
         struct kernel kernel, other;
@@ -163,7 +163,7 @@ static double plugin_dh(double r, double h, int dim)
 /* The largest number of plug-ins is found by name after the built-in kernels, unchanged; their
  * constants are used even if they are 0. This test must be the last one, because plug-ins cannot be
  * removed. */
-TEST(test_plugins)
+TEST(plugins_in_the_family)
 {
     static struct kernel plugins[KERNEL_PLUGINS_MAX + 1];
     static char names[KERNEL_PLUGINS_MAX + 1][24];

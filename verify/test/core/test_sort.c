@@ -42,7 +42,7 @@ static size_t most(size_t n)
     return 2 * n * ((size_t)ceil(log2((double)n)) + 1);
 }
 
-TEST(test_any_order)
+TEST(any_order)
 {
     unsigned seed = 7;
     for (size_t n = 2; n <= N; n *= 2) {
@@ -60,7 +60,7 @@ TEST(test_any_order)
         }
 }
 
-TEST(test_nearly_in_order)
+TEST(nearly_in_order)
 {
     for (size_t i = 0; i < N; i++) x[i] = (double)i;
     assert_true(sorted(N) <= N);
@@ -70,7 +70,7 @@ TEST(test_nearly_in_order)
 }
 
 /* A rotation: particles have left the box at one end. There are two sorted stretches. */
-TEST(test_across_the_ends)
+TEST(across_the_ends)
 {
     for (size_t i = 0; i < N; i++) x[i] = (double)((i + 77) % N);
     assert_true(sorted(N) <= 4 * (size_t)N);
@@ -78,7 +78,7 @@ TEST(test_across_the_ends)
 
 /* The same particles in another order give the same simulation, except for the round-off of where
  * the box begins. */
-TEST(test_shuffled_particles)
+TEST(shuffled_particles)
 {
     static struct hydro_state plain, shuffled;
     const struct scheme scheme = hydro_scheme();

@@ -37,7 +37,7 @@ static const struct known list[] = {
     {"sinc", 1, 4, 0.053806, {14.5, 15.5}, -7e-5, {-1, -1}},
 };
 
-TEST(test_known_figures)
+TEST(known_figures)
 {
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
         const struct known *known = &list[i];

@@ -55,7 +55,7 @@ static int rejected(const char *name, int dim, const char *by)
     return by ? by_that : failed;
 }
 
-TEST(test_right)
+TEST(right_kernels)
 {
     static const char *const names[] = {"wendland_c8", "gaussian", "super_gaussian",
                                         "table",       "table_12", "faulty_NONE"};
@@ -67,7 +67,7 @@ TEST(test_right)
                 assert_int_equal(rejected(names[i], dim, NULL), 0);
 }
 
-TEST(test_derived)
+TEST(derived)
 {
     struct user_kernel user;
     assert_int_equal(user_kernel_load(&user, path_of("wendland_c8"), 0, NULL, NULL), STATUS_OK);
@@ -83,7 +83,7 @@ TEST(test_derived)
     user_kernel_unload(&user);
 }
 
-TEST(test_subtle)
+TEST(subtle_faults)
 {
     static const struct {
         const char *name;
@@ -121,7 +121,7 @@ static void refused(const char *path, const char *why)
     if (!strstr(error.message, why)) fail_msg("'%s' lacks '%s'", error.message, why);
 }
 
-TEST(test_unusable)
+TEST(unusable_modules)
 {
     refused(path_of("faulty_NOT_A_NUMBER"), "finite");
     refused(path_of("faulty_CONSTANT_NEGATIVE"), "above 0");
@@ -137,7 +137,7 @@ TEST(test_unusable)
 }
 
 /* The same without a process in between, word by word. */
-TEST(test_messages)
+TEST(messages)
 {
     static const struct {
         const char *fault, *says;
@@ -174,7 +174,7 @@ static enum status no_certificate(const struct kernel *kernel, int dim, const st
     return STATUS_OK;
 }
 
-TEST(test_paths)
+TEST(paths_of_modules)
 {
     static const char *const paths[] = {"./a", "a.so", "a/", "a.so.so", "/"},
                              *const names[] = {"a", ".so", "aso", "a.s", "a.so.", "b.sox"},
@@ -239,7 +239,7 @@ static int status_of(const char *arguments)
     return WEXITSTATUS(system(command));
 }
 
-TEST(test_program)
+TEST(whole_program)
 {
     assert_int_equal(status_of("kernel cubic_spline --dim 3"), 0);
     assert_int_equal(status_of("kernel '%s/table.so' --dim 1 --json -"), 0);

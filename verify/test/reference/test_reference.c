@@ -16,7 +16,7 @@
 #include "sedov.h"
 #include "vortex.h"
 
-TEST(test_vortices)
+TEST(all_vortices)
 {
     const struct {
         double R, v, P;
@@ -47,7 +47,7 @@ TEST(test_vortices)
     }
 }
 
-TEST(test_disc)
+TEST(discs)
 {
     /* spin 2 and P = 3/2: a^2 = 1 + 7 t^2 */
     assert_true(disc_radius(2, 1.5, 0) == 1);
@@ -64,7 +64,7 @@ TEST(test_disc)
     assert_true(disc_sample(2, 1.5, nextafter(1, 2), 0).rho == 0);
 }
 
-TEST(test_noh)
+TEST(noh_in_all_dimensions)
 {
     for (int d = 1; d <= 3; d++) {
         struct noh_state s = noh_sample(3, d, nextafter(0.25, 0), 0.25); /* gamma = 3: R = t */
@@ -86,7 +86,7 @@ TEST(test_noh)
 
 /* ---- Sedov's blast ---- */
 
-TEST(test_sedov_limits)
+TEST(sedov_limits)
 {
     static const double nan = (double)NAN;
     static const struct {
@@ -141,7 +141,7 @@ static void other_handler(const char *reason, const char *file, int line, int nu
 }
 
 /* The integrand may depend on the position. GSL's error handler is restored. */
-TEST(test_sedov_integral)
+TEST(integral_of_sedov)
 {
     struct sedov s;
     gsl_error_handler_t *const before = gsl_set_error_handler(other_handler);
@@ -154,7 +154,7 @@ TEST(test_sedov_integral)
 
 /* At the shock the jump of a strong shock; ahead of it the undisturbed gas; in the middle no
  * density and a pressure that is constant below 1e-12 of the radius. */
-TEST(test_sedov_ends)
+TEST(sedov_ends)
 {
     for (int d = 1; d <= 3; d++) {
         struct sedov s;
@@ -187,7 +187,7 @@ TEST(test_sedov_ends)
 
 /* rho/rho_0, v/D and P/(rho_0 D^2) at r/R: the equations of motion, integrated inwards from the
  * shock by Taylor's series in multiple precision. */
-TEST(test_sedov_inside)
+TEST(sedov_inside)
 {
     static const struct {
         double gamma;
@@ -220,7 +220,7 @@ TEST(test_sedov_inside)
 
 /* The search ends at every position of every blast, and finds no gas denser than that behind the
  * shock. */
-TEST(test_sedov_of_any_blast)
+TEST(sedov_of_any_blast)
 {
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     for (int i = 0; i < 3000; i++) {
@@ -242,7 +242,7 @@ TEST(test_sedov_of_any_blast)
 
 /* ---- layers ---- */
 
-TEST(test_layers_of_mcnally)
+TEST(layers_of_mcnally)
 {
     for (int i = 0; i <= 103; i++) { /* exactly where layers join, and right behind */
         const double y = i <= 100 ? i / 100. : 0.25 * (i - 100) * (1 + 9e-7), x = 0.013 * i;
@@ -268,7 +268,7 @@ TEST(test_layers_of_mcnally)
     near_relative(kelvin_helmholtz_amplitude(N, x, y, v, w), 2 * sqrt(a * a + b * b) / c, 1e-13);
 }
 
-TEST(test_table_of_mcnally)
+TEST(table_of_mcnally)
 {
     static const struct {
         double t, M;
@@ -292,7 +292,7 @@ TEST(test_table_of_mcnally)
 static const struct layer shear = {1.4, 3, 0.07, 1.3, 0.2, 0.4, 1.7, 0, true, 0, false},
                           heavy = {1.4, 3, 0.07, 1.3, 0.2, 0.4, 1.7, 0.3, false, 0.6, false};
 
-TEST(test_layer_faults)
+TEST(layer_faults)
 {
     static const char four[] = "gamma > 1, k > 0, width > 0 and P > 0 are needed",
                       density[] = "density has to be positive everywhere",
@@ -328,7 +328,7 @@ TEST(test_layer_faults)
     }
 }
 
-TEST(test_layer_bases)
+TEST(layer_bases)
 {
     for (int i = -50; i <= 50; i++) {
         const double y = 0.012 * i;

@@ -34,7 +34,7 @@ static bool in_order(double a, double b, double c)
 }
 
 /* Any input is refused or has a solution with valid values, whose samples are valid. */
-TEST(test_any_input)
+TEST(any_input)
 {
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     /* Where long double is no wider than double (on some machines, and under valgrind), 600 decades
@@ -83,7 +83,7 @@ static struct riemann_solution solved(double gamma, struct riemann_state left,
     return s;
 }
 
-TEST(test_equal_states)
+TEST(equal_states)
 {
     const struct riemann_state gas = {0.7, -1.3, 2.1};
     const struct riemann_solution s = solved(1.4, gas, gas);
@@ -99,7 +99,7 @@ TEST(test_equal_states)
 
 /* The same problem with a unit of velocity of 2^e: p* scales with 2^(2 e), also below the least
  * normal number, where the solution is marked as underflown. */
-TEST(test_underflow)
+TEST(states_near_underflow)
 {
     static const int exponents[] = {-100, -500, -509, -511, 300};
     const struct riemann_state left = {1, -1, 1}, right = {0.7, 1.3, 1.1};
@@ -120,7 +120,7 @@ TEST(test_underflow)
 }
 
 /* A density that underflows on either side is marked, too: thin gas that moves away from a wall. */
-TEST(test_underflow_of_one_side)
+TEST(underflow_of_one_side)
 {
     for (int side = -1; side <= 1; side += 2) {
         const struct riemann_state thin = {4e-308, side * 1.18e154, 1}, wall = {1, 0, 1e-9};
@@ -133,7 +133,7 @@ TEST(test_underflow_of_one_side)
     }
 }
 
-TEST(test_cold_gas)
+TEST(cold_gas)
 {
     /* Noh's problem: P = (gamma+1)/2 rho v^2, rho* = (gamma+1)/(gamma-1), shocks at (gamma-1)/2 */
     const struct riemann_state in = {1, 1, 0}, out = {1, -1, 0};
@@ -156,7 +156,7 @@ TEST(test_cold_gas)
 
 /* Hot gas, at rest or moving, beside cold gas: the rarefaction and the strong shock have one
  * pressure and one velocity, found by bisection. */
-TEST(test_hot_gas_beside_cold_gas)
+TEST(hot_gas_beside_cold_gas)
 {
     for (int k = 0; k < 8; k++) {
         const double gamma = 1.2 + 0.2 * k, rho = k % 2 ? 0.3 : 5, v = 0.5 * (k % 3) - 0.5;
@@ -183,7 +183,7 @@ TEST(test_hot_gas_beside_cold_gas)
 /* Hot gas that almost separates from very heavy cold gas at rest: both move with v = sqrt(2
  * p/((gamma + 1) rho)), the speed of the heavy gas; along the fan of the light gas it is less
  * precise. */
-TEST(test_heavy_gas_beside_light_gas)
+TEST(heavy_gas_beside_light_gas)
 {
     const double gamma = 1.4, c = sqrt(1.4), apart = 2 * c / (gamma - 1);
     for (int k = 0; k <= 18; k++)
@@ -203,7 +203,7 @@ TEST(test_heavy_gas_beside_light_gas)
 }
 
 /* Cold gases that collide: the bits are the same in units of velocity of 2^e. */
-TEST(test_cold_in_other_units)
+TEST(cold_in_other_units)
 {
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     for (int i = 0; i < 200; i++) {
@@ -221,7 +221,7 @@ TEST(test_cold_in_other_units)
     gsl_rng_free(random);
 }
 
-TEST(test_sample_regions)
+TEST(sample_regions)
 {
     const struct riemann_state left = {1, 0, 1}, right = {0.125, 0, 0.1};
     const struct riemann_solution s = solved(1.4, left, right);
@@ -252,7 +252,7 @@ TEST(test_sample_regions)
     near_relative(sqrt(1.4 * at.P / at.rho), at.v, 1e-14);
 }
 
-TEST(test_vacuum_samples)
+TEST(vacuum_samples)
 {
     const struct riemann_state gas = {1, 0, 1}, none = {0, 7, 0};
     struct riemann_solution s = solved(1.4, gas, none);
@@ -283,7 +283,7 @@ TEST(test_vacuum_samples)
     assert_true(riemann_sample(&s, 6, 0, 1).v == 5);
 }
 
-TEST(test_bad_input)
+TEST(bad_input)
 {
     static const double nan = (double)NAN, inf = HUGE_VAL;
     static const char finite[] = "density, velocity and pressure must be finite",
@@ -328,7 +328,7 @@ TEST(test_bad_input)
 /* Two gases that collide gently: a shock of strength d = p* - P on both sides, by Hugoniot a root
  * of d^2 - (gamma + 1)/2 rho w^2 d - gamma P rho w^2. Then gases at the speed at which vacuum
  * forms. */
-TEST(test_weak_shocks_and_onset_of_vacuum)
+TEST(weak_shocks_and_onset_of_vacuum)
 {
     for (int k = -14; k <= 0; k++)
         for (int digit = 1; digit < 10; digit += 2) {

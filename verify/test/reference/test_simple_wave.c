@@ -18,7 +18,7 @@ static double sound(const struct simple_wave *w)
     return sqrt(w->gamma * w->P0 / w->rho0);
 }
 
-TEST(test_breaking)
+TEST(time_of_breaking)
 {
     /* gamma = 3: v + c = v0 + c0 + 2 c0 A sin, so t = L/(4 pi c0 A) */
     const struct simple_wave linear = {3, 1, 0, 1. / 3, 0.4, 2};
@@ -36,7 +36,7 @@ TEST(test_breaking)
 
 /* The breaking time at the steepest position: 1/t is the largest value of (gamma + 1)/2 c0 k A (1 +
  * A s)^((gamma - 3)/2) sqrt(1 - s^2). */
-TEST(test_breaking_times)
+TEST(breaking_times)
 {
     static const double gammas[] = {1.1, 1.4, 2.2, 3, 5}, amplitudes[] = {1e-3, 0.25, -0.6, 0.95};
     for (int k = 0; k < 20; k++) {
@@ -58,7 +58,7 @@ TEST(test_breaking_times)
     }
 }
 
-TEST(test_faults)
+TEST(faults)
 {
     static const double nan = (double)NAN, inf = HUGE_VAL;
     static const char gamma[] = "gamma must be finite and above 1",
@@ -93,7 +93,7 @@ TEST(test_faults)
 }
 
 /* Values beyond the range of double, and times before the start or infinite, give NaN. */
-TEST(test_beyond_double)
+TEST(beyond_double)
 {
     const struct simple_wave fast = {1.4, 1, 1e308, 1, 1e-3, 1};
     assert_true(isnan(simple_wave_sample(&fast, 0.3, 5).rho)); /* moved infinitely far */
@@ -112,7 +112,7 @@ static double torn(double x, void *parameters)
 
 /* Every search for a starting point ends: GSL's stops at NaN, and any valid wave has values between
  * its extremes at any time until it breaks, or NaN beyond the range of double. */
-TEST(test_every_search_ends)
+TEST(every_search_ends)
 {
     gsl_function f = {torn, NULL};
     gsl_error_handler_t *const handler = gsl_set_error_handler_off();

@@ -6,7 +6,7 @@
 #include "run_part.h"
 #include "shells.h"
 
-TEST(test_window)
+TEST(particles_in_windows)
 {
     const double lo[] = {-1, -2, -3}, hi[] = {1, 2, 3};
     for (int dim = 1; dim <= 3; dim++) {
@@ -46,7 +46,7 @@ TEST(test_window)
     }
 }
 
-TEST(test_shells)
+TEST(means_of_shells)
 {
     const struct prepared p = {.domain = {2, {-1, -2}, {1, 2}},
                                .window = {.dim = 2, .lo = {-1, -1}, .hi = {1, 1}}};

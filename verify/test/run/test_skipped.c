@@ -18,7 +18,7 @@ static struct bench_shares shares_of(const char *name, const char *words)
 }
 
 /* Of the particles that may be inactive at least four fifths are inactive, and no others are. */
-TEST(test_shares_of_inactive_particles)
+TEST(shares_of_inactive_particles)
 {
     static const struct {
         const char *name, *keys;
@@ -42,7 +42,7 @@ TEST(test_shares_of_inactive_particles)
 
 /* The bound itself: half of the possible share is too little, unless layers of few particles
  * explain it; a hundredth of all updates does not count. */
-TEST(test_bound_of_skipped_updates)
+TEST(bound_of_skipped_updates)
 {
     static const struct {
         double skipped, allowed, layers, spacing;
@@ -71,7 +71,7 @@ TEST(test_bound_of_skipped_updates)
 }
 
 /* The map has no empty stripes: 20 of 20^2 and 12 of 12^3 particles lie along x. */
-TEST(test_columns)
+TEST(skipped_columns)
 {
     static const struct {
         const char *name, *keys;
@@ -89,7 +89,7 @@ TEST(test_columns)
 
 /* Without an exact front, gas that hardly changes could be inactive: in a box at rest all of it, in
  * a converging flow none. The map then shows every particle inactive, or none. */
-TEST(test_gas_without_a_front)
+TEST(gas_without_a_front)
 {
     static const struct {
         const char *name, *keys;

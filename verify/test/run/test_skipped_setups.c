@@ -146,7 +146,7 @@ static void same_figures(int dim, enum shifting shifting, int draws)
     }
 }
 
-TEST(test_same_figures)
+TEST(figures_are_the_same)
 {
     draw_state = 2385;
     same_figures(1, SHIFTING_NONE, 24);
@@ -154,7 +154,7 @@ TEST(test_same_figures)
     same_figures(3, SHIFTING_NONE, 4);
 }
 
-TEST(test_same_figures_with_shifting)
+TEST(same_figures_with_shifting)
 {
     same_figures(2, SHIFTING_FLUXES, 6);
     same_figures(2, SHIFTING_CLOSED, 6);
@@ -171,7 +171,7 @@ static struct run_result tube(const char *keys, const char *skip)
 
 /* The first three tubes have a pair whose distance lies between two values of h in one step; the
  * others have other schemes. */
-TEST(test_tubes)
+TEST(skipped_in_tubes)
 {
     static const char *const tubes[] = {
         "n=169 t_end=5.022 left=6.768,7.44554e-08,0.03463 right=92.6539,7.44554e-08,0.0590788",
@@ -195,7 +195,7 @@ TEST(test_tubes)
 
 /* With a tolerance of 1e-2 inactive particles have more accurate h than others: energy is
  * conserved. */
-TEST(test_loose_widths)
+TEST(loose_widths)
 {
     struct run_result result =
         tube("n=155 t_end=0.4 left=3.346,0.00143605,2.923 right=2.91504,0.00143605,0.108531 "
@@ -245,7 +245,7 @@ static struct setup draw_surfaces(bool first)
 }
 
 /* Free surfaces change forces as far away as densities, matrices and neighbours' matrices reach. */
-TEST(test_free_surfaces)
+TEST(free_surfaces)
 {
     const int draws = 12 * (test_word(1) ? atoi(test_word(1)) : 1);
     uint64_t skipped = 0;
@@ -262,7 +262,7 @@ TEST(test_free_surfaces)
 
 /* Cold disordered gas beside a blast: forces on it are too small to matter during the blast, but it
  * shifts. */
-TEST(test_cold_gas_shifts)
+TEST(cold_gas_shifts)
 {
     for (enum shifting shifting = SHIFTING_NONE; shifting <= SHIFTING_CLOSED; shifting++) {
         struct setup setup = draw_setup(2, BLAST, 1e11, false);
@@ -278,7 +278,7 @@ TEST(test_cold_gas_shifts)
 }
 
 /* Gas in uniform motion is inactive like gas at rest. */
-TEST(test_boosted)
+TEST(skipped_in_boosted_setups)
 {
     for (int dim = 1; dim <= 3; dim++) {
         struct setup setup = draw_setup(dim, TUBE, 10, true);
@@ -295,7 +295,7 @@ TEST(test_boosted)
 
 /* Two halves of cold gas move apart: no force acts, but the density changes between them, so that
  * gas is active there, with the same results. */
-TEST(test_cold_streams)
+TEST(cold_streams)
 {
     struct setup setup = draw_setup(1, TUBE, 1, true);
     setup.scheme = keyed_scheme(1, "");
@@ -330,7 +330,7 @@ static void compare_pairs(struct setup *setup, bool slope)
     near_relative(skipping.sums.energy, plain.sums.energy, 1e-14);
 }
 
-TEST(test_pairs)
+TEST(skipped_pairs)
 {
     static const struct {
         int dim;
@@ -362,7 +362,7 @@ TEST(test_pairs)
 
 /* Gas in which some neighbours' pressures differ enough for the conductivity of shocks, and most do
  * not: particles without such neighbours are skipped, unless alpha_u conducts as well. */
-TEST(test_conduction)
+TEST(conduction)
 {
     for (int k = 0; k < 6; k++) {
         const int dim = 2 + k % 2;

@@ -7,7 +7,7 @@
 #include "norm.h"
 #include "worst.h"
 
-TEST(test_norms_of_nothing_and_nan)
+TEST(norms_of_nothing_and_nan)
 {
     const double x[] = {0, 0.25}, volume[] = {1, 1}, exact[] = {0, 0}, window[] = {-1, 1};
     struct norms norms = norm_errors(2, x, window, volume, (double[]){NAN, 0.5}, exact);
@@ -23,7 +23,7 @@ static double step(const void *at, double x)
     return x < *(const double *)at ? 1 : 3;
 }
 
-TEST(test_bins)
+TEST(means_of_bins)
 {
     const double window[] = {-0.5, 0.5}, at = 0.0371;
     double means[NORM_BINS + 1] = {[NORM_BINS] = 7};
@@ -47,7 +47,7 @@ TEST(test_bins)
     assert_true(isnan(norm_binned_l1(2, lost + 2, window, volume, value, NORM_BINS, means)));
 }
 
-TEST(test_worst)
+TEST(worst_particle)
 {
     double worst = 0;
     worst_keep(&worst, 2);
@@ -60,7 +60,7 @@ TEST(test_worst)
 
 /* A position that is NaN makes every norm NaN, at any index; exact values have norms of 0;
  * particles outside of the window do not count, even if their value is NaN. */
-TEST(test_norms_at_their_limits)
+TEST(norms_at_their_limits)
 {
     const double window[] = {0, 2}, volume[] = {0.5, 0.5, 0.5}, exact[] = {3, 4, 5};
     struct norms norms = norm_errors(2, (double[]){0.5, 1}, window, volume, exact, exact);
@@ -88,7 +88,7 @@ static void no_handler(const char *reason, const char *file, int line, int numbe
 }
 
 /* Bins in a window whose length is not 1; a position at its upper end is in the last one. */
-TEST(test_bins_of_a_window)
+TEST(bins_of_a_window)
 {
     const double window[] = {-1, 3}, at = 0.3, x[] = {-1, 0.5, 1.5, 3}, volume[] = {1, 1, 1, 1};
     double means[4] = {0, 10, 20, 30};

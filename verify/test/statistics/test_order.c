@@ -15,7 +15,7 @@ static double t_975_2(void)
 }
 
 /* y = 2 + x with residuals +-e in a pattern orthogonal to the line: slope, interval by hand. */
-TEST(test_order_interval)
+TEST(order_interval)
 {
     const double e = 0.02;
     const double spacing[] = {exp(3), exp(2), exp(1), 1};
@@ -55,7 +55,7 @@ TEST(test_order_interval)
     near_relative(replicated.high - replicated.low, fit.high - fit.low, 1e-12);
 }
 
-TEST(test_order_bad_levels)
+TEST(order_bad_levels)
 {
     struct order_fit fit;
     struct error failure;
@@ -66,7 +66,7 @@ TEST(test_order_bad_levels)
     assert_non_null(strstr(failure.message, "distinct"));
 }
 
-TEST(test_gate)
+TEST(gates_of_orders)
 {
     char why[ORDER_GATE_TEXT];
     const struct order_gate gate = {0.9, 1.1, 1e-3};
@@ -94,7 +94,7 @@ static enum order_class class_of(const double *error)
     return fit.class;
 }
 
-TEST(test_richardson_unequal_ratios)
+TEST(richardson_unequal_ratios)
 {
     const double spacing[] = {0.1, 0.06, 0.025}, p = 1.37;
     double value[3];
@@ -109,7 +109,7 @@ TEST(test_richardson_unequal_ratios)
 }
 
 /* The largest number of levels; pairwise orders are those between levels and no more. */
-TEST(test_order_capacity)
+TEST(order_capacity)
 {
     double spacing[ORDER_LEVELS_MAX + 1], error[ORDER_LEVELS_MAX + 1];
     struct order_fit fit;
@@ -128,7 +128,7 @@ TEST(test_order_capacity)
 }
 
 /* Errors that grow once, at any level, do not fall from level to level. */
-TEST(test_one_rise)
+TEST(one_rise)
 {
     const double spacing[] = {1, 0.5, 0.25, 0.125, 0.0625, 0.03125};
     for (int rise = 1; rise < 5; rise++) {
@@ -143,7 +143,7 @@ TEST(test_one_rise)
 
 /* Levels deviate from their line by as much as replicates explain at 1 % (an F test), or by just
  * more: then the scatter is used. */
-TEST(test_order_curvature)
+TEST(order_curvature)
 {
     const double e = 0.02, limit = gsl_cdf_fdist_Qinv(0.01, 2, 4 * 8);
     const double spacing[] = {exp(3), exp(2), exp(1), 1};
@@ -167,7 +167,7 @@ TEST(test_order_curvature)
 /* Noise that differs from level to level: weights, slope and interval by hand. The weights shrink
  * the variance of each level, which has 4 degrees of freedom, towards the mean of all, which counts
  * as 24 degrees of freedom. */
-TEST(test_order_weights)
+TEST(order_weights)
 {
     const double x[] = {3, 2, 1, 0}, y[] = {3.3, 2.1, 0.7, 0.2};
     const double variance[] = {0.04, 0.01, 0.09, 0.02};
@@ -199,7 +199,7 @@ TEST(test_order_weights)
 
 /* Errors that fall by less than a tenth of an order over all levels are flat; there is a floor if
  * the last order is below a third of the best one, at any level. */
-TEST(test_class_limits)
+TEST(class_limits)
 {
     static const struct {
         double order[4];
@@ -230,7 +230,7 @@ static void own_handler(const char *reason, const char *file, int line, int code
     fail_msg("%s:%d: %s (%d)", file, line, reason, code);
 }
 
-TEST(test_richardson_range)
+TEST(richardson_range)
 {
     gsl_error_handler_t *before = gsl_set_error_handler(own_handler);
     const double orders[] = {2e-3, 0.009, 0.5, 4, 29.9999}, spacing[] = {4, 2, 1};
@@ -251,7 +251,7 @@ TEST(test_richardson_range)
 }
 
 /* Values with a known limit: it must lie within the GCI of the finest, or the errors decide. */
-TEST(test_richardson_exact)
+TEST(richardson_exact)
 {
     static const struct {
         double value[3], exact;
@@ -286,7 +286,7 @@ TEST(test_richardson_exact)
 }
 
 /* The names of the classes, and the limits between them. */
-TEST(test_class_words)
+TEST(class_words)
 {
     static const char *const words[] = {"asymptotic", "floor-limited", "pre-asymptotic",
                                         "oscillating", "diverging"};
@@ -315,7 +315,7 @@ TEST(test_class_words)
 
 /* Three values that converge to a value other than the exact one, 1, from above or below, by their
  * errors; and values that reach it but for round-off. */
-TEST(test_richardson_against_exact)
+TEST(richardson_against_exact)
 {
     const double spacing[] = {0.4, 0.2, 0.1}, wider[] = {2, 1, 0.5};
     const double third = exp2(1. / 3 * (1 - 5e-7)), more = exp2(1. / 3 * (1 + 5e-7));

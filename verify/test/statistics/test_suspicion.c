@@ -6,7 +6,7 @@
 
 /* A field is suspected to be another one if its distance from that field's exact values is less
  * than half of their mean deviation; a distance of exactly half is allowed. */
-TEST(test_limit_of_swapped)
+TEST(limit_of_swapped)
 {
     static const char *const names[] = {"one", "two"};
     static const double volumes[] = {1, 0.5, 1e-9}, far[] = {100, 100}, own[] = {1, 3};
@@ -22,7 +22,7 @@ TEST(test_limit_of_swapped)
 }
 
 /* Messages name the suspicion, and elements after the last one are not read. */
-TEST(test_suspicions)
+TEST(suspicions)
 {
     char why[SUSPICION_TEXT];
     assert_false(suspicion_zero(2, (double[]){2, 1, 0}, why));

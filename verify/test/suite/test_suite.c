@@ -18,7 +18,7 @@ static struct suite run(const struct check *check, bool mutants, enum status exp
     return suite;
 }
 
-TEST(test_good)
+TEST(good_checks)
 {
     struct suite suite = run(&good, true, STATUS_OK);
     assert_int_equal(suite.passed, 1);
@@ -30,7 +30,7 @@ TEST(test_good)
 }
 
 /* A check kept by another process is joined; one kept without any figure is refused. */
-TEST(test_join)
+TEST(join)
 {
     const struct check *const checks[] = {&good};
     struct error error;
@@ -48,7 +48,7 @@ TEST(test_join)
     json_decref(document);
 }
 
-TEST(test_failing)
+TEST(failing_checks)
 {
     struct suite suite = run(&failing, false, STATUS_CHECK_FAILED);
     assert_int_equal(suite.passed, 1);
@@ -57,7 +57,7 @@ TEST(test_failing)
     suite_free(&suite);
 }
 
-TEST(test_undetected_mutant)
+TEST(undetected_mutant)
 {
     struct suite suite = run(&leaky, true, STATUS_CHECK_FAILED);
     assert_int_equal(suite.failed, 0);
@@ -66,7 +66,7 @@ TEST(test_undetected_mutant)
     suite_free(&suite);
 }
 
-TEST(test_vacuous)
+TEST(vacuous_checks)
 {
     struct suite suite = run(&vacuous, true, STATUS_CHECK_FAILED);
     assert_int_equal(suite.failed, 1);
@@ -114,7 +114,7 @@ static void expect_one_failure(const struct check *check, const char *says)
 }
 
 /* Checks without a subject, without figures for all subjects or for one, and one that skips all. */
-TEST(test_measures_nothing)
+TEST(measures_nothing)
 {
     struct check silent = failing;
     silent.subjects = nothing_subject;
@@ -142,7 +142,7 @@ static void measure_one(struct check_run *run, const void *subject)
     check_measure(run, *(const double *)subject, 1, 0, "%g", *(const double *)subject);
 }
 
-TEST(test_many_subjects)
+TEST(checks_of_many_subjects)
 {
     struct check many = failing;
     many.subjects = many_subjects;
@@ -153,7 +153,7 @@ TEST(test_many_subjects)
     suite_free(&suite);
 }
 
-TEST(test_worst)
+TEST(worst_figures)
 {
     double worst = 0;
     worst_keep(&worst, 2);
@@ -171,7 +171,7 @@ static void below_floor(struct check_run *run, const void *subject)
     check_skip(run, "not %s", "here");
 }
 
-TEST(test_floor_and_skip)
+TEST(floor_and_skip)
 {
     struct check check = good;
     check.measure = below_floor;
@@ -181,7 +181,7 @@ TEST(test_floor_and_skip)
     suite_free(&suite);
 }
 
-TEST(test_groups_are_chosen)
+TEST(groups_are_chosen)
 {
     const struct check *const checks[] = {&good, &bare};
     const char *const groups[] = {"b"};
@@ -201,7 +201,7 @@ static void note_progress(void *context, const struct check *check, size_t done,
     snprintf(text + used, 64 - used, "%s %zu/%zu;", check->name, done, total);
 }
 
-TEST(test_slow_and_progress)
+TEST(slow_and_progress)
 {
     struct check slow = bare;
     slow.slow = true;
@@ -219,7 +219,7 @@ TEST(test_slow_and_progress)
 }
 
 /* A mutant of several checks counts once, and is detected if all of them detect it. */
-TEST(test_mutants_are_distinct)
+TEST(mutants_are_distinct)
 {
     const struct check *const checks[] = {&good, &leaky};
     const struct suite_choice choice = {.mutants = true};
@@ -244,7 +244,7 @@ static void equally_far(struct check_run *run, const void *subject)
 }
 
 /* Of figures that fail by equal factors the first one is named. */
-TEST(test_mutant_value)
+TEST(mutant_value)
 {
     struct check check = good;
     check.measure = equally_far;
@@ -253,7 +253,7 @@ TEST(test_mutant_value)
     suite_free(&suite);
 }
 
-TEST(test_groups_are_listed_once)
+TEST(groups_are_listed_once)
 {
     const struct check *const checks[] = {&bare, &good, &leaky, &failing};
     size_t n;
@@ -280,7 +280,7 @@ static void two_figures(struct check_run *run, const void *subject)
 }
 
 /* With --first no check runs after the first failure, but the failing one is completed. */
-TEST(test_first_failure)
+TEST(first_failure)
 {
     struct check both = bare;
     both.measure = two_figures;
@@ -301,7 +301,7 @@ TEST(test_first_failure)
 
 /* The first failure is that of the check of least rank, and among equal ranks the first in
  * order. */
-TEST(test_first_failure_names_the_cause)
+TEST(first_failure_names_the_cause)
 {
     struct check follows = bare, cause = bare, later = bare;
     follows.measure = cause.measure = later.measure = two_figures;
@@ -325,7 +325,7 @@ static void skips_then_measures(struct check_run *run, const void *subject)
 }
 
 /* One measured figure suffices; figures of the harness itself have the value 1 and the bound 0. */
-TEST(test_harness_figures)
+TEST(harness_figures)
 {
     struct check late = bare;
     late.measure = skips_then_measures;
@@ -352,7 +352,7 @@ static const struct check_mutant unharmed[] = {
     {"none", "", &zero}, {"one", "", &values[1]}, {"two", "", &values[2]}, {0}};
 
 /* For a missed mutant its figure is reported, however far below the bound. */
-TEST(test_value_of_a_miss)
+TEST(value_of_a_miss)
 {
     struct check check = leaky;
     check.mutants = unharmed;
@@ -362,7 +362,7 @@ TEST(test_value_of_a_miss)
     suite_free(&suite);
 }
 
-TEST(test_names_ratios_and_costs)
+TEST(names_ratios_and_costs)
 {
     static const struct {
         const char *name;
@@ -384,7 +384,7 @@ TEST(test_names_ratios_and_costs)
 }
 
 /* As many groups as there are checks. */
-TEST(test_many_groups)
+TEST(many_groups)
 {
     enum { N = 5000 };
     static char names[N][16];
@@ -404,7 +404,7 @@ TEST(test_many_groups)
     free(groups);
 }
 
-TEST(test_results)
+TEST(results)
 {
     struct suite suite = run(&failing, true, STATUS_CHECK_FAILED);
     json_t *document = json_object();
@@ -447,7 +447,7 @@ TEST(test_results)
     suite_free(&suite);
 }
 
-TEST(test_registry)
+TEST(registered_checks)
 {
     for (size_t i = 0; i < check_registry_count; i++) {
         const struct check *c = check_registry[i];

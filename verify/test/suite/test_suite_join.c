@@ -15,7 +15,7 @@ static json_t *reported(const struct suite *suite)
 }
 
 /* Checks that ran separately give, joined, the document of one suite. */
-TEST(test_joined)
+TEST(joined_documents)
 {
     enum { PARTS = 4 };
     const struct check *const checks[PARTS] = {&good, &failing, &leaky, &vacuous};
