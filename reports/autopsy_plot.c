@@ -77,9 +77,8 @@ static void name_parts(struct drawing *d, const json_t *document)
 /* Splits the sentence into two lines, one above each panel. */
 static void split_sentence(struct drawing *d, const char *text)
 {
-    const char *second = strstr(text, ": it is ");
-    const char *other = strstr(text, ". The largest");
-    if (!second || (other && other < second + 12)) second = other;
+    const char *second = strstr(text, ". The largest");
+    if (!second) second = strstr(text, ": it is ");
     const size_t first = second ? (size_t)(second - text) + 1 : strlen(text);
     snprintf(d->sentence[0], TEXT, "%.*s", (int)first, text);
     snprintf(d->sentence[1], TEXT, "%s", second ? second + 2 : "");

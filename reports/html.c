@@ -129,7 +129,7 @@ static void heads(struct buffer *to, const char *class, const struct html_column
     for (const struct html_column *column = columns; column->head; column++)
         if (!left_out(column, first))
             buffer_format(&names, "%s%s", column == columns ? "" : "|", column->head);
-    if (names.data) html_table(to, class, names.data);
+    html_table(to, class, buffer_text(&names, to));
     buffer_free(&names);
 }
 

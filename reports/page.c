@@ -30,8 +30,7 @@ static void gates_tile(struct buffer *to, const json_t *verdict)
         const double count = value_member(verdict, others[k][0]);
         if (count > 0) buffer_format(&label, "%s%.0f %s", k ? ", " : "; ", count, others[k][1]);
     }
-    if (label.data)
-        tile(to, label.data, good, good + value_member(verdict, "gates_failed"), "cases");
+    tile(to, buffer_text(&label, to), good, good + value_member(verdict, "gates_failed"), "cases");
     buffer_free(&label);
 }
 
@@ -40,7 +39,7 @@ static void head(struct buffer *to, const json_t *results, const json_t *verdict
     bool well = !strcmp(value_text(verdict, "status"), "pass");
     struct buffer title = {0};
     buffer_format(&title, ": %s", value_text(verdict, "headline"));
-    page_head(to, title.data ? title.data : "");
+    page_head(to, buffer_text(&title, to));
     buffer_free(&title);
     html_format(to,
                 "<header class=\"%s\"><p class=\"kind\">sphproof %s report</p><h1>%s</h1>\n"
@@ -131,6 +130,20 @@ void page_head(struct buffer *to, const char *title)
         title);
     for (size_t k = 0; page_styles[k]; k++) buffer_add(to, page_styles[k]);
     buffer_format(to, "%s</style></head><body>\n", style_css());
+}
+
+void *page_room(struct buffer *to, size_t n, size_t size)
+{
+    void *room = calloc(n + 1, size);
+    to->failed |= !room;
+    return room;
+}
+
+double *page_numbers(struct buffer *to, const json_t *list, size_t *n)
+{
+    double *numbers = value_numbers(list, n);
+    to->failed |= *n < json_array_size(list);
+    return numbers;
 }
 
 bool page_end(struct page_writer *writer, struct page *page)

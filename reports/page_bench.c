@@ -20,7 +20,7 @@ struct curve {
 };
 
 /* "kernel=cubic_spline gradient=ia" is "cubic spline, ia". */
-static void short_name(char name[NAME], const char *scheme)
+static void short_name(struct buffer *to, char name[NAME], const char *scheme)
 {
     struct buffer text = {0};
     for (const char *word = scheme; *word;) {
@@ -32,7 +32,7 @@ static void short_name(char name[NAME], const char *scheme)
         word += length;
         word += strspn(word, " ");
     }
-    snprintf(name, NAME, "%s", text.size ? text.data : "");
+    snprintf(name, NAME, "%s", buffer_text(&text, to));
     for (; *name; name++)
         if (*name == '_') *name = ' ';
     buffer_free(&text);
@@ -47,7 +47,8 @@ static int by_merit(const void *a, const void *b)
 }
 
 /* Reads the curves of a document, best first; returns their number. */
-static size_t read_curves(const json_t *document, struct curve *curves, size_t most)
+static size_t read_curves(struct buffer *to, const json_t *document, struct curve *curves,
+                          size_t most)
 {
     size_t count = 0, i;
     const json_t *entry;
@@ -55,7 +56,7 @@ static size_t read_curves(const json_t *document, struct curve *curves, size_t m
         if (count == most) break;
         struct curve *curve = &curves[count++];
         *curve = (struct curve){.scheme = entry};
-        short_name(curve->name, value_text(entry, "scheme"));
+        short_name(to, curve->name, value_text(entry, "scheme"));
     }
     json_array_foreach(json_object_get(document, "points"), i, entry) {
         for (size_t k = 0; k < count; k++) {
@@ -180,7 +181,7 @@ static void cheapest_table(struct buffer *to, const json_t *ways)
     html_table(to, "costs", "cheapest way to|#CPU s|scheme");
     json_array_foreach(ways, i, way) {
         char name[NAME];
-        short_name(name, value_text(way, "scheme"));
+        short_name(to, name, value_text(way, "scheme"));
         buffer_format(to, "<tr><td>%g %% of the signal</td>", 100 * value_member(way, "target"));
         if (*name)
             html_cell_number(to, value_member(way, "cpu_s"));
@@ -218,12 +219,9 @@ void page_bench(struct page_writer *writer, const json_t *bench, bool of_codes)
     explain(to, of_codes);
     json_array_foreach(bench, i, document) {
         size_t most = json_array_size(json_object_get(document, "schemes"));
-        struct curve *curves = calloc(most + 1, sizeof *curves);
-        if (!curves) {
-            to->failed = true;
-            return;
-        }
-        size_t count = read_curves(document, curves, most);
+        struct curve *curves = page_room(to, most, sizeof *curves);
+        if (!curves) return;
+        size_t count = read_curves(to, document, curves, most);
         html_format(to, "<h3><code>%s</code> <span>%s</span></h3>\n<div class=\"figures\">",
                     value_text(document, "case"), value_text(document, "title"));
         plot_curves(writer, document, curves, count, of_codes);

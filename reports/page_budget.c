@@ -52,7 +52,7 @@ void page_budget(struct page_writer *writer, const json_t *const *documents, siz
         html_format(&columns, "|#%s|#order", value_text(documents[k], "label"));
     buffer_add(to, "<details><summary>Where the error of density comes from, by region of the "
                    "flow</summary>\n");
-    if (columns.data) html_table(to, "budget", columns.data);
+    html_table(to, "budget", buffer_text(&columns, to));
     buffer_free(&columns);
     json_array_foreach(regions, i, region) {
         buffer_add(to, "<tr>");

@@ -17,9 +17,10 @@ static const char *const quantities[QUANTITIES] = {"density", "velocity", "press
 
 /* Internal energies of n particles with density rho and pressure P, malloced. NULL: no memory, or
  * an array is missing. */
-static double *energies(const double *rho, const double *P, size_t n, double gamma)
+static double *energies(struct buffer *to, const double *rho, const double *P, size_t n,
+                        double gamma)
 {
-    double *u = rho && P && n ? malloc(n * sizeof *u) : NULL;
+    double *u = rho && P && n ? page_room(to, n, sizeof *u) : NULL;
     for (size_t i = 0; u && i < n; i++) u[i] = P[i] / ((gamma - 1) * rho[i]);
     return u;
 }
@@ -33,39 +34,39 @@ struct curves {
     double *exact_x, *exact[QUANTITIES];
 };
 
-static void add_curve(struct curves *curves, const json_t *run)
+static void add_curve(struct buffer *to, struct curves *curves, const json_t *run)
 {
     const json_t *profile = json_object_get(run, "profile");
     const double gamma = value_inner(run, "settings", "gamma");
     size_t k = curves->runs, n = 0, length;
     if (!profile || k == PAGE_SCHEMES) return;
     curves->label[k] = value_text(run, "label");
-    curves->x[k] = value_numbers(json_object_get(profile, "x"), &n);
+    curves->x[k] = page_numbers(to, json_object_get(profile, "x"), &n);
     curves->n[k] = n;
     for (int q = 0; q < ENERGY; q++) {
         char name[64];
         snprintf(name, sizeof name, "exact_%s", quantities[q]);
-        curves->value[k][q] = value_numbers(json_object_get(profile, quantities[q]), &length);
-        curves->residual[k][q] = value_numbers(json_object_get(profile, name), &n);
+        curves->value[k][q] = page_numbers(to, json_object_get(profile, quantities[q]), &length);
+        curves->residual[k][q] = page_numbers(to, json_object_get(profile, name), &n);
         if (length < curves->n[k]) curves->n[k] = length;
         if (n < curves->n[k]) curves->n[k] = n;
     }
     double *const *value = curves->value[k], **residual = curves->residual[k];
-    curves->value[k][ENERGY] = energies(value[0], value[PRESSURE], curves->n[k], gamma);
-    residual[ENERGY] = energies(residual[0], residual[PRESSURE], curves->n[k], gamma);
+    curves->value[k][ENERGY] = energies(to, value[0], value[PRESSURE], curves->n[k], gamma);
+    residual[ENERGY] = energies(to, residual[0], residual[PRESSURE], curves->n[k], gamma);
     for (int q = 0; q < QUANTITIES; q++)
         for (size_t i = 0; value[q] && residual[q] && i < curves->n[k]; i++)
             residual[q][i] = value[q][i] - residual[q][i];
     curves->runs++;
     const json_t *exact = json_object_get(profile, "exact");
     if (curves->exact_x || !exact) return;
-    curves->exact_x = value_numbers(json_object_get(exact, "x"), &curves->exact_n);
+    curves->exact_x = page_numbers(to, json_object_get(exact, "x"), &curves->exact_n);
     for (int q = 0; q < ENERGY && curves->exact_x; q++) {
-        curves->exact[q] = value_numbers(json_object_get(exact, quantities[q]), &n);
+        curves->exact[q] = page_numbers(to, json_object_get(exact, quantities[q]), &n);
         if (n < curves->exact_n) curves->exact_n = n;
     }
     curves->exact[ENERGY] =
-        energies(curves->exact[0], curves->exact[PRESSURE], curves->exact_n, gamma);
+        energies(to, curves->exact[0], curves->exact[PRESSURE], curves->exact_n, gamma);
 }
 
 static void free_curves(struct curves *curves)
@@ -292,7 +293,7 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
     json_array_foreach(json_object_get(results, "runs"), i, entry) {
         if (strcmp(value_text(entry, "case"), name) || run_count == PAGE_SCHEMES) continue;
         runs[run_count++] = entry;
-        if (dimension_of(entry) == 1) add_curve(&curves, entry);
+        if (dimension_of(entry) == 1) add_curve(to, &curves, entry);
         if (!title) title = json_object_get(entry, "title");
     }
     json_array_foreach(json_object_get(results, "studies"), i, entry) {

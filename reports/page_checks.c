@@ -46,15 +46,16 @@ static struct span next_check(const json_t *figures, size_t first)
 
 static void bar(struct buffer *to, double part)
 {
+    enum { MOST = 1000 };
     buffer_add(to, "<td class=\"n\">");
     if (!isfinite(part))
         buffer_add(to, "—");
     else if (part > 0 && part < 0.01)
         buffer_add(to, "&lt; 1 %");
-    else if (part < 1000)
+    else if (part < MOST)
         buffer_format(to, "%.0f %%", 100 * part);
     else
-        buffer_add(to, "> 1000 times");
+        buffer_format(to, "> %d times", MOST);
     buffer_format(to,
                   "<span class=\"margin\"><i class=\"%s\" style=\"width:%.0f%%\"></i></span></td>",
                   part <= 0.5 ? ""
@@ -133,7 +134,7 @@ void page_checks(struct page_writer *writer, const json_t *verify)
         html_table_end(to);
         buffer_format(&command, "%s %s", value_text_or(verify, "reproduce", "sphproof verify"),
                       group);
-        if (command.data) html_command(to, "see it again:", command.data);
+        html_command(to, "see it again:", buffer_text(&command, to));
         buffer_free(&command);
     }
     buffer_add(to, "</section>\n");
@@ -184,7 +185,7 @@ void page_detection(struct page_writer *writer, const json_t *verify)
     buffer_add(to, "</details>");
     struct buffer command = {0};
     buffer_format(&command, "%s --mutants", value_text_or(verify, "reproduce", "sphproof verify"));
-    if (command.data) html_command(to, "see it again:", command.data);
+    html_command(to, "see it again:", buffer_text(&command, to));
     buffer_free(&command);
     buffer_add(to, "</section>\n");
 }

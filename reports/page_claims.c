@@ -25,7 +25,7 @@ struct curve {
 
 /* Reads the mean distance to the nearest neighbour for each kernel in one dimension; curves of
  * kernels that may pair according to theory are dashed. Returns the number of curves. */
-static size_t read_curves(const json_t *ladders, int dim, struct curve *curves,
+static size_t read_curves(struct buffer *to, const json_t *ladders, int dim, struct curve *curves,
                           struct plot_series *series)
 {
     const json_t *ladder;
@@ -34,6 +34,7 @@ static size_t read_curves(const json_t *ladders, int dim, struct curve *curves,
         if (n == KERNELS || (int)value_member(ladder, "dim") != dim) continue;
         struct curve *curve = &curves[n];
         html_words(&curve->label, value_text(ladder, "kernel"));
+        to->failed |= curve->label.failed;
         series[n] = (struct plot_series){
             .label = curve->label.data,
             .kind = PLOT_LINES_POINTS,
@@ -53,13 +54,13 @@ static void pairing_plot(struct page_writer *writer, const json_t *claim)
 {
     static const char *const titles[DIMS] = {"2D", "3D"};
     static const double ticks[] = {10, 20, 50, 100, 200, 400};
-    struct curve *curves = calloc((size_t)DIMS * KERNELS, sizeof *curves);
+    struct curve *curves = page_room(&writer->to, (size_t)DIMS * KERNELS, sizeof *curves);
     struct plot_series series[DIMS][KERNELS];
     struct plot_panel panels[DIMS];
     size_t used = 0;
     for (int d = 0; curves && d < DIMS; d++) {
-        const size_t n = read_curves(json_object_get(claim, "ladders"), d + 2, curves + d * KERNELS,
-                                     series[used]);
+        const size_t n = read_curves(&writer->to, json_object_get(claim, "ladders"), d + 2,
+                                     curves + d * KERNELS, series[used]);
         if (!n) continue;
         panels[used] = (struct plot_panel){.title = titles[d],
                                            .x_label = "neighbours",

@@ -22,15 +22,15 @@ struct map {
 static const char *const map_names[MAPS] = {"density", "speed", "error"};
 static const char *const titles[MAPS] = {"density", "speed |v|", "error |v − exact v|"};
 
-static void read_map(struct map *map, const json_t *run)
+static void read_map(struct buffer *to, struct map *map, const json_t *run)
 {
     const json_t *from = json_object_get(json_object_get(run, "profile"), "map");
-    map->x = value_numbers(json_object_get(from, "x"), &map->nx);
-    map->y = value_numbers(json_object_get(from, "y"), &map->ny);
+    map->x = page_numbers(to, json_object_get(from, "x"), &map->nx);
+    map->y = page_numbers(to, json_object_get(from, "y"), &map->ny);
     map->cells = map->nx * map->ny;
     for (int k = 0; k < MAPS; k++) {
         size_t n;
-        map->z[k] = value_numbers(json_object_get(from, map_names[k]), &n);
+        map->z[k] = page_numbers(to, json_object_get(from, map_names[k]), &n);
         if (n == map->cells) continue;
         free(map->z[k]);
         map->z[k] = NULL;
@@ -166,20 +166,20 @@ struct curves {
     double *x, *value[QUANTITIES], *exact_x, *exact[QUANTITIES];
 };
 
-static void read_curves(struct curves *curves, const json_t *run)
+static void read_curves(struct buffer *to, struct curves *curves, const json_t *run)
 {
     const json_t *profile = json_object_get(run, "profile"), *name;
     const json_t *exact = json_object_get(profile, "exact");
     size_t i, n;
-    curves->x = value_numbers(json_object_get(profile, "x"), &curves->n);
-    curves->exact_x = value_numbers(json_object_get(exact, "x"), &curves->exact_n);
+    curves->x = page_numbers(to, json_object_get(profile, "x"), &curves->n);
+    curves->exact_x = page_numbers(to, json_object_get(exact, "x"), &curves->exact_n);
     json_array_foreach(json_object_get(profile, "quantities"), i, name) {
         const char *word = json_string_value(name);
         if (i == QUANTITIES || !word) break;
         curves->names[i] = word;
-        curves->value[i] = value_numbers(json_object_get(profile, word), &n);
+        curves->value[i] = page_numbers(to, json_object_get(profile, word), &n);
         if (n < curves->n) curves->n = n;
-        curves->exact[i] = value_numbers(json_object_get(exact, word), &n);
+        curves->exact[i] = page_numbers(to, json_object_get(exact, word), &n);
         if (n < curves->exact_n) curves->exact_n = n;
         curves->quantities++;
     }
@@ -251,12 +251,12 @@ static void plot_profiles(struct page_writer *writer, const char *case_name,
 void page_cloud_plots(struct page_writer *writer, const char *case_name, const json_t *const *runs,
                       size_t count, bool all_maps)
 {
-    struct map *maps = calloc(count, sizeof *maps);
-    struct curves *curves = calloc(count, sizeof *curves);
+    struct map *maps = page_room(&writer->to, count, sizeof *maps);
+    struct curves *curves = page_room(&writer->to, count, sizeof *curves);
     if (maps && curves) {
         for (size_t r = 0; r < count; r++) {
-            read_map(&maps[r], runs[r]);
-            read_curves(&curves[r], runs[r]);
+            read_map(&writer->to, &maps[r], runs[r]);
+            read_curves(&writer->to, &curves[r], runs[r]);
         }
         const int first = all_maps ? 0 : maps[0].z[MAPS - 1] ? MAPS - 1 : 0;
         const int last = all_maps ? MAPS - 1 : first;
@@ -265,8 +265,6 @@ void page_cloud_plots(struct page_writer *writer, const char *case_name, const j
             plot_each(writer, case_name, runs, maps, count, k);
         buffer_add(&writer->to, "<div class=\"figures\">\n");
         if (curves[0].quantities) plot_profiles(writer, case_name, runs, curves, count);
-    } else {
-        writer->to.failed = true;
     }
     for (size_t r = 0; maps && curves && r < count; r++) {
         free_map(&maps[r]);

@@ -80,7 +80,7 @@ static void heads(struct buffer *to, const char *first, const char *const *label
     struct buffer columns = {0};
     buffer_add(&columns, first);
     for (size_t k = 0; k < count; k++) html_format(&columns, "|%s", labels[k]);
-    if (columns.data) html_table(to, "overview", columns.data);
+    html_table(to, "overview", buffer_text(&columns, to));
     buffer_free(&columns);
 }
 

@@ -27,7 +27,7 @@ static void lines(struct page_writer *writer, const json_t *const runs[SIDES])
         for (int k = 0; k <= PANELS; k++) {
             const json_t *profile = json_object_get(runs[s < SIDES ? s : 0], "profile");
             if (s == SIDES) profile = json_object_get(profile, "exact");
-            values[s][k] = value_numbers(json_object_get(profile, axes[k]), &n[s][k]);
+            values[s][k] = page_numbers(&writer->to, json_object_get(profile, axes[k]), &n[s][k]);
             whole = whole && n[s][k] && n[s][k] == n[s][0];
         }
     for (int k = 0; k < PANELS && whole; k++) {

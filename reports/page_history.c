@@ -352,13 +352,10 @@ static void plot_trend(struct page_writer *writer, const char *case_name, struct
 static void plot_trends(struct page_writer *writer, const json_t *history, size_t nights)
 {
     const json_t *trends = json_object_get(history, "trends"), *trend;
-    struct curves *curves = calloc(1, sizeof *curves);
+    struct curves *curves = page_room(&writer->to, 1, sizeof *curves);
     const char *name = "";
     size_t i;
-    if (!curves) {
-        writer->to.failed = true;
-        return;
-    }
+    if (!curves) return;
     buffer_add(&writer->to, "<div class=\"figures\">\n");
     json_array_foreach(trends, i, trend) {
         const char *own = value_text(trend, "case");

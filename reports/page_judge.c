@@ -25,16 +25,16 @@ static void curves_free(struct curves *c)
     for (int k = 0; k < PANELS; k++) free(c->y[k]), free(c->exact[k]);
 }
 
-static bool curves_read(struct curves *c, const json_t *profile)
+static bool curves_read(struct buffer *to, struct curves *c, const json_t *profile)
 {
     const json_t *exact = json_object_get(profile, "exact");
-    c->x = value_numbers(json_object_get(profile, "x"), &c->n);
-    c->exact_x = value_numbers(json_object_get(exact, "x"), &c->exact_n);
+    c->x = page_numbers(to, json_object_get(profile, "x"), &c->n);
+    c->exact_x = page_numbers(to, json_object_get(exact, "x"), &c->exact_n);
     bool whole = c->n && c->exact_n;
     for (int k = 0; k < PANELS; k++) {
         size_t n, exact_n;
-        c->y[k] = value_numbers(json_object_get(profile, fields[k]), &n);
-        c->exact[k] = value_numbers(json_object_get(exact, fields[k]), &exact_n);
+        c->y[k] = page_numbers(to, json_object_get(profile, fields[k]), &n);
+        c->exact[k] = page_numbers(to, json_object_get(exact, fields[k]), &exact_n);
         whole = whole && n == c->n && exact_n == c->exact_n;
     }
     return whole;
@@ -46,7 +46,7 @@ static void profiles(struct page_writer *writer, const json_t *judged, size_t nu
     struct plot_series series[PANELS][2];
     struct plot_panel panels[PANELS] = {0};
     char name[64], which[32];
-    if (curves_read(&c, json_object_get(judged, "profile"))) {
+    if (curves_read(&writer->to, &c, json_object_get(judged, "profile"))) {
         for (int k = 0; k < PANELS; k++) {
             series[k][0] = (struct plot_series){.label = "exact",
                                                 .kind = PLOT_LINES,

@@ -39,7 +39,7 @@ static void heads(struct buffer *to, const char *first, const char *each, const 
     buffer_add(&columns, first);
     for (size_t k = 0; k < count; k++) html_format(&columns, "|#%s%s", each, labels[k]);
     html_format(&columns, "|#order, %s|#momentum error|#energy error|", labels[0]);
-    if (columns.data) html_table(to, "overview", columns.data);
+    html_table(to, "overview", buffer_text(&columns, to));
     buffer_free(&columns);
 }
 

@@ -21,14 +21,14 @@ struct curve {
     double x[POINTS], y[POINTS];
 };
 
-static void label_of(char label[64], const json_t *row, bool eta)
+static void label_of(struct buffer *to, char label[64], const json_t *row, bool eta)
 {
     struct buffer words = {0};
     html_words(&words, value_text(row, "kernel"));
     if (eta)
         buffer_format(&words, ", %s, eta %g%s", value_text(row, "gradient"),
                       value_member(row, "eta"), value_member(row, "alpha") > 0 ? ", viscous" : "");
-    snprintf(label, 64, "%s", words.data ? words.data : "");
+    snprintf(label, 64, "%s", buffer_text(&words, to));
     buffer_free(&words);
 }
 
@@ -36,7 +36,7 @@ static void label_of(char label[64], const json_t *row, bool eta)
 static void plot_growth(struct page_writer *writer, const json_t *atlas, const char *gradient)
 {
     static const double least = 1e-4;
-    struct curve *curves = calloc(CURVES, sizeof *curves);
+    struct curve *curves = page_room(&writer->to, CURVES, sizeof *curves);
     struct plot_series series[CURVES];
     const json_t *rows = json_object_get(atlas, "rows"), *row;
     size_t i, count = 0;
@@ -51,7 +51,7 @@ static void plot_growth(struct page_writer *writer, const json_t *atlas, const c
             seen = seen || curve->y[k] >= least;
         }
         if (!seen) continue;
-        label_of(curve->label, row, false);
+        label_of(&writer->to, curve->label, row, false);
         series[count++] = (struct plot_series){.label = curve->label,
                                                .kind = PLOT_LINES_POINTS,
                                                .n = n,
@@ -71,9 +71,12 @@ static void plot_growth(struct page_writer *writer, const json_t *atlas, const c
                                      .series_count = count};
     struct buffer title = {0};
     buffer_format(&title, "Growth of the fastest wave, %s gradient, no viscosity", gradient);
-    const struct plot plot = {
-        .name = name, .title = title.data, .height = 360, .panels = &panel, .panel_count = 1};
-    if (count && title.data)
+    const struct plot plot = {.name = name,
+                              .title = buffer_text(&title, &writer->to),
+                              .height = 360,
+                              .panels = &panel,
+                              .panel_count = 1};
+    if (count)
         page_plot(writer, &plot,
                   !strcmp(gradient, "ia")
                       ? "The Integral Approach's gradient: a kernel that is not shown, and a width "
@@ -86,7 +89,7 @@ static void plot_growth(struct page_writer *writer, const json_t *atlas, const c
 /* Draws frequency and growth against the wavenumber. */
 static void plot_waves(struct page_writer *writer, const json_t *waves)
 {
-    struct curve *curves = calloc(2 * CURVES, sizeof *curves);
+    struct curve *curves = page_room(&writer->to, 2 * CURVES, sizeof *curves);
     struct plot_series series[2][CURVES];
     size_t i, count = 0;
     const json_t *row;
@@ -97,7 +100,7 @@ static void plot_waves(struct page_writer *writer, const json_t *waves)
             struct curve *curve = &curves[2 * count + (size_t)k];
             const size_t n = value_reals(json_object_get(row, "kappa"), curve->x, POINTS);
             value_reals(json_object_get(row, what[k]), curve->y, POINTS);
-            label_of(curve->label, row, true);
+            label_of(&writer->to, curve->label, row, true);
             series[k][count] = (struct plot_series){.label = k ? NULL : curve->label,
                                                     .kind = PLOT_LINES,
                                                     .n = n,

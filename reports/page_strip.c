@@ -66,10 +66,10 @@ static void svg_begin(struct buffer *to, const char *title)
 }
 
 /* True if the values of a curve vary by more than noise. */
-static bool varies(const json_t *curve, const char *name)
+static bool varies(struct buffer *to, const json_t *curve, const char *name)
 {
     size_t n;
-    double *y = value_numbers(json_object_get(curve, name), &n);
+    double *y = page_numbers(to, json_object_get(curve, name), &n);
     double low = (double)INFINITY, high = -(double)INFINITY;
     widen(y, n, &low, &high);
     free(y);
@@ -78,7 +78,7 @@ static bool varies(const json_t *curve, const char *name)
 
 /* The quantity in the picture of a profile: the one by which the case is judged, else the first
  * whose exact curve varies; in 1D density. */
-static const char *quantity_of(const json_t *run, const json_t *from)
+static const char *quantity_of(struct buffer *to, const json_t *run, const json_t *from)
 {
     const json_t *list = json_object_get(from, "quantities"), *entry;
     const char *measured = json_string_value(json_array_get(json_object_get(run, "measured"), 0));
@@ -89,7 +89,7 @@ static const char *quantity_of(const json_t *run, const json_t *from)
         if (measured && !strcmp(measured, json_string_value(entry))) return measured;
     }
     json_array_foreach(list, i, entry) {
-        if (varies(json_object_get(from, "exact"), json_string_value(entry)))
+        if (varies(to, json_object_get(from, "exact"), json_string_value(entry)))
             return json_string_value(entry);
     }
     return found;
@@ -99,12 +99,12 @@ static const char *quantity_of(const json_t *run, const json_t *from)
 static bool profile(struct buffer *to, const json_t *run)
 {
     const json_t *from = json_object_get(run, "profile"), *exact = json_object_get(from, "exact");
-    const char *name = quantity_of(run, from);
+    const char *name = quantity_of(to, run, from);
     size_t n, values, exact_n, exact_values;
-    double *x = value_numbers(json_object_get(from, "x"), &n);
-    double *y = value_numbers(json_object_get(from, name), &values);
-    double *exact_x = value_numbers(json_object_get(exact, "x"), &exact_n);
-    double *exact_y = value_numbers(json_object_get(exact, name), &exact_values);
+    double *x = page_numbers(to, json_object_get(from, "x"), &n);
+    double *y = page_numbers(to, json_object_get(from, name), &values);
+    double *exact_x = page_numbers(to, json_object_get(exact, "x"), &exact_n);
+    double *exact_y = page_numbers(to, json_object_get(exact, name), &exact_values);
     struct frame f = {(double)INFINITY, -(double)INFINITY, (double)INFINITY, -(double)INFINITY};
     n = values < n ? values : n;
     exact_n = exact_values < exact_n ? exact_values : exact_n;
@@ -118,7 +118,7 @@ static bool profile(struct buffer *to, const json_t *run)
                 widen(&exact_y[i], 1, &f.y0, &f.y1);
         }
         /* do not enlarge noise around a constant to the full height */
-        if (!varies(exact, name)) {
+        if (!varies(to, exact, name)) {
             const double most = fmax(fabs(f.y0), fabs(f.y1));
             f.y0 = fmin(f.y0, -0.1 * most), f.y1 += 0.1 * most;
         }
@@ -155,12 +155,9 @@ static void bitmap(struct buffer *to, const double *z, size_t nx, size_t ny)
 {
     enum { HEAD = 54, PALETTE = 4 * COLORS };
     const size_t row = (nx + 3) / 4 * 4, size = HEAD + PALETTE + row * ny;
-    unsigned char *bytes = calloc(size, 1);
+    unsigned char *bytes = page_room(to, size, 1);
     double low = (double)INFINITY, high = -(double)INFINITY;
-    if (!bytes) {
-        to->failed = true;
-        return;
-    }
+    if (!bytes) return;
     widen(z, nx * ny, &low, &high);
     bytes[0] = 'B', bytes[1] = 'M';
     put(bytes + 2, 4, size), put(bytes + 10, 4, HEAD + PALETTE), put(bytes + 14, 4, 40);
@@ -182,10 +179,10 @@ static bool map(struct buffer *to, const json_t *run)
 {
     const json_t *from = json_object_get(json_object_get(run, "profile"), "map");
     size_t nx, ny, cells, speeds;
-    double *x = value_numbers(json_object_get(from, "x"), &nx);
-    double *y = value_numbers(json_object_get(from, "y"), &ny);
-    double *rho = value_numbers(json_object_get(from, "density"), &cells);
-    double *speed = value_numbers(json_object_get(from, "speed"), &speeds);
+    double *x = page_numbers(to, json_object_get(from, "x"), &nx);
+    double *y = page_numbers(to, json_object_get(from, "y"), &ny);
+    double *rho = page_numbers(to, json_object_get(from, "density"), &cells);
+    double *speed = page_numbers(to, json_object_get(from, "speed"), &speeds);
     const bool there = cells && cells == nx * ny;
     if (there) {
         double low = (double)INFINITY, high = -(double)INFINITY;

@@ -273,7 +273,7 @@ static void error_table(struct buffer *to, const struct study *studies, size_t c
     buffer_add(to, "<h4>");
     page_study_name(to, named);
     buffer_add(to, " over n</h4>\n");
-    if (columns.data) html_table(to, "errors", columns.data);
+    html_table(to, "errors", buffer_text(&columns, to));
     buffer_free(&columns);
     for (double n = 0; isfinite(n = next_n(studies, count, n));) {
         buffer_format(to, "<tr><td class=\"n\">%.0f</td>", n);
@@ -416,11 +416,8 @@ void page_study(struct page_writer *writer, const char *case_name, const json_t 
                 size_t count)
 {
     struct buffer *to = &writer->to;
-    struct study *studies = calloc(count, sizeof *studies);
-    if (!studies) {
-        to->failed = true;
-        return;
-    }
+    struct study *studies = page_room(to, count, sizeof *studies);
+    if (!studies) return;
     for (size_t k = 0; k < count; k++) read_study(&studies[k], documents[k]);
     buffer_add(to, "<div class=\"figures\">\n");
     plot_convergence(writer, case_name, studies, count);

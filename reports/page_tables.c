@@ -46,7 +46,7 @@ static void league_head(struct buffer *to, const json_t *row)
         if (!json_is_string(value) && !is_degree(name)) buffer_add(&columns, "#");
         html_words(&columns, is_degree(name) ? name + 6 : name);
     }
-    if (columns.data) html_table(to, "league", columns.data);
+    html_table(to, "league", buffer_text(&columns, to));
     buffer_free(&columns);
 }
 

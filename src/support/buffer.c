@@ -73,6 +73,12 @@ void buffer_escape(struct buffer *to, const char *string)
     }
 }
 
+const char *buffer_text(const struct buffer *part, struct buffer *to)
+{
+    to->failed |= part->failed;
+    return part->data && !part->failed ? part->data : "";
+}
+
 char *buffer_take(struct buffer *to)
 {
     if (!to->data && !to->failed) buffer_add(to, "");

@@ -22,6 +22,9 @@ void buffer_format(struct buffer *to, const char *format, ...)
  * which XML forbids, become U+FFFD. */
 void buffer_escape(struct buffer *to, const char *string);
 
+/* The string so far; where memory has ended "", and `to`, which it is a part of, fails too. */
+const char *buffer_text(const struct buffer *part, struct buffer *to);
+
 /* Returns the string, which the caller frees, and empties the buffer. NULL: no memory. */
 char *buffer_take(struct buffer *to);
 void buffer_free(struct buffer *to);

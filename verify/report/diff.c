@@ -23,7 +23,7 @@ static const struct {
     {"", "case"},        {"", "mode"},         {"kernel", "kernel"},     {"kernel", "dim"},
     {"kernel", "h"},     {"gradient", "dim"},  {"gradient", "operator"}, {"gradient", "kernel"},
     {"riemann", "left"}, {"riemann", "right"}, {"riemann", "gamma"},     {"riemann", "time"},
-    {"riemann", "x0"},   {"judge", "n"},       {"judge", "time"},
+    {"riemann", "x0"},   {"judge", "n"},       {"judge", "time"},        {"judge", "window"},
 };
 
 static bool differs(const json_t *a, const json_t *b)

@@ -125,8 +125,8 @@ static enum status read_nights(const char *path, const char *mode, json_t *night
 /* Relative change of a figure, up or down; infinite for a word or a value that was not finite. */
 static double distance(const json_t *entry)
 {
-    const double ratio = value_member(entry, "ratio");
-    return ratio > 0 ? fabs(log(ratio)) : (double)INFINITY;
+    const double change = fabs(log(value_member(entry, "ratio")));
+    return isnan(change) ? (double)INFINITY : change;
 }
 
 /* Failures first, then by change; counts of work after figures of quality. */

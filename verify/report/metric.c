@@ -137,6 +137,8 @@ static void take(struct metrics *metrics, const struct place *at, const json_t *
         metric.word = (char *)word;
     } else if (number) {
         metric.value = value_real(value);
+        if (rule->kind == READING_ERROR && metric.value < 0)
+            note_trouble(metrics, path, "a negative error");
         refine(&metric, parent, name);
         if (at->level && at->field && rule->kind == READING_ERROR)
             metric.noise = fmax(metric.noise, level_noise(at->level, at->field, name));

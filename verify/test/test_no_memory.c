@@ -9,6 +9,7 @@
 #include "cases.h"
 #include "checkpoint.h"
 #include "diff.h"
+#include "drawn_document.h"
 #include "failing_memory.h"
 #include "findings.h"
 #include "gas.h"
@@ -16,6 +17,7 @@
 #include "initial.h"
 #include "line/line.h"
 #include "map.h"
+#include "page.h"
 #include "particle_file.h"
 #include "plot.h"
 #include "pool.h"
@@ -327,6 +329,47 @@ static enum status scripted(struct error *error)
     free(script);
     free(data);
     return STATUS_OK;
+}
+
+/* ---- pages ---- */
+
+/* The template, a document drawn from it, and how its page is made. */
+static json_t *template, *shown;
+static bool (*make)(struct page *page, const json_t *document);
+
+static enum status paged(struct error *error)
+{
+    struct page page;
+    if (!make(&page, shown)) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    const bool told = strstr(page.plots.message, "no memory"); /* for one of the missing plots */
+    page_free(&page);
+    return told ? error_set(error, STATUS_ENVIRONMENT, "no memory") : STATUS_OK;
+}
+
+static void pages(const char *kind, bool of(struct page *page, const json_t *document), int least)
+{
+    for (size_t k = 0; k < 2; k++) {
+        struct drawing draw = {k, template};
+        shown = drawn_document(&draw, json_object_get(template, kind)), make = of;
+        if (of == page_make) json_object_set_new(shown, "verdict", verdict_make(shown));
+        without_memory(paged, least, true);
+        json_decref(shown);
+    }
+}
+
+/* A page is never without one of its parts. (There is no gnuplot: plots are their data.) */
+TEST(whole_pages)
+{
+    char *programs = strdup(getenv("PATH") ? getenv("PATH") : "");
+    template = read_template(test_word(1), "report.json");
+    setenv("PATH", "/nowhere", 1);
+    pages("report", page_make, 100);
+    pages("codes", page_make, 20);
+    pages("judge", page_make_judge, 5);
+    pages("compare", page_make_compare, 5);
+    setenv("PATH", programs, 1);
+    json_decref(template);
+    free(programs);
 }
 
 TEST(reports)

@@ -58,7 +58,7 @@ TEST(members_of_a_problem)
                 {"kernel", {"kernel", "dim", "h", "case"}},
                 {"gradient", {"dim", "operator", "kernel"}},
                 {"riemann", {"left", "right", "gamma", "time", "x0"}},
-                {"judge", {"n", "time", "case"}}};
+                {"judge", {"n", "time", "window", "case"}}};
     static const char *const others[] = {"kernel", "dim", "h", "operator", "left", "time", "n"};
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
         for (int k = 0; rows[r].members[k]; k++)

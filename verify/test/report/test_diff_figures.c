@@ -104,23 +104,30 @@ TEST(limits)
         enum metric_kind kind;
         double a, b, noise, other, floor, exact;
         enum metric_verdict verdict;
+        double worse; /* by so much */
     } rows[] = {
-        {READING_ERROR, 1, 0.5, 0, 0, 1, 0, VERDICT_SAME},
-        {READING_ERROR, 0.5, 1, 0, 0, 1, 0, VERDICT_SAME},
-        {READING_ERROR, 1, 1.5, 0.5, 0, 0, 0, VERDICT_SAME},
-        {READING_ERROR, 1, 1.75, 0.5, 0, 0, 0, VERDICT_WORSE},
-        {READING_CHECK, 1, 0.25, 0, 0, 1, 0, VERDICT_SAME},
-        {READING_CHECK, 1, 0.25, 0, 0, 0.5, 0, VERDICT_BETTER},
-        {READING_CHECK, 3, 1, 0, 0, 0, 0, VERDICT_SAME},
-        {READING_CHECK, 1, 3, 0, 0, 0, 0, VERDICT_SAME},
-        {READING_EXACT, 7, 4, 0, 0, 1, 3, VERDICT_SAME},
-        {READING_EXACT, 7.5, 4, 0, 0, 1, 3, VERDICT_BETTER},
-        {READING_TIMING, 2, 3, 1.5, 0, 0, 0, VERDICT_WORSE},
-        {READING_TIMING, 3, 2, 1.5, 0, 0, 0, VERDICT_BETTER},
-        {READING_ORDER, 2, 1.375, 0.375, 0.5, 0, 0, VERDICT_SAME},
-        {READING_ORDER, 2, 1.25, 0.375, 0.5, 0, 0, VERDICT_WORSE},
-        {READING_NEUTRAL, -2, -1, 0.5, 0, 0, 0, VERDICT_SAME},
-        {READING_NEUTRAL, -2, -1, 0, 0, 1, 0, VERDICT_SAME},
+        {READING_ERROR, 1, 0.5, 0, 0, 1, 0, VERDICT_SAME, 0},
+        {READING_ERROR, 0.5, 1, 0, 0, 1, 0, VERDICT_SAME, 0},
+        {READING_ERROR, 1, 1.5, 0.5, 0, 0, 0, VERDICT_SAME, 0},
+        {READING_ERROR, 1, 1.75, 0.5, 0, 0, 0, VERDICT_WORSE, 0.75},
+        {READING_CHECK, 1, 0.25, 0, 0, 1, 0, VERDICT_SAME, 0},
+        {READING_CHECK, 1, 0.25, 0, 0, 0.5, 0, VERDICT_BETTER, 0},
+        {READING_CHECK, 3, 1, 0, 0, 0, 0, VERDICT_SAME, 0},
+        {READING_CHECK, 1, 3, 0, 0, 0, 0, VERDICT_SAME, 0},
+        {READING_ERROR, 2, 5, 0.5, 0, 1, 0, VERDICT_WORSE, 1.5},
+        {READING_ERROR, 0.5, 5, 0.5, 0, 2, 0, VERDICT_WORSE, 1.5},
+        {READING_CHECK, 2, 7, 0, 0, 0, 0, VERDICT_WORSE, 2.5},
+        {READING_PART, 2, 3, 0.25, 0, 0, 0, VERDICT_WORSE, 0.5},
+        {READING_COUNT, 2, 3, 0.25, 0, 0, 0, VERDICT_WORSE, 0.5},
+        {READING_EXACT, 4, 6, 0.5, 0, 0, 3, VERDICT_WORSE, 2},
+        {READING_EXACT, 7, 4, 0, 0, 1, 3, VERDICT_SAME, 0},
+        {READING_EXACT, 7.5, 4, 0, 0, 1, 3, VERDICT_BETTER, 0},
+        {READING_TIMING, 2, 3, 1.5, 0, 0, 0, VERDICT_WORSE, 1.5},
+        {READING_TIMING, 3, 2, 1.5, 0, 0, 0, VERDICT_BETTER, 0},
+        {READING_ORDER, 2, 1.375, 0.375, 0.5, 0, 0, VERDICT_SAME, 0},
+        {READING_ORDER, 2, 1.25, 0.375, 0.5, 0, 0, VERDICT_WORSE, 0.75},
+        {READING_NEUTRAL, -2, -1, 0.5, 0, 0, 0, VERDICT_SAME, 0},
+        {READING_NEUTRAL, -2, -1, 0, 0, 1, 0, VERDICT_SAME, 0},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct metric old = {.kind = rows[k].kind,
@@ -132,7 +139,8 @@ TEST(limits)
         double amount;
         bool fault;
         new.value = rows[k].b, new.noise = rows[k].other;
-        if (metric_judge(&old, &new, &amount, &fault) != rows[k].verdict) fail_msg("row %zu", k);
+        if (metric_judge(&old, &new, &amount, &fault) != rows[k].verdict || amount != rows[k].worse)
+            fail_msg("row %zu: worse by %g", k, amount);
     }
     /* among equal verdicts a word is worse than a number */
     const struct metric number = {.kind = READING_PART, .value = 1},
@@ -141,6 +149,28 @@ TEST(limits)
     const struct metric nan = {.kind = READING_PART, .value = NAN};
     assert_true(metric_worse(&nan, &number) && !metric_worse(&number, &nan));
     assert_false(metric_worse(&nan, &nan));
+}
+
+/* Errors are not below 0, other figures may be. */
+TEST(negative_figures)
+{
+    static const struct {
+        const char *inside, *name;
+        bool refused;
+    } rows[] = {{"errors", "l1", true},    {"conservation", "energy", true},
+                {NULL, "error_rms", true}, {NULL, "order", false},
+                {NULL, "p_star", false},   {NULL, "normalisation", false}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        for (int of = 0; of < 4; of++) {
+            json_t *documents[] = {run_with(1e-3, 1), run_with(1e-3, 1)};
+            struct diff diff;
+            for (int i = 0; i < 2; i++)
+                put(documents[i], rows[k].inside, rows[k].name, of & (1 << i) ? "-1e-30" : "0");
+            assert_int_equal(differ(documents[0], documents[1], &diff) == STATUS_BAD_INPUT,
+                             of && rows[k].refused);
+            diff_free(&diff);
+            json_decref(documents[0]), json_decref(documents[1]);
+        }
 }
 
 /* ---- names ---- */

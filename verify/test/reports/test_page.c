@@ -38,6 +38,41 @@ TEST(failing_figures)
     }
 }
 
+/* How much of its bound a check needs, in words and in colour. */
+TEST(shares_of_a_bound)
+{
+    static const struct {
+        double value;
+        const char *words, *color;
+    } rows[] = {{0, "0 %", ""},
+                {0.0099, "&lt; 1 %", ""},
+                {0.01, "1 %", ""},
+                {0.5, "50 %", ""},
+                {0.51, "51 %", "close"},
+                {1, "100 %", "close"},
+                {1.01, "101 %", "over"},
+                {999, "99900 %", "over"},
+                {1000, "> 1000 times", "over"},
+                {(double)NAN, "—", "over"}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        json_t *results = json_pack("{s:{s:[{s:s, s:s, s:o, s:f, s:s}]}}", "verify", "checks",
+                                    "group", "kernels", "name", "support", "value",
+                                    result_number(rows[k].value), "bound", 1., "status", "pass");
+        struct page made;
+        size_t sealed;
+        char cell[120];
+        json_object_set_new(results, "verdict", verdict_make(results));
+        assert_true(page_make(&made, results));
+        char *whole = markup_unsealed(made.html, &sealed);
+        snprintf(cell, sizeof cell, "<td class=\"n\">%s<span class=\"margin\"><i class=\"%s\"",
+                 rows[k].words, rows[k].color);
+        if (!strstr(whole, cell)) fail_msg("%g is not %s", rows[k].value, cell);
+        free(whole);
+        page_free(&made);
+        json_decref(results);
+    }
+}
+
 /* Changes of one subject since the last report share a row, which shows the largest: in whichever
  * order they are, up or down, and a change without a ratio is larger than any other. */
 TEST(changes_of_one_subject)

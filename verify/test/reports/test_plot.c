@@ -178,6 +178,24 @@ TEST(ranges_of_logarithms)
         }
 }
 
+/* Axes of up to five decades, this included, have small ticks between the decades. */
+TEST(small_ticks)
+{
+    static const double ends[] = {9e4, 1e5, 1.1e5, 1e7};
+    for (size_t k = 0; k < sizeof ends / sizeof *ends; k++) {
+        const double from = 1, both[] = {from, ends[k]};
+        const struct plot_series line = {.label = "a", .n = 2, .x = both, .y = both};
+        const struct plot_panel panel = {
+            .y_log = true, .y_min = from, .y_max = ends[k], .series = &line, .series_count = 1};
+        const struct plot drawn = {.name = "ticks", .panels = &panel, .panel_count = 1};
+        char *script, *data;
+        assert_true(plot_source(&drawn, &script, &data));
+        assert_int_equal(occurrences(script, "'' 30 1") > 0, ends[k] <= 1e5);
+        free(script);
+        free(data);
+    }
+}
+
 static enum process_status shell(const char *command, const char *input, size_t size, int seconds,
                                  struct buffer *output, char *message, size_t n)
 {
