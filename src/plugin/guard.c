@@ -161,15 +161,12 @@ static enum ending listen_to(pid_t pid, double limit, struct stream *streams, in
             nanosleep(&pause, NULL);
         }
         const pid_t done = waitpid(pid, outcome, WNOHANG | WUNTRACED);
-        for (int i = 0; i < 2; i++) {
-            const size_t before = streams[i].seen;
-            while (drain(&streams[i]) && streams[i].seen - before < (size_t)1 << 22) continue;
-        }
+        for (int i = 0; i < 2; i++)
+            while (drain(&streams[i]) && streams[i].seen <= PRINTED_MAX) continue;
         over = done == pid && !WIFSTOPPED(*outcome);
         const bool much = streams[1].seen > PRINTED_MAX, late = now() >= until;
         if (over || (done != pid && !much && !late)) continue;
         ending = done == pid ? ENDED : much ? TOO_MUCH : TOO_LATE; /* ENDED: it was stopped */
-        kill(-pid, SIGKILL);
         kill(pid, SIGKILL);
         int ignored;
         while (waitpid(pid, &ignored, 0) < 0 && errno == EINTR) continue;
@@ -266,7 +263,7 @@ static enum status start(guard_work *work, const void *context, double limit,
     const pid_t parent = getpid(), pid = fork();
     if (pid == 0) child(work, context, parent, answer[1], printed[1]);
     const int reason = errno;
-    struct stream streams[2] = {{.file = answer[0], .most = (size_t)1 << 26},
+    struct stream streams[2] = {{.file = answer[0], .most = PRINTED_MAX},
                                 {.file = printed[0], .most = sizeof verdict->printed}};
     close(answer[1]), close(printed[1]);
     for (int i = 0; i < 2; i++)

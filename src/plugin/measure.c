@@ -43,8 +43,9 @@ double measure_between(const struct pieces *pieces, measure_function *f, int exp
         const double lo = fmax(a, pieces->edge[i]), hi = fmin(b, pieces->edge[i + 1]);
         if (!(lo < hi)) continue;
         const double fine = gauss(pieces, f, exponent, h, lo, hi, FINE);
-        *floor +=
-            fabs(fine - gauss(pieces, f, exponent, h, lo, hi, COARSE)) + DBL_EPSILON * fabs(fine);
+        if (floor)
+            *floor += fabs(fine - gauss(pieces, f, exponent, h, lo, hi, COARSE)) +
+                      DBL_EPSILON * fabs(fine);
         sum += fine;
     }
     return sum;
@@ -56,27 +57,24 @@ double measure_support(const struct pieces *pieces, measure_function *f, int exp
     return measure_between(pieces, f, exponent, h, 0, 1, floor);
 }
 
-double measure_constant(const struct pieces *pieces, double *floor)
+double measure_constant(const struct pieces *pieces)
 {
     struct kernel unit = *pieces->kernel;
     struct pieces copy = *pieces;
     copy.kernel = &unit;
     unit.constant[copy.dim] = 1;
-    const double sum =
-        measure_sphere(copy.dim) * measure_support(&copy, kernel_value, copy.dim - 1, 1, floor);
-    *floor /= fabs(sum);
-    return 1 / sum;
+    return 1 /
+           (measure_sphere(copy.dim) * measure_support(&copy, kernel_value, copy.dim - 1, 1, NULL));
 }
 
 void measure_moments(const struct pieces *pieces, struct measure_moments *moments)
 {
     const int dim = pieces->dim;
     const double sphere = measure_sphere(dim);
-    double floor = 0;
-    moments->volume = sphere * measure_support(pieces, kernel_value, dim - 1, 1, &floor);
-    moments->second = sphere / dim * measure_support(pieces, kernel_value, dim + 1, 1, &floor);
+    moments->volume = sphere * measure_support(pieces, kernel_value, dim - 1, 1, NULL);
+    moments->second = sphere / dim * measure_support(pieces, kernel_value, dim + 1, 1, NULL);
     moments->fourth =
-        3 * sphere / (dim * (dim + 2)) * measure_support(pieces, kernel_value, dim + 3, 1, &floor);
+        3 * sphere / (dim * (dim + 2)) * measure_support(pieces, kernel_value, dim + 3, 1, NULL);
 }
 
 const double measure_significant = 30;

@@ -12,14 +12,15 @@ typedef double measure_function(const struct kernel *kernel, double r, double h,
 double measure_sphere(int dim);
 
 /* Integral of r^power f(r, h) over a h < r < b h, or over the whole support, by Gauss-Legendre
- * between the break points; adds the difference of two rules to *floor. */
+ * between the break points; adds the difference of two rules to *floor, unless floor
+ * is NULL. */
 double measure_between(const struct pieces *pieces, measure_function *f, int power, double h,
                        double a, double b, double *floor);
 double measure_support(const struct pieces *pieces, measure_function *f, int power, double h,
                        double *floor);
 
 /* The C_d for which the integral of W is one. */
-double measure_constant(const struct pieces *pieces, double *floor);
+double measure_constant(const struct pieces *pieces);
 
 struct measure_moments {
     double volume; /* integral of W dV, should be 1 */

@@ -250,9 +250,8 @@ static enum status complete(struct user_kernel *user, const struct functions *f,
 {
     struct kernel *kernel = &user->kernel;
     struct pieces pieces;
-    double floor = 0;
     if (pieces_find(&pieces, kernel, dim, &user->terms, error)) return error->status;
-    if (!f->constant) kernel->constant[dim] = measure_constant(&pieces, &floor);
+    if (!f->constant) kernel->constant[dim] = measure_constant(&pieces);
     enum status status = take_class(user, f, &pieces, error);
     pieces_free(&pieces);
     return status ? status : check_constant(user, dim, error);

@@ -77,11 +77,10 @@ static enum sphproof_status complete(struct sphproof_kernel *own, int dim, int s
     const struct terms terms = terms_of(own, pieces_terms_usual.samples);
     struct pieces pieces;
     struct error ours;
-    double floor = 0;
     if (check_shape(kernel, dim, error)) return SPHPROOF_BAD_INPUT;
     const enum status status = pieces_find(&pieces, kernel, dim, &terms, &ours);
     if (status) return library_pass(status, &ours, error);
-    if (!(kernel->constant[dim] != 0)) kernel->constant[dim] = measure_constant(&pieces, &floor);
+    if (!(kernel->constant[dim] != 0)) kernel->constant[dim] = measure_constant(&pieces);
     kernel->smoothness[dim] = smoothness;
     if (own->found_class) {
         struct measure_class class;

@@ -162,14 +162,15 @@ TEST(classes)
             assert_int_equal(measure_class_limit(&pieces), MEASURE_CLASS_MAX);
             pieces_free(&pieces);
         }
-    for (int large = 0; large < 2; large++) {
+    for (int k = 0; k < 3; k++) {
+        const bool large = k == 1, first = k == 2; /* the larger one comes first */
         const struct kernel kernel = made();
         struct pieces pieces;
         struct measure_class class;
         const double size = large ? 1.1e-4 : 0.9e-4;
         memset(&set, 0, sizeof set);
-        set.bump[0].at = 0.4, set.bump[0].power = 2;
-        set.bump[1].at = 0.7, set.bump[1].power = 2;
+        set.bump[0].at = first ? 0.7 : 0.4, set.bump[0].power = 2;
+        set.bump[1].at = first ? 0.4 : 0.7, set.bump[1].power = 2;
         set.bump[1].a = size * 2.109375 / 2; /* of the largest |dw| */
         set.bump[0].a = set.bump[1].a / 8;
         find(&pieces, &kernel, 1, false);
@@ -177,11 +178,35 @@ TEST(classes)
         measure_class(&pieces, &class);
         assert_int_equal(class.extra, 2);
         assert_int_equal(class.accident.count, large ? 1 : 2);
-        near_absolute(class.accident.at, large ? 0.4 : 0.7, 1e-6);
+        near_absolute(class.accident.at, large || first ? 0.4 : 0.7, 1e-6);
         near_relative(class.accident.jump, large ? size / 8 : size, 1e-3);
         assert_int_equal(class.accident.k, 2);
         pieces_free(&pieces);
     }
+}
+
+static double flat(const struct kernel *kernel, double q, int dim)
+{
+    (void)kernel, (void)dim;
+    return q < 1;
+}
+
+static double nothing(const struct kernel *kernel, double q, int dim)
+{
+    (void)kernel, (void)q, (void)dim;
+    return 0;
+}
+
+/* A top hat, of which no value has an error. */
+TEST(constant)
+{
+    struct kernel kernel = made();
+    struct pieces pieces;
+    kernel.w = flat, kernel.dw = nothing;
+    find(&pieces, &kernel, 3, false);
+    assert_true(pieces.n == 1 && pieces.resolved && pieces.noise_dw == 0 && pieces.max_w == 1);
+    near_relative(measure_constant(&pieces), 3 / (4 * M_PI), 1e-14);
+    pieces_free(&pieces);
 }
 
 /* Pieces shrink towards a singular point by factors of 4 or 8, down to where it makes no

@@ -4,9 +4,13 @@
  * message. The program's exit status follows. */
 #include "test.h"
 
+#include <poll.h>
+#include <signal.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include "certificate.h"
+#include "guard.h"
 #include "plugin_kernel.h"
 #include "user_figures.h"
 #include "user_kernel.h"
@@ -77,6 +81,13 @@ TEST(derived)
     near_relative(user.kernel.constant[3], 1785 / (64 * M_PI), 1e-14);
     assert_string_equal(user.kernel.member.name, "wendland_c8");
     user_kernel_unload(&user);
+    char path[4200]; /* a file of another name */
+    snprintf(path, sizeof path, "%s/other_%d.so", folder, (int)getpid());
+    assert_int_equal(symlink("wendland_c8.so", path), 0);
+    assert_int_equal(user_kernel_load(&user, path, 1, NULL, NULL), STATUS_OK);
+    assert_string_equal(user.kernel.member.name, "wendland_c8");
+    user_kernel_unload(&user);
+    unlink(path);
     assert_int_equal(user_kernel_load(&user, path_of("table"), 2, NULL, NULL), STATUS_OK);
     assert_true(user.found_class && user.kernel.smoothness[2] == 2);
     assert_string_equal(user.kernel.member.name, "table");
@@ -227,6 +238,131 @@ TEST(paths_of_modules)
         if (strncmp(error.message, says, strlen(says)) != 0) fail_msg("%s", error.message);
     }
     plugin_allow(NULL, false);
+}
+
+/* ---- work in a process of its own ---- */
+
+static void print_on(void)
+{
+    for (;;) puts("on and on");
+}
+
+static void wait_on(void)
+{
+    for (;;) pause();
+}
+
+static void leave(void)
+{
+    exit(3);
+}
+
+static void stop(void)
+{
+    raise(SIGSTOP);
+}
+
+static void crash(void)
+{
+    raise(SIGFPE);
+}
+
+static void close_all(void)
+{
+    for (int file = 3; file < 100; file++) close(file);
+}
+
+static const struct work {
+    size_t answered, printed;
+    enum status status;
+    bool begun;
+    void (*end)(void);
+    const char *reason; /* NULL: the work completes */
+} works[] = {{0, 0, STATUS_OK, false, NULL, NULL},
+             {1, 1, STATUS_OK, true, NULL, NULL},
+             {26, 199, STATUS_CHECK_FAILED, true, NULL, NULL},
+             {300000, 300000, STATUS_BAD_INPUT, false, NULL, NULL},
+             {10000000, 200, STATUS_OK, true, NULL, NULL},
+             {1, 0, STATUS_OK, true, print_on, "prints without end, more than 64 MB"},
+             {1, 20, STATUS_OK, true, wait_on, "did not end within 0.25 s: stands"},
+             {1, 20, STATUS_OK, false, leave, "ends the process with exit(3)"},
+             {1, 20, STATUS_OK, true, stop, "has stopped itself"},
+             {1, 20, STATUS_OK, false, crash, "crashes (Floating point exception)"},
+             {1, 0, STATUS_OK, true, close_all, "closes or writes to files that are not its own"}};
+
+static char letter(size_t i)
+{
+    return (char)('a' + i % 26);
+}
+
+static enum status perform(const void *context, json_t **reply, struct error *error)
+{
+    const struct work *work = context;
+    char *text = calloc(work->answered + 1, 1);
+    for (size_t i = 0; i < work->answered; i++) text[i] = letter(i);
+    if (work->begun) guard_begun();
+    for (size_t i = 0; i < work->printed; i++) fputc(letter(i), stdout);
+    fflush(stdout);
+    if (work->end) work->end();
+    *reply = json_string(text);
+    free(text);
+    return work->status ? error_set(error, work->status, "said so") : STATUS_OK;
+}
+
+TEST(guarded)
+{
+    for (size_t k = 0; k < sizeof works / sizeof *works; k++) {
+        const struct work *work = &works[k];
+        struct guard_verdict verdict;
+        struct error error = {0};
+        const enum status status =
+            guard_run(perform, work, work->end == wait_on ? 0.25 : 60, &verdict, &error);
+        if (status != (!work->reason ? work->status
+                       : work->begun ? STATUS_CHECK_FAILED
+                                     : STATUS_BAD_INPUT))
+            fail_msg("work %zu: %d", k, status);
+        assert_true(verdict.begun == work->begun && verdict.ended == !work->reason);
+        assert_string_equal(error.message, verdict.ended && status ? "said so" : "");
+        if (work->reason && strncmp(verdict.reason, work->reason, strlen(work->reason)))
+            fail_msg("work %zu %s", k, verdict.reason);
+        if (work->end != print_on) {
+            const size_t shown = work->printed < 199 ? work->printed : 199;
+            assert_int_equal(verdict.printed_bytes, work->printed);
+            assert_int_equal(strlen(verdict.printed), shown);
+            for (size_t i = 0; i < shown; i++) assert_true(verdict.printed[i] == letter(i));
+        }
+        if (verdict.ended) {
+            const char *text = json_string_value(verdict.reply);
+            assert_int_equal(strlen(text), work->answered);
+            for (size_t i = 0; i < work->answered; i++)
+                if (text[i] != letter(i)) fail_msg("letter %zu", i);
+        }
+        guard_free(&verdict);
+    }
+}
+
+static int held[2];
+
+static enum status leave_another(const void *context, json_t **reply, struct error *error)
+{
+    (void)context, (void)reply, (void)error;
+    if (fork() == 0) wait_on();
+    return STATUS_OK;
+}
+
+/* A process that the work has started ends with it. */
+TEST(nothing_remains)
+{
+    struct guard_verdict verdict;
+    struct error error = {0};
+    assert_int_equal(pipe(held), 0);
+    assert_int_equal(guard_run(leave_another, NULL, 60, &verdict, &error), STATUS_OK);
+    close(held[1]);
+    struct pollfd polled = {.fd = held[0], .events = POLLIN};
+    assert_int_equal(poll(&polled, 1, 10000), 1);
+    assert_true(polled.revents & POLLHUP);
+    close(held[0]);
+    guard_free(&verdict);
 }
 
 /* Exit status of the program with these arguments (%s, at most twice, is the folder of the
