@@ -190,6 +190,9 @@ def main(score, work):
         said, listed = run()
         expect("one that does not apply is said: " + said,
                "does not apply any more" in said and listed["files"][0]["listed"] == entry["listed"])
+    write(reasons, LISTED.replace("tiny.c", "other.c"))
+    expect("so is one of a file that is not there", "does not apply any more" in run()[0])
+    expect("unless other files alone are asked for", "does not apply any more" not in run("--only", "src/tiny.c")[0])
     write(reasons, LISTED.replace(" :: nobody", ", for nobody"))
     expect("a broken list is refused by its line", "equivalent.txt:3" in run(code=2)[0])
     os.remove(reasons)
