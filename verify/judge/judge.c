@@ -469,6 +469,21 @@ static bool wrong_mass(const struct judged *judged)
                                        fmax(JUDGE_FOREIGN_MASS, 1 / rows));
 }
 
+/* Relative difference of the total energy from that of the case's initial state. */
+static double energy_off(const struct judged *judged)
+{
+    return fabs(judged->sums.energy / judged->start.energy - 1);
+}
+
+/* True if a snapshot of t = 0 is the case's initial state, whatever its densities are, which codes
+ * compute from neighbours. Of a blast only the total energy is known. */
+static bool is_the_start(const struct judged *judged)
+{
+    const struct judge_start *start = &judged->of_start;
+    return start->looked && !start->wrong && !start->moved &&
+           (!isnan(start->worst[START_ENERGY]) || energy_off(judged) <= JUDGE_FOREIGN_MASS);
+}
+
 /* Compares a snapshot of t = 0 with the initial state, including the sums of measure_sums. */
 static enum status measure_start(struct judged *judged, bool glance, struct error *error)
 {
@@ -479,14 +494,20 @@ static enum status measure_start(struct judged *judged, bool glance, struct erro
     if (glance) return STATUS_OK;
     if (judge_start_look(&judged->result, judged->file.precision[1], ratio, start, error))
         return error->status;
-    if (start->looked && !start->wrong)
+    if (start->looked && !start->wrong) {
+        const bool known = !isnan(start->worst[START_ENERGY]);
+        char masses[40] = "";
+        if (!isnan(start->worst[START_MASS]))
+            snprintf(masses, sizeof masses, ", masses to %.1e", start->worst[START_MASS]);
         snapshot_note(
             &judged->file.notes, "start", "the case's",
-            "%s%svelocities to %.1e of the greatest, internal energies to %.1e, masses to "
-            "%.1e; density and pressure are sums over neighbours",
+            "%s%svelocities to %.1e of the greatest, %s to %.1e%s; density and pressure are sums "
+            "over neighbours",
             start->message, *start->message ? "; " : "", start->worst[START_VELOCITY],
-            start->worst[START_ENERGY], start->worst[START_MASS]);
-    else if (start->looked)
+            known ? "internal energies" : "the total energy",
+            known ? start->worst[START_ENERGY] : energy_off(judged), masses);
+    }
+    if (start->looked && start->wrong)
         snapshot_note(&judged->file.notes, "start", "damaged", "%s", start->message);
     return STATUS_OK;
 }
@@ -602,7 +623,7 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
     if (!status) status = measure_wrong(judged, error);
     if (!status) status = measure_start(judged, glance, error);
     if (!status) {
-        judged->far = judged->wrong > JUDGE_FOREIGN;
+        judged->far = judged->wrong > JUDGE_FOREIGN && !is_the_start(judged);
         judged->foreign =
             judged->far || judged->case_gamma > 0 || wrong_mass(judged) ||
             (judged->of_start.wrong &&

@@ -282,6 +282,7 @@ static void look(struct start_gas *gas, double precision, double mass_ratio, dou
     if (start->wrong) start->explained = explain(gas, start->message, sizeof start->message);
     if (start->wrong && !start->explained && are_moved(gas)) {
         start->wrong = 0;
+        start->moved = true;
         snprintf(start->message, sizeof start->message,
                  "particles have the case's state to a spacing, as if they had been moved after "
                  "they had got it");

@@ -16,6 +16,7 @@ struct judge_start {
     double worst[START_FIELDS];
     size_t wrong; /* number of particles with a wrong value */
     bool explained;
+    bool moved; /* none is wrong, but some have the state of another position, a spacing away */
     char message[500];
 };
 
