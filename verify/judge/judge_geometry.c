@@ -468,9 +468,9 @@ enum status judge_geometry(const struct judge_request *given, struct judged *jud
         return error->status;
     judged->case_dim = asked.file.dimension;
     const struct problem *problem = problem_of(settings);
-    /* flows that also exist in 1D vary along x alone, in any dimension */
+    /* flows that also exist in 1D and have no direction vary along x alone, in any dimension */
     if (judged->file.dim == 3 && asked.file.dimension == 2 &&
-        (problem->least_dim == 2 || problem->circular))
+        (problem->least_dim == 2 || problem->circular || problem_reads(problem, SETTING_direction)))
         take_slab(judged);
     if (strcmp(name, said) == 0 && !request->x0.known && take_keys(judged, settings, error))
         return error->status;

@@ -102,6 +102,10 @@ def test_initial_states(draw):
             with open("more.csv", "w", encoding="ascii") as file:
                 file.write("\n".join([head, *(row if isinstance(row, str) else ",".join(row) for row in rows)]) + "\n")
             call("judge", "more.csv", "--time", "0", status=1)
+    # layers of a wave that has a direction in 2D
+    call("ic", "sound_wave_2d", "n=16^2", "direction=" + draw.choice(("1,0", "1,1", "2,1")), "--as-3d", "10", "--format", "csv", "--out", "slab.csv",
+         status=0)
+    call("judge", "slab.csv", status=0)
 
 
 def test_last_place():
