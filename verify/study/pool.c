@@ -2,6 +2,7 @@
 #include "pool.h"
 
 #include <errno.h>
+#include <math.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
@@ -269,7 +270,7 @@ static void report(const struct pool *pool, const struct pool_settings *settings
 {
     if (settings->progress && course->last)
         settings->progress(settings->progress_context, course->last, course->ready, pool->count,
-                           course->work > 0 ? course->worked / course->work : 1);
+                           course->work > 0 ? fmin(course->worked / course->work, 1) : 1);
 }
 
 static enum status run_workers(struct pool *pool, const struct pool_settings *settings,
