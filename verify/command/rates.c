@@ -52,7 +52,7 @@ static enum status take_boundaries(const char *text, int dim, enum boundary boun
 {
     char words[64];
     int count = 0;
-    snprintf(words, sizeof words, "%s", text);
+    const bool cut = snprintf(words, sizeof words, "%s", text) >= (int)sizeof words;
     for (char *rest = words, *word; (word = strtok_r(rest, " \t,", &rest)); count++) {
         const int member = family_index(&scheme_boundary_family, word);
         if (member < 0)
@@ -65,7 +65,7 @@ static enum status take_boundaries(const char *text, int dim, enum boundary boun
         boundary[count] = (enum boundary)member;
     }
     for (int a = 1; count == 1 && a < dim; a++) boundary[a] = boundary[0];
-    if (count != 1 && count != dim)
+    if (cut || (count != 1 && count != dim))
         return error_set(error, STATUS_BAD_INPUT, "boundary=%.60s: allowed: one word or %d", text,
                          dim);
     for (int a = 0; a < dim; a++)

@@ -89,6 +89,9 @@ def test_prune():
     for days, left in (("2", 8), ("1.6", 8), ("1.4", 0)):
         found = json.loads(call("cache", "cache", "--prune", days, "--json", "-", status=0).stdout)
         expect("entries not used for %s days" % days, len(entries()) == left and found["removed"] == 8 - left, found)
+        size = sum(map(os.path.getsize, entries()))
+        expect("bytes after %s days" % days, found["bytes"] == size and call("cache", "cache", status=0).stdout
+               == "%d results, %.3g MB; 0 removed\n" % (left, size / 1e6), (found, size))
 
 
 def test_where():
