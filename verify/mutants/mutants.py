@@ -209,7 +209,7 @@ def share(workers, tasks, do):
 
 def run(source, work, names):
     mutants = [m for m in read_list() if not names or {m.name, m.group, m.test} & set(names)]
-    began, outcomes, failing = time.time(), {}, {}
+    began, outcomes, failing = time.monotonic(), {}, {}
     workers = [Worker(os.path.join(work, "worker%d" % i)) for i in range(min(WORKERS, len(mutants)))]
     for worker in workers:
         copy_tree(source, worker.tree)
@@ -227,11 +227,11 @@ def run(source, work, names):
         sys.exit("without any fault these fail already: " + "".join("\n%s: %s" % (name, said[-2000:]) for name, said in failing.items()))
 
     def with_fault(worker, mutant):
-        start = time.time()
+        start = time.monotonic()
         outcomes[mutant.name] = worker.judge(mutant)
         worker.restore()
         print("%3d/%d  %-34s %-14s %5.1f s  %s" % (len(outcomes), len(mutants), mutant.name, mutant.group or mutant.test,
-                                                  time.time() - start, outcomes[mutant.name]), flush=True)
+                                                  time.monotonic() - start, outcomes[mutant.name]), flush=True)
 
     share(workers, mutants, with_fault)
     missed = [m for m in mutants if outcomes[m.name] != "caught"]
@@ -239,7 +239,7 @@ def run(source, work, names):
         json.dump([{"mutant": m.name, "group": m.group or m.test, "file": m.file, "fault": m.fault,
                     "outcome": outcomes[m.name]} for m in mutants], f, indent=1)
     print("\n%d source mutants, %d caught, %d not; %.0f s"
-          % (len(mutants), len(mutants) - len(missed), len(missed), time.time() - began))
+          % (len(mutants), len(mutants) - len(missed), len(missed), time.monotonic() - began))
     for m in missed:
         print("  %s (%s): %s\n      %s" % (m.name, m.file, m.fault, outcomes[m.name]))
     return 1 if missed else 0

@@ -625,17 +625,17 @@ def main():
     rows = rows_of(os.path.join(source, "src", "README.md"))
     bad = ["src/README.md has a row '%s' without a test" % r for r in rows if r not in ROWS]
     bad += ["there is a test of '%s', but no such row in src/README.md" % r for r in ROWS if r not in rows]
-    began = time.time()
+    began = time.monotonic()
     tree = Tree(source, work)
     going = {name: ROWS[name](tree) for name in ROWS if not words or any(w in name for w in words)}
     tried = len(going)
     for build in range(3 if sound else 4):
         if build:
-            start = time.time()
+            start = time.monotonic()
             tree.build()
-            print("%-62s %6.1f s" % ("build %d" % build, time.time() - start), flush=True)
+            print("%-62s %6.1f s" % ("build %d" % build, time.monotonic() - start), flush=True)
         for name, steps in list(going.items()):
-            start = time.time()
+            start = time.monotonic()
             outcome = ""
             try:
                 next(steps)
@@ -646,10 +646,10 @@ def main():
                 bad.append("%s: %s" % (name, failed))
             if outcome:
                 del going[name]
-            print("%-62s %6.1f s  %s" % (name, time.time() - start, outcome), flush=True)
+            print("%-62s %6.1f s  %s" % (name, time.monotonic() - start, outcome), flush=True)
     if not sound:
         bad += ["%s wants another build" % name for name in going]
-    print("%d rows, %d complaints; %.0f s" % (tried, len(bad), time.time() - began))
+    print("%d rows, %d complaints; %.0f s" % (tried, len(bad), time.monotonic() - began))
     for text in bad:
         print("\n" + text)
     return 1 if bad or not tried else 0

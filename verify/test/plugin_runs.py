@@ -66,11 +66,11 @@ def same_document(bound, *words, option=None):
 
 
 def refused(status, words, *arguments, lasting=60):
-    began = time.time()
+    began = time.monotonic()
     code, out, err = said(*arguments)
     check(code == status and not out and words in err and err.count("\n") == 1, *arguments, "ends with", code,
           "and says", repr(out[:200]), repr(err[:300]), "not", repr(words))
-    check(time.time() - began < lasting, *arguments, "takes", time.time() - began, "s")
+    check(time.monotonic() - began < lasting, *arguments, "takes", time.monotonic() - began, "s")
 
 
 def nothing_left(name):

@@ -145,9 +145,9 @@ def processes(path):
 
 
 def wait_for(condition, seconds=20):
-    until = time.time() + seconds
+    until = time.monotonic() + seconds
     while not condition():
-        if time.time() > until:
+        if time.monotonic() > until:
             return False
         time.sleep(0.02)
     return True
