@@ -199,7 +199,7 @@ static void sample_beside(const struct pieces *pieces, kernel_shape *shape,
 /* Error of a series due to its noise at x > 1. */
 static double noise_beyond(const struct series_fit *fit, double x)
 {
-    return fit->noise * fit->reach * cosh(fit->reach * acosh(x));
+    return fit->noise * cosh(fit->reach * acosh(x));
 }
 
 /* Bisects for the place where the values leave the left series for the right one. True if the
@@ -208,10 +208,10 @@ static bool find_jump(const struct pieces *pieces, kernel_shape *shape, struct j
                       double *q, double *doubt)
 {
     const double near = junction->margin, half = junction->half, edge = 1 + near / half;
-    double low = junction->at - near, high = junction->at + near;
+    double low = junction->at - near, high = junction->at + near, middle;
     sample_beside(pieces, shape, junction);
-    for (int i = 0; i < DBL_MANT_DIG; i++) {
-        const double middle = (low + high) / 2, x = middle - junction->at + near + half;
+    while ((middle = (low + high) / 2) > low && middle < high) {
+        const double x = middle - junction->at + near + half;
         const double left = pieces_series_value(&junction->left, x / half) -
                             shape(pieces->kernel, middle, pieces->dim);
         *(fabs(left) < fabs(left - difference(junction, middle, 0)) ? &low : &high) = middle;
@@ -219,7 +219,7 @@ static bool find_jump(const struct pieces *pieces, kernel_shape *shape, struct j
     *q = high;
     *doubt = high - low;
     return fabs(difference(junction, high, 0)) >
-           30 * (noise_beyond(&junction->left, edge) + noise_beyond(&junction->right, edge));
+           1e2 * (noise_beyond(&junction->left, edge) + noise_beyond(&junction->right, edge));
 }
 
 /* Refines a break point found by bisection, whose error is limited only by the tolerance. Where

@@ -86,6 +86,7 @@ TEST(break_points)
         int n; /* number of break points within: of the first bumps */
     } rows[] = {{{0}, {0}, 0},
                 {{0.4}, {0}, 1},
+                {{0.6}, {0}, 1},
                 {{0.4}, {1}, 1},
                 {{0.4, 0.4}, {0, 1}, 1},
                 {{0.123, 0.7, 0.123}, {0, 1, 2}, 2},
@@ -105,7 +106,9 @@ TEST(break_points)
                 memset(&set, 0, sizeof set);
                 for (int i = 0; i < MOST; i++)
                     set.bump[i].at = rows[k].at[i], set.bump[i].power = rows[k].power[i],
-                    set.bump[i].a = rows[k].at[i] > 0;
+                    set.bump[i].a = !(rows[k].at[i] > 0) ? 0
+                                    : k == 2             ? 1e-11
+                                                         : 1;
                 if (declared) kernel.knots = rows[k].at, kernel.knot_count = rows[k].n;
                 find(&pieces, &kernel, dim, false);
                 if (pieces.n != rows[k].n + 1) {
@@ -131,6 +134,21 @@ TEST(break_points)
                     near_absolute(class.at, rows[k].power[0] == 0 ? rows[k].at[0] : 1, 1e-12);
                 pieces_free(&pieces);
             }
+}
+
+/* A piece between declared knots stays, however short it is and whatever is in it. */
+TEST(close_knots)
+{
+    static const double knots[] = {0.4, 0.4 + 8e-12};
+    struct kernel kernel = made();
+    struct pieces pieces;
+    memset(&set, 0, sizeof set);
+    set.bump[0].at = 0.4 + 3e-12, set.bump[0].a = 1;
+    kernel.knots = knots, kernel.knot_count = 2;
+    find(&pieces, &kernel, 1, false);
+    assert_true(pieces.n == 3 && pieces.edge[1] == knots[0] && pieces.edge[2] == knots[1]);
+    assert_false(pieces.resolved);
+    pieces_free(&pieces);
 }
 
 /* Splines whose knots are not declared, and mistakes too small to be intended. */
@@ -232,6 +250,11 @@ TEST(singular_points)
         if (k == 0) assert_true(pieces.n == 16 && pieces.edge[1] == 0x1p-34);
         for (int i = 1; i < pieces.n && k == 0; i++)
             assert_true(pieces.edge[i + 1] == (i < 5 ? 8 : 4) * pieces.edge[i]);
+        for (int i = 1; i < pieces.n && k == 0; i++) /* nothing there is refined */
+            near_relative(pieces.doubt[i],
+                          0.2 * fmin(pieces.edge[i] - pieces.edge[i - 1],
+                                     pieces.edge[i + 1] - pieces.edge[i]),
+                          1e-12);
         if (k == 1) assert_int_equal(pieces.n, 8); /* beside a smooth left side it is seen late */
         if (k > 1) near_below(nearest, k == 5 ? 0 : 1e-8);
         pieces_free(&pieces);
@@ -350,24 +373,38 @@ TEST(places)
 TEST(constants_of_a_file)
 {
     unsigned char bytes[200] = {0};
-    const double doubles[] = {0.3141, -0.2718, 1.5, 1e-10, 0.577};
+    const double doubles[] = {0.3141, -0.2718, 1.5, 1e-10, 0.577, 2e-9};
     const float single = 0.625f;
-    static const size_t at[] = {8, 16, 24, 32, 43};
+    static const size_t at[] = {8, 16, 24, 32, 43, 56};
     double *found;
-    for (int k = 0; k < 5; k++) memcpy(bytes + at[k], &doubles[k], 8);
+    for (int k = 0; k < 6; k++) memcpy(bytes + at[k], &doubles[k], 8);
     memcpy(bytes + 100, &single, 4);
     memcpy(bytes + 110, &single, 4); /* at no fourth byte */
     memcpy(bytes + 192, &doubles[0], 8);
     FILE *out = fopen(path_of("constants"), "wb");
     assert_true(fwrite(bytes, 1, sizeof bytes, out) == sizeof bytes && fclose(out) == 0);
     const int n = places_constants(path_of("constants"), &found);
-    bool all[4] = {false};
+    bool all[5] = {false};
     for (int i = 0; i < n; i++) {
         assert_true(found[i] > 1e-9 && found[i] < 1 && (i == 0 || found[i] > found[i - 1]));
         all[0] |= found[i] == 0.3141, all[1] |= found[i] == 0.2718;
-        all[2] |= found[i] == 0.577, all[3] |= found[i] == 0.625;
+        all[2] |= found[i] == 0.577, all[3] |= found[i] == 0.625, all[4] |= found[i] == 2e-9;
     }
-    for (int k = 0; k < 4; k++) assert_true(all[k]);
+    for (int k = 0; k < 5; k++) assert_true(all[k]);
+    free(found);
+    static unsigned char many[8 * 5001]; /* floats, and one aligned double at the end */
+    for (int k = 0; k < 5000; k++) {
+        const float value = 0.008f + 4e-6f * (float)k;
+        memcpy(many + 8 * k + 4, &value, 4);
+    }
+    memcpy(many + sizeof many - 8, &doubles[0], 8);
+    out = fopen(path_of("constants"), "wb");
+    assert_true(fwrite(many, 1, sizeof many, out) == sizeof many && fclose(out) == 0);
+    const int most = places_constants(path_of("constants"), &found);
+    near_inside(most, 4000, PLACES_CONSTANTS_MAX);
+    bool there = false;
+    for (int i = 0; i < most; i++) there |= found[i] == 0.3141;
+    assert_true(there);
     free(found);
     assert_int_equal(places_constants(path_of("nothing"), &found), 0);
     free(found);
