@@ -210,8 +210,8 @@ ALWAYS_INLINE struct pressure find_pressure(enum formulation formulation, bool n
 }
 
 /* Adds force, energy rate and signal speed of all neighbours in the lanes. With vanilla_ice both
- * particles of a pair have the same gradient. */
-ALWAYS_INLINE void add_body(enum formulation formulation, int dim,
+ * particles of a pair have the same gradient. reacts: some neighbours receive reactions. */
+ALWAYS_INLINE void add_body(enum formulation formulation, int dim, bool reacts,
                             const struct cells_method *method, enum energy energy,
                             const struct pairs *pairs, struct totals *totals, int64_t *inside)
 {
@@ -264,15 +264,17 @@ ALWAYS_INLINE void add_body(enum formulation formulation, int dim,
                 const double flux = total ? pair_energy_flux(a, own_v[axis], v_j) : heating.i;
                 const double force = vanilla ? (a.i + a.j) * g : a.i + a.j;
                 f[axis][l] += force;
-                reaction[axis * stride + n] = -force;
+                if (reacts) reaction[axis * stride + n] = -force;
                 moved += vanilla ? flux * g : flux;
                 if (!total) moved_j += vanilla ? heating.j * g : heating.j;
             }
             e[l] += moved;
-            reaction[dim * stride + n] = energy == ENERGY_TOTAL ? -moved : moved_j;
-            reaction[(dim + 1) * stride + n] =
-                add_signal(&signals, l, number[n] < reacting ? 2 : 1, r[n], own_h_inverse,
+            const double signal =
+                add_signal(&signals, l, reacts && number[n] < reacting ? 2 : 1, r[n], own_h_inverse,
                            h_inverse[n], own_c, c[n], closing[n]);
+            if (!reacts) continue;
+            reaction[dim * stride + n] = energy == ENERGY_TOTAL ? -moved : moved_j;
+            reaction[(dim + 1) * stride + n] = signal;
         }
     for (int axis = 0; axis < dim; axis++) totals->F[axis] += TREE(f[axis]);
     totals->de += TREE(e);
@@ -280,21 +282,24 @@ ALWAYS_INLINE void add_body(enum formulation formulation, int dim,
     totals->signal = largest(totals->signal, largest_signal(&signals, own_c, inside));
 }
 
-#define ADD(name, formulation)                                                                     \
+#define ADD(name, formulation, dim)                                                                \
     CLONES static void name(const struct cells_method *method, const struct pairs *pairs,          \
                             struct totals *totals, int64_t *inside)                                \
     {                                                                                              \
-        if (method->box.dim == 2 && method->energy == ENERGY_TOTAL)                                \
-            add_body(formulation, 2, method, ENERGY_TOTAL, pairs, totals, inside);                 \
-        else if (method->box.dim == 2)                                                             \
-            add_body(formulation, 2, method, ENERGY_INTERNAL, pairs, totals, inside);              \
+        const bool reacts = pairs->reacting > 0;                                                   \
+        if (method->energy == ENERGY_TOTAL && reacts)                                              \
+            add_body(formulation, dim, true, method, ENERGY_TOTAL, pairs, totals, inside);         \
         else if (method->energy == ENERGY_TOTAL)                                                   \
-            add_body(formulation, 3, method, ENERGY_TOTAL, pairs, totals, inside);                 \
+            add_body(formulation, dim, false, method, ENERGY_TOTAL, pairs, totals, inside);        \
+        else if (reacts)                                                                           \
+            add_body(formulation, dim, true, method, ENERGY_INTERNAL, pairs, totals, inside);      \
         else                                                                                       \
-            add_body(formulation, 3, method, ENERGY_INTERNAL, pairs, totals, inside);              \
+            add_body(formulation, dim, false, method, ENERGY_INTERNAL, pairs, totals, inside);     \
     }
-ADD(add_vanilla_ice, FORMULATION_VANILLA_ICE)
-ADD(add_lagrangian, FORMULATION_LAGRANGIAN)
+ADD(add_vanilla_ice_2, FORMULATION_VANILLA_ICE, 2)
+ADD(add_vanilla_ice_3, FORMULATION_VANILLA_ICE, 3)
+ADD(add_lagrangian_2, FORMULATION_LAGRANGIAN, 2)
+ADD(add_lagrangian_3, FORMULATION_LAGRANGIAN, 3)
 
 /* The largest pace among the particles of a list. */
 static double find_pace(const struct cells *cells, const int32_t *slots, int count)
@@ -339,8 +344,10 @@ static bool add_part(struct cells *cells, const struct pairs *pairs, int64_t *in
     cells_pair_gradients(cells, pairs);
     if (method->closed) cells_close(cells, pairs);
     const bool viscous = cells_viscosity(cells, pairs);
-    (method->formulation == FORMULATION_VANILLA_ICE ? add_vanilla_ice : add_lagrangian)(
-        method, pairs, totals, inside);
+    const bool plane = method->box.dim == 2;
+    (method->formulation == FORMULATION_VANILLA_ICE
+         ? (plane ? add_vanilla_ice_2 : add_vanilla_ice_3)
+         : (plane ? add_lagrangian_2 : add_lagrangian_3))(method, pairs, totals, inside);
     if (method->shift) cells_exchange(cells, pairs, totals->gained);
     if (method->conductivity > 0 || (method->shock_conductivity > 0 && totals->shocked > 0)) {
         totals->de += cells_conduction(cells, pairs);
