@@ -76,7 +76,7 @@ enum status problem_check_time(const struct prepared *p, double t, struct error 
     const struct problem *problem = p->problem;
     if (!problem->holds || problem->holds(p, t)) return STATUS_OK;
     double longest = 0, reached = t;
-    for (int i = 0; i < 60; i++) {
+    for (int i = 0; i < 160; i++) { /* t is 1e30 at most */
         const double middle = 0.5 * (longest + reached);
         *(problem->holds(p, middle) ? &longest : &reached) = middle;
     }

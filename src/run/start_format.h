@@ -16,7 +16,7 @@ struct start_format {
     /* Where the user of the code sets these values, in the code's own terms; NULL: the file
      * contains the value. */
     const char *gamma, *dimension, *box, *boundary, *t_end;
-    const char *precision; /* NULL: float64 */
+    const char *precision; /* NULL: float64, which needs no setting */
     int dim;               /* of the code; 0: any */
     bool no_walls;         /* the code supports only periodic and open boxes */
     /* The code's smoothing length divided by the support radius, which snapshots contain; 0: the

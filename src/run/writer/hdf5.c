@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * HDF5 in the layout of GADGET's snapshots (Springel 2005), which yt, pynbody and ParaView read.
- * Header: NumPart_*, MassTable, Time, BoxSize (one number, or one per direction if sides differ),
- * Dimension, Gamma, Origin, and as text Case, Boundary and Keys (see snapshot_writer.h). PartType0:
+ * Header: NumPart_*, MassTable, Time, BoxSize (one number, or one per direction if sides differ;
+ * for GADGET-4, which refuses three, the largest side, and then Sides has all of them), Dimension,
+ * Gamma, Origin, and as text Case, Boundary and Keys (see snapshot_writer.h). PartType0:
  * Coordinates (from the lower corner of the box, `Origin`; z = 0 in 2D), Velocities, Masses,
  * Density, InternalEnergy, Pressure, SmoothingLength (support radius), ParticleIDs (from 1, in the
  * initial order). */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,16 +29,17 @@ static void set_remarks(struct hdf5_image *image, const struct run_result *resul
 
 enum { TYPES = 6 }; /* particle types, gas first */
 
-static void set_header(struct hdf5_image *image, const struct run_result *result)
+static void set_header(struct hdf5_image *image, const struct run_result *result, bool one_size)
 {
     const struct domain *box = &result->problem.domain;
     const unsigned count[TYPES] = {(unsigned)result->n}, none[TYPES] = {0};
     const double masses[TYPES] = {0}, zero = 0, one = 1;
     const int files = 1, no = 0, yes = 1, dim = box->dim;
-    double side[3] = {[2] = 1};
+    double side[3] = {[2] = 1}, largest = 0;
     size_t sides = 1;
     for (int d = 0; d < dim; d++) {
         side[d] = domain_length(box, d);
+        largest = fmax(largest, side[d]);
         if (side[d] != side[0]) sides = 3;
     }
     hdf5_image_group(image, "Header");
@@ -45,7 +48,9 @@ static void set_header(struct hdf5_image *image, const struct run_result *result
     hdf5_image_attribute(image, "NumPart_Total_HighWord", HDF5_UINT, none, TYPES);
     hdf5_image_attribute(image, "MassTable", HDF5_DOUBLE, masses, TYPES);
     hdf5_image_attribute(image, "Time", HDF5_DOUBLE, &result->time, 1);
-    hdf5_image_attribute(image, "BoxSize", HDF5_DOUBLE, side, sides);
+    hdf5_image_attribute(image, "BoxSize", HDF5_DOUBLE, one_size ? &largest : side,
+                         one_size ? 1 : sides);
+    if (one_size && sides > 1) hdf5_image_attribute(image, "Sides", HDF5_DOUBLE, side, sides);
     hdf5_image_attribute(image, "Origin", HDF5_DOUBLE, box->lo, 3);
     hdf5_image_attribute(image, "Gamma", HDF5_DOUBLE, &result->problem.gamma, 1);
     hdf5_image_attribute(image, "Dimension", HDF5_INT, &dim, 1);
@@ -96,15 +101,27 @@ static void set_gas(struct hdf5_image *image, const struct run_result *result)
     free(number);
 }
 
-static enum status write_hdf5(const struct run_result *result, const char *path,
-                              struct error *error)
+static enum status write_image(const struct run_result *result, const char *path, bool one_size,
+                               struct error *error)
 {
     struct hdf5_image image;
     if (hdf5_image_possible(path, error)) return error->status;
     hdf5_image_begin(&image);
-    set_header(&image, result);
+    set_header(&image, result, one_size);
     set_gas(&image, result);
     return hdf5_image_end(&image, path, error);
+}
+
+static enum status write_hdf5(const struct run_result *result, const char *path,
+                              struct error *error)
+{
+    return write_image(result, path, false, error);
+}
+
+static enum status write_gadget(const struct run_result *result, const char *path,
+                                struct error *error)
+{
+    return write_image(result, path, true, error);
 }
 
 const struct snapshot_writer writer_hdf5 = {
@@ -114,4 +131,12 @@ const struct snapshot_writer writer_hdf5 = {
     .memory = 250, /* for the file image in memory */
     .possible = hdf5_image_possible,
     .write = write_hdf5,
+};
+
+/* Of initial states alone. */
+extern const struct snapshot_writer writer_gadget_hdf5;
+const struct snapshot_writer writer_gadget_hdf5 = {
+    .from_corner = true,
+    .possible = hdf5_image_possible,
+    .write = write_gadget,
 };

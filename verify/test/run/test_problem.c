@@ -195,7 +195,7 @@ static bool window_is_free(struct walk *walk)
 {
     const struct prepared *p = &walk->p;
     const double t_end = settings_real(&walk->settings, SETTING_t_end);
-    struct error error = {0};
+    struct error error = {0}, late = {0};
     for (int d = 0; d < p->domain.dim; d++)
         if (!(p->window.lo[d] >= p->domain.lo[d] && p->window.lo[d] < p->window.hi[d] &&
               p->window.hi[d] <= p->domain.hi[d]))
@@ -203,9 +203,12 @@ static bool window_is_free(struct walk *walk)
     if (problem_check_time(p, 0, &error) || problem_check_time(p, t_end, &error))
         return fault(walk, "not free at t_end = %g: %.300s", t_end, error.message);
     if (!walk->problem->holds) return true;
-    if (!problem_check_time(p, 1e6, &error)) return fault(walk, "free for ever");
+    if (!problem_check_time(p, 1e6, &error) || !problem_check_time(p, 1e30, &late))
+        return fault(walk, "free for ever");
     if (!strstr(error.message, "t_end=1e+06") || !strstr(error.message, "allowed"))
         return fault(walk, "refused without saying what is allowed: %.300s", error.message);
+    if (strcmp(strstr(error.message, "allowed"), strstr(late.message, "allowed")) != 0)
+        return fault(walk, "a later end is allowed less: %.300s", late.message);
     return true;
 }
 

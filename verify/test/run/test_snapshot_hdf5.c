@@ -7,7 +7,7 @@
 #include "own_folder.h"
 #include "snapshot_writer.h"
 
-extern const struct snapshot_writer writer_hdf5;
+extern const struct snapshot_writer writer_hdf5, writer_gadget_hdf5;
 
 TEST(names)
 {
@@ -195,15 +195,16 @@ static hsize_t members(hid_t file, const char *group)
 
 TEST(whole_files)
 {
-    for (int k = 0; k < 6; k++) {
-        const int dim = 1 + k / 2;
-        const bool cube = k % 2;
-        const struct run_result result = made(dim, cube);
+    for (int k = 0; k < 12; k++) {
+        const int dim = 1 + k % 6 / 2;
+        const bool cube = k % 2 || dim == 1, gadget = k < 6; /* GADGET-4 refuses three sizes */
+        const struct run_result result = made(dim, k % 2);
         const struct snapshot *s = &result.snapshot;
         struct error error;
         char path[256];
         snprintf(path, sizeof path, "%s", path_of("s.hdf5"));
-        assert_int_equal(writer_hdf5.write(&result, path, &error), STATUS_OK);
+        const struct snapshot_writer *writer = gadget ? &writer_gadget_hdf5 : &writer_hdf5;
+        assert_int_equal(writer->write(&result, path, &error), STATUS_OK);
         const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
         assert_true(file >= 0 && members(file, "/") == 2 && members(file, "Header") == 0);
         const double count[6] = {N}, none[6] = {0}, *lo = result.problem.domain.lo;
@@ -213,8 +214,11 @@ TEST(whole_files)
         attribute(file, "MassTable", H5T_FLOAT, 8, 6, none);
         one(file, "Time", 0.375);
         double side[3] = {2, dim > 1 ? 2 : 1, dim > 2 ? 2 : 1};
-        if (!cube) side[dim - 1] = 3;
-        attribute(file, "BoxSize", H5T_FLOAT, 8, cube || dim == 1 ? 0 : 3, side);
+        if (k % 2 == 0) side[dim - 1] = 3;
+        if (cube || !gadget)
+            attribute(file, "BoxSize", H5T_FLOAT, 8, cube ? 0 : 3, side);
+        else
+            one(file, "BoxSize", 3), attribute(file, "Sides", H5T_FLOAT, 8, 3, side);
         attribute(file, "Origin", H5T_FLOAT, 8, 3, lo);
         one(file, "Gamma", 1.625);
         flag(file, "Dimension", dim);
