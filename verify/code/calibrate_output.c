@@ -16,14 +16,12 @@ static const char head[] = "; Bounds of the gates: `sphproof calibrate`";
  * line begins no section. */
 static bool begins_section(const char *line, char name[INI_TEXT_LINE])
 {
+    char section[INI_TEXT_LINE];
     line += strspn(line, " \t");
     if (*line++ != '[') return false;
-    const size_t length = strcspn(line, "]\n");
-    name[0] = '\0';
-    if (strncmp(line, "case ", 5) == 0 && length < INI_TEXT_LINE) {
-        memcpy(name, line + 5, length - 5);
-        name[length - 5] = '\0';
-    }
+    snprintf(section, sizeof section, "%.*s", (int)strcspn(line, "]\n"), line);
+    const char *of_case = code_section_name(section, "case");
+    snprintf(name, INI_TEXT_LINE, "%s", of_case ? of_case : "");
     return true;
 }
 

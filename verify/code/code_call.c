@@ -200,15 +200,16 @@ static void add_files(const struct code_external *external, const struct code_va
 {
     char line[INI_TEXT_LINE + 1], path[CODE_PATH], name[CODE_PATH];
     const bool shell = command && code_shell(&external->of->way);
-    size_t length, n = 0;
+    bool program = command; /* the next word is that */
+    size_t length;
     snprintf(line, sizeof line, "%s", words);
     for (char *at = line; shell && *(at += strcspn(at, ";|&<>()'\"`=")); at++) *at = ' ';
     const char *rest = line;
-    for (const char *word; (word = code_next_word(&rest, &length)); n++) {
+    for (const char *word; (word = code_next_word(&rest, &length)); program = false) {
         snprintf(name, sizeof name, "%.*s", (int)length, word);
         char *filled = code_fill(name, values->of);
         if (!filled) continue;
-        word_file(external->code, filled, strlen(filled), command && n == 0, path);
+        word_file(external->code, filled, strlen(filled), program, path);
         if (code_is_file(path)) json_object_set_new(files, name, json_string(sum_of(path)));
         free(filled);
     }

@@ -101,14 +101,18 @@ static void check_ic(struct ini_text *at, const char *value)
     at->failed = true;
 }
 
+static bool one_of(const char *words, const char *value)
+{
+    size_t length;
+    for (const char *rest = words, *word; (word = code_next_word(&rest, &length));)
+        if (strlen(value) == length && strncmp(word, value, length) == 0) return true;
+    return false;
+}
+
 void code_check_value(const struct code *code, struct ini_text *at, enum code_key key,
                       const char *value)
 {
-    struct code_way way = {.line[CODE_memory] = 1,
-                           .line[CODE_timeout] = 1,
-                           .line[CODE_shell] = 1,
-                           .line[CODE_equal_masses] = 1,
-                           .line[CODE_elements] = 1};
+    struct code_way way = {.line[CODE_memory] = 1, .line[CODE_timeout] = 1};
     snprintf(way.value[key], sizeof way.value[key], "%s", value);
     const char *allowed = code_keys[key].allowed;
     switch (key) {
@@ -133,21 +137,14 @@ void code_check_value(const struct code *code, struct ini_text *at, enum code_ke
     case CODE_memory:
         if (!(code_memory(&way) > 0)) ini_text_fail_value(at, "memory", value, allowed);
         return;
-    case CODE_elements:
-        if (!code_cells(&way) && strcmp(value, "particles") != 0)
-            ini_text_fail_value(at, "elements", value, allowed);
-        return;
     case CODE_as_3d:
         if (strcmp(value, "no") != 0 && !slab_layers(value))
             ini_text_fail_value(at, "as_3d", value, allowed);
         return;
+    case CODE_elements:
     case CODE_equal_masses:
-        if (!code_equal_masses(&way) && strcmp(value, "no") != 0)
-            ini_text_fail_value(at, "equal_masses", value, allowed);
-        return;
     case CODE_shell:
-        if (!code_shell(&way) && strcmp(value, "no") != 0)
-            ini_text_fail_value(at, "shell", value, allowed);
+        if (!one_of(allowed, value)) ini_text_fail_value(at, code_keys[key].name, value, allowed);
         return;
     default:
         return;

@@ -91,18 +91,27 @@ static void begin_fault(struct parser *parser, const char *name)
     parser->way = &fault->way;
 }
 
+const char *code_section_name(const char *section, const char *kind)
+{
+    const size_t length = strlen(kind);
+    const bool is = strncmp(section, kind, length) == 0 && section[length] == ' ';
+    return is && section[length + 1] ? section + length + 1 : NULL;
+}
+
 /* inih knows names of up to 49 characters. */
 static void begin_section(struct parser *parser, const char *section)
 {
+    const char *of_case = code_section_name(section, "case"),
+               *of_fault = code_section_name(section, "fault");
     end_case(parser);
     if (strlen(section) > 48)
         ini_text_fail(&parser->at, "a section's name is too long", "48 characters");
     else if (strcmp(section, "code") == 0)
         parser->way = &parser->code->way;
-    else if (strncmp(section, "case ", 5) == 0 && section[5])
-        begin_case(parser, section + 5);
-    else if (strncmp(section, "fault ", 6) == 0 && section[6])
-        begin_fault(parser, section + 6);
+    else if (of_case)
+        begin_case(parser, of_case);
+    else if (of_fault)
+        begin_fault(parser, of_fault);
     else
         unknown_section(parser, section);
 }

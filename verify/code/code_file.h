@@ -116,6 +116,9 @@ struct code {
 enum status code_load(struct code *code, const char *path, struct error *error);
 void code_free(struct code *code);
 
+/* NAME of the section "KIND NAME"; NULL: it is another section. */
+const char *code_section_name(const char *section, const char *kind);
+
 /* A case with a fault: keys that the fault does not set are the case's. */
 void code_with_fault(const struct code_case *of, const struct code_fault *fault,
                      struct code_case *faulty);

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/time.h>
 #include <sys/wait.h>
@@ -124,7 +125,7 @@ static double seconds(struct timeval time)
     return (double)time.tv_sec + 1e-6 * (double)time.tv_usec;
 }
 
-/* Waits until the program has ended or exceeds a limit; life: a pipe whose other end closes when
+/* Waits until the program has ended or exceeds a limit; life: a socket whose other end closes when
  * the waiting process ends. */
 static bool wait_for(const struct code_order *order, pid_t program, int life,
                      struct code_outcome *outcome)
@@ -149,7 +150,8 @@ static bool wait_for(const struct code_order *order, pid_t program, int life,
     }
 }
 
-static _Noreturn void watch_over(const struct code_order *order, int life, int report)
+/* waiting: a socket to the waiting process. */
+static _Noreturn void watch_over(const struct code_order *order, int waiting)
 {
     struct code_outcome outcome = {.ending = CODE_ENDED};
     struct rusage usage;
@@ -158,17 +160,17 @@ static _Noreturn void watch_over(const struct code_order *order, int life, int r
     prctl(PR_SET_CHILD_SUBREAPER, 1);
 #endif
     for (int file = 3; file < 1024; file++)
-        if (file != life && file != report) close(file);
+        if (file != waiting) close(file);
     const pid_t program = fork();
     if (program == 0) become(order);
     if (program < 0) _exit(STATUS_ENVIRONMENT);
     setpgid(program, program);
-    const bool wanted = wait_for(order, program, life, &outcome);
+    const bool wanted = wait_for(order, program, waiting, &outcome);
     end_all(program);
     if (!wanted && order->remove) code_remove(order->folder);
     getrusage(RUSAGE_CHILDREN, &usage);
     outcome.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
-    const ssize_t sent = wanted ? write(report, &outcome, sizeof outcome) : 0;
+    const ssize_t sent = wanted ? write(waiting, &outcome, sizeof outcome) : 0;
     _exit(sent == (ssize_t)sizeof outcome ? 0 : STATUS_ENVIRONMENT);
 }
 
@@ -182,33 +184,27 @@ static enum status no_process(struct error *error)
 enum status code_process(const struct code_order *order, struct code_outcome *outcome,
                          struct error *error)
 {
-    int life[2], report[2];
+    int ends[2]; /* of this and of the supervising process */
     size_t got = 0;
-    if (pipe(life)) return no_process(error);
-    if (pipe(report)) {
-        no_process(error);
-        close(life[0]), close(life[1]);
-        return error->status;
-    }
-    for (int i = 0; i < 2; i++)
-        fcntl(life[i], F_SETFD, FD_CLOEXEC), fcntl(report[i], F_SETFD, FD_CLOEXEC);
+    if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends)) return no_process(error);
+    for (int i = 0; i < 2; i++) fcntl(ends[i], F_SETFD, FD_CLOEXEC);
     fflush(NULL);
     const pid_t pid = fork();
     if (pid == 0) {
-        close(life[1]), close(report[0]);
-        watch_over(order, life[0], report[1]);
+        close(ends[0]);
+        watch_over(order, ends[1]);
     }
     if (pid < 0)
         no_process(error);
     else
         setpgid(pid, pid);
-    close(life[0]), close(report[1]);
+    close(ends[1]);
     while (pid > 0 && got < sizeof *outcome) {
-        const ssize_t n = read(report[0], (char *)outcome + got, sizeof *outcome - got);
+        const ssize_t n = read(ends[0], (char *)outcome + got, sizeof *outcome - got);
         if (n == 0 || (n < 0 && errno != EINTR)) break;
         if (n > 0) got += (size_t)n;
     }
-    close(life[1]), close(report[0]);
+    close(ends[0]);
     while (pid > 0 && waitpid(pid, NULL, 0) < 0 && errno == EINTR) continue;
     if (pid < 0) return error->status;
     return got == sizeof *outcome

@@ -108,11 +108,11 @@ static enum status write_start(struct course *course, struct error *error)
     const struct start_format *format = code_format(&course->external->of->way);
     const struct snapshot_options options = {.here = false};
     struct error unread;
-    enum status status = format ? start_write(format, &course->start, course->ic, error)
-                                : call_for_start(course, error);
-    if (!status && !course->reason)
-        course->readable = !snapshot_read(course->ic, &options, &course->read, &unread);
-    return status;
+    if (format ? start_write(format, &course->start, course->ic, error)
+               : call_for_start(course, error))
+        return error->status;
+    course->readable = !snapshot_read(course->ic, &options, &course->read, &unread);
+    return STATUS_OK;
 }
 
 /* Changes a value by two units in the last place of the format's precision; 0 stays. */
@@ -256,14 +256,13 @@ static enum status complete(struct course *course, struct error *error)
         return error->status;
     if (start.mass > 0) trace_add(&course->trace, 0, &start);
     result->settings = run->settings;
-    if (run->asked.layers) {
-        result->n /= (size_t)run->asked.layers;
-        result->regularity = (struct regularity){unknown, unknown, unknown, unknown, unknown};
-    } else {
-        result->regularity = regularity_of(
-            &result->problem, found->known ? &found->candidate[0].kernel : &run->scheme.kernel,
-            &result->snapshot, 1);
-    }
+    if (run->asked.layers) result->n /= (size_t)run->asked.layers;
+    result->regularity =
+        run->asked.layers
+            ? (struct regularity){unknown, unknown, unknown, unknown, unknown}
+            : regularity_of(&result->problem,
+                            found->known ? &found->candidate[0].kernel : &run->scheme.kernel,
+                            &result->snapshot, 1);
     result->cost.wall_s = course->outcome.wall_s;
     result->cost.cpu_s = course->outcome.cpu_s;
     return STATUS_OK;
@@ -323,7 +322,7 @@ static enum status judge(struct course *course, const char *path, struct error *
                  said.message + (strncmp(said.message, course->folder, strlen(course->folder))
                                      ? 0
                                      : strlen(course->folder) + 1));
-    else if (status)
+    else
         *error = said;
     return status == STATUS_BAD_INPUT ? STATUS_OK : status;
 }

@@ -112,7 +112,7 @@ static enum status in_shares(struct request *request, const struct run_settings 
                              const struct sweep *sweep, const size_t *ladder, size_t count,
                              struct sharing *sharing, struct error *error)
 {
-    struct precision precision = {0};
+    struct precision precision;
     struct pool pool = {0};
     const char *plot = options_value(request->options, "plot");
     bool whole = false;
@@ -132,7 +132,7 @@ static enum status measure(struct request *request, struct code *code, struct er
     static struct run_settings settings;
     static struct sharing sharing;
     struct sweep sweep;
-    struct precision precision = {0};
+    struct precision precision;
     size_t ladder[CASE_LADDER_MAX], count;
     const char *plot = options_value(request->options, "plot");
     if (prepare_case(request, code, &external, &settings, error) ||

@@ -230,9 +230,7 @@ static void print_options(const struct command_option *list)
         char left[64];
         snprintf(left, sizeof left, "--%s%s%s", list->name, list->argument ? " " : "",
                  list->argument ? list->argument : "");
-        printf("  %-26s", left);
-        const int used = 2 + (int)strlen(left);
-        int column = used > OPTION_COLUMN - 1 ? used : OPTION_COLUMN - 1;
+        int column = printf("  %-26s", left);
         for (const char *word = list->help; *word; word += strspn(word, " ")) {
             const int length = (int)strcspn(word, " ");
             const bool breaks = column + 1 + length > LINE_END;

@@ -77,16 +77,13 @@ static enum status take_boundaries(const char *text, int dim, enum boundary boun
 }
 
 /* Takes the file's box unless keys set another. */
-static enum status take_said(struct request *r, bool *lo, bool *hi, bool *boundary,
-                             struct error *error)
+static enum status take_said(struct request *r, bool boxed, bool bounded, struct error *error)
 {
     const struct snapshot_file *said = &r->snapshot;
-    if (!*boundary && *said->boundary &&
+    if (!bounded && *said->boundary &&
         take_boundaries(said->boundary, r->file.dim, r->setup.boundary, error))
         return error->status;
-    if (!said->boxed || *lo || *hi) return STATUS_OK;
-    *lo = *hi = true;
-    for (int a = 0; a < r->file.dim; a++) {
+    for (int a = 0; a < r->file.dim && said->boxed && !boxed; a++) {
         r->setup.lo[a] = said->corner[a];
         r->setup.hi[a] = said->corner[a] + said->box[a];
     }
@@ -116,7 +113,8 @@ static enum status take_box(struct request *r, int n, char **arguments, char **r
             rest[(*left)++] = arguments[k];
         if (status) return status;
     }
-    if (take_said(r, &lo, &hi, &boundary, error)) return error->status;
+    if (take_said(r, lo || hi, boundary, error)) return error->status;
+    if (r->snapshot.boxed && !lo && !hi) lo = hi = true;
     for (int a = 0; a < dim; a++)
         if ((!lo || !hi) && r->setup.boundary[a] != BOUNDARY_OPEN)
             return error_set(error, STATUS_BAD_INPUT,

@@ -104,11 +104,12 @@ static enum status draw_profiles(const struct run_settings *settings,
     }
     if (known && n) {
         const enum field field = main_field(settings);
-        if (!(off.y = profile_errors(&profiles[0].series[1], result, field))) {
+        const struct plot_series *particles = &profiles[0].series[1];
+        if (!(off.y = profile_errors(particles, result, field))) {
             status = error_set(error, STATUS_ENVIRONMENT, "--plot %.150s: no memory", path);
             goto end;
         }
-        off.x = profiles[0].series[1].x, off.n = profiles[0].series[1].n;
+        off.x = particles->x, off.n = particles->n;
         off.kind = PLOT_POINTS, off.size = 0.5, off.color = 1;
         snprintf(error_label, sizeof error_label, "error of %s", labels[field]);
         panels[n++] = (struct plot_panel){.x_label = "x (code units)",

@@ -119,6 +119,18 @@ def test_environment():
     expect("no Slurm", status == 4 and document is None and "no command squeue" in said, said)
 
 
+def test_one_at_a_time():
+    """Without --jobs one run begins after another has ended."""
+    write("slow.ini", "[code]\nshell = yes\nsnapshot = none\n"
+          "command = echo begins >>@HERE@/log; sleep 0.02; echo ends >>@HERE@/log\n[case sod]\nn = 40 50 60 70\n")
+    for words in (["converge", "sod", "--code", "slow.ini", "--replicates", "1"], ["calibrate", "slow.ini", "--runs", "2"],
+                  ["bench", "sod", "--code", "slow.ini", "--n", "40,60", "--samples", "1", "--time", "1e-4", "--cache", "slow"]):
+        write("log", "")
+        call(*words, "--quiet")
+        log = read("log").split()
+        expect("one at a time: %s" % words[0], log and log == ["begins", "ends"] * (len(log) // 2), log)
+
+
 def try_studies():
     write("tube.ini", TUBE)
     os.makedirs("bin")
@@ -130,4 +142,4 @@ def try_studies():
         try_study(number, code, words)
 
 
-play(try_studies, test_all_checks, test_environment)
+play(test_one_at_a_time, try_studies, test_all_checks, test_environment)

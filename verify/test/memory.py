@@ -49,7 +49,12 @@ def main():
         said, taken = (more - tiny for more, tiny in zip(said_and_taken(words), least))
         expect("memory of %s" % words, abs(said / taken - 1) <= (CLOSELY if words == RUNS[2] else WITHIN), (said, taken))
         print("%s: %.1f MB said, %.1f taken" % (words[0], 1e-6 * said, 1e-6 * taken))
-    assert "MB of memory" in sphproof("run", *RUNS[0], "--explain").stdout
+    said = sphproof("run", *RUNS[0], "--explain").stdout
+    expect("estimate as it is printed", " about %.0f MB of memory" % (1e-6 * bytes_of[0]) in said, said)
+    said = sphproof("run", *TINY, "--json", "tiny.json").stdout
+    with open("tiny.json", encoding="ascii") as file:
+        taken = json.load(file)["cost"]["peak_rss_bytes"]
+    expect("memory as it is printed", " interactions, %.1f MB\n" % (1e-6 * taken) in said, (taken, said))
     for more in ([], ["--explain"], ["--json", "-"], AWAY):
         done = sphproof("run", "sound_wave_3d", "n=10000000", *more, limit=3 << 30, status=4)
         expect("what does not fit", not done.stdout and all(

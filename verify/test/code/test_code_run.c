@@ -3,6 +3,9 @@
  * log, and the place of a profile. (The transcripts and other_codes.py test whole runs.) */
 #include "test.h"
 
+#include <sys/resource.h>
+
+#include "code_process.h"
 #include "own_folder.h"
 /* the run itself, because its static functions are tested */
 #include "../../code/code_run.c"
@@ -205,6 +208,46 @@ TEST(ends_of_logs)
 }
 
 /* Positions of a profile and of a map move to the case's box, a radius does not. */
+/* Without the file of the initial state nothing is run. */
+TEST(no_initial_state)
+{
+    static struct code_case of;
+    static struct course course;
+    const struct code_external external = {.of = &of};
+    struct error error = {0};
+    course.external = &external;
+    name_snapshot(&of, &course, "@OUT@*");
+    snprintf(course.ic, sizeof course.ic, "%s", path_of("none.csv"));
+    assert_int_equal(execute(&course, &error), STATUS_ENVIRONMENT);
+    assert_non_null(strstr(error.message, "none.csv: No such file or directory"));
+    assert_false(course.reason || course.is_judged);
+}
+
+/* Where no file can be opened there is no process, with one descriptor that is left, too. */
+TEST(no_descriptors)
+{
+    static const char *const words[] = {"true", NULL};
+    const struct code_order order = {
+        .words = words, .folder = own_folder, .seconds = 60, .bytes = (double)INFINITY};
+    struct code_outcome outcome;
+    struct rlimit usual;
+    const int next = dup(1);
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &usual), 0);
+    close(next);
+    for (int left = 0; left < 2; left++) {
+        struct error error = {0};
+        const struct rlimit few = {(rlim_t)(next + left), usual.rlim_max};
+        assert_int_equal(setrlimit(RLIMIT_NOFILE, &few), 0);
+        const enum status status = code_process(&order, &outcome, &error);
+        assert_int_equal(setrlimit(RLIMIT_NOFILE, &usual), 0);
+        assert_int_equal(status, STATUS_ENVIRONMENT);
+        assert_non_null(strstr(error.message, "no process for another code: Too many open files"));
+    }
+    struct error error = {0};
+    assert_int_equal(code_process(&order, &outcome, &error), STATUS_OK);
+    assert_int_equal(outcome.exit, 0);
+}
+
 TEST(places_of_profiles)
 {
     static const struct {

@@ -84,6 +84,8 @@ TEST(commands)
         "converge sound_wave --n 10,14,20,28 t_end=0.005 --jobs 1 --cache kept",
         "compare a.csv b.csv",
         "bench sod --n 20 --list",
+        "calibrate code.ini --runs 2 --list",
+        "run sod n=40 t_end=0.02 --code code.ini --quiet",
         "verify norms/error_norms --jobs 1",
         "cache kept",
         "ic gresho n=8^2 --format gadget_binary --out g.gadget",
@@ -109,6 +111,11 @@ TEST(commands)
     fputs("x,volume,f\n", line);
     for (int i = 0; i < 8; i++) fprintf(line, "%g,0.1,%d\n", 0.1 * i, i * i);
     fclose(line);
+    FILE *code = fopen("code.ini", "w");
+    fputs("[code]\nshell = yes\ncommand = cp @HERE@/a.csv @OUT@_1.csv\nsnapshot = @OUT@_*\n"
+          "[case sod]\nn = 40 50 60 70\n[fault one]\ncommand = false\n",
+          code);
+    fclose(code);
     for (size_t c = 0; c < sizeof before / sizeof *before; c++)
         assert_int_equal(run(before[c], MANY, usual), 0);
     for (size_t c = 0; c < sizeof lines / sizeof *lines; c++) {
