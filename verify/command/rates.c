@@ -278,7 +278,7 @@ static void print_verdict(const struct rate_check *check, double tolerance)
         const struct rate_comparison *c = &check->columns[k];
         if (c->good) continue;
         failed++;
-        if (!told || (!told->cause[0] && c->cause[0])) told = c;
+        if (!told || (!told->cause[0] && c->cause[0] && !c->follows)) told = c;
     }
     if (!failed)
         printf("\nAll %zu quantities agree within %g.\n", check->count, tolerance);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "list.h"
 #include "oracle.h"
 #include "worst.h"
 
@@ -285,7 +286,25 @@ static void propose_no_grad_h(struct rate_check *check, const double *const thei
     oracle_free(&oracle);
 }
 
-/* Finds causes that the numbers themselves show: a constant factor, a missing term. */
+/* True if theirs are our values in another order: codes sort particles by keys of their own. */
+static bool is_reordered(const double *theirs, int column, const struct setup *setup,
+                         const struct rate_table *ours, double close)
+{
+    const double scale = scale_of(ours, setup->m, column, 0);
+    const size_t n = ours->n;
+    double *mine = malloc(2 * n * sizeof *mine), *other = mine + n;
+    bool same = mine != NULL;
+    for (size_t i = 0; same && i < n; i++)
+        mine[i] = value(ours, setup->m, column, i), other[i] = theirs[i];
+    if (same) list_sort(mine, n), list_sort(other, n);
+    for (size_t i = 0; same && i < n; i++)
+        same = fabs(other[i] - mine[i]) <= close * (column < 3 ? mine[i] : scale);
+    free(mine);
+    return same;
+}
+
+/* Finds causes that the numbers themselves show: a constant factor, a missing term, an order of
+ * rows. */
 static void explain_plainly(struct rate_comparison *c, const double *theirs, int column,
                             const struct setup *setup, const struct rate_table *ours,
                             double tolerance)
@@ -319,6 +338,8 @@ static void explain_plainly(struct rate_comparison *c, const double *theirs, int
         snprintf(c->cause, RATE_CAUSE, "the sign is the other one");
     else if (off[3] <= close)
         snprintf(c->cause, RATE_CAUSE, "theirs is %.9g times ours everywhere", ratio);
+    else if (is_reordered(theirs, column, setup, ours, close))
+        snprintf(c->cause, RATE_CAUSE, "rows: theirs are our values in another order");
 }
 
 static void find_causes(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
@@ -340,7 +361,8 @@ static void find_causes(struct rate_check *check, const double *const theirs[RAT
         const int column = c->column;
         if (c->good) continue;
         if (!c->cause[0]) explain_plainly(c, theirs[column], column, setup, ours, tolerance);
-        if (!c->cause[0] && first && column >= 2)
+        c->follows = !c->cause[0] && first && column >= 2;
+        if (c->follows)
             snprintf(c->cause, RATE_CAUSE, "it follows from %s, or there is more than one", first);
         if (!first && column < 3) first = c->quantity;
     }

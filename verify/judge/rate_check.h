@@ -14,6 +14,7 @@ struct rate_comparison {
     double worst, rms; /* |theirs - ours|, relative: h, rho, P to ours, a and du to the largest */
     size_t particle;   /* the worst one, from 0 */
     bool good;
+    bool follows;           /* cause says no more than that an earlier quantity is wrong */
     char cause[RATE_CAUSE]; /* "" if nothing differs or no cause is known */
 };
 

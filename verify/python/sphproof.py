@@ -155,6 +155,8 @@ def rates(x, v, m, u, **keys):
     x, v = (numpy.asarray(a, dtype=float) for a in (x, v))
     x, v = (a.reshape(len(a), -1) for a in (x, v))
     dim = x.shape[1]
+    if v.shape[1] != dim:
+        raise Error("x and v differ in shape: %s, %s" % (x.shape, v.shape), 2)
     columns = {name: x[:, a] for a, name in enumerate("xyz"[:dim])}
     columns.update({"v" + name: v[:, a] for a, name in enumerate("xyz"[:dim])})
     columns.update(m=numpy.broadcast_to(m, len(x)), u=numpy.broadcast_to(u, len(x)))

@@ -114,6 +114,7 @@ def forces():
     line = sphproof.rates(x[:8, 0], v[:8, 0], numpy.full(8, 0.1), u[:8], lo=0, hi=1)
     assert line["force"].shape == (8, 1)
     refused(2, sphproof.rates, x, v, -1, u, **keys)
+    refused(2, sphproof.rates, x, v[:, 0], 1 / 64, u, **keys)
 
 
 solutions(), runs(), forces()

@@ -661,6 +661,33 @@ TEST(rates_that_are_all_0)
     rate_table_free(&ours);
 }
 
+/* Codes sort particles by keys of their own; one value that is not ours is no other order. */
+TEST(rows_in_another_order)
+{
+    static struct gas gas;
+    static struct file file;
+    for (int dim = 1; dim <= 3; dim++)
+        for (int whole = 0; whole < 2; whole++) {
+            make(&gas, dim, sides[dim], schemes[dim]);
+            struct rate_table ours = table_of(&gas.setup);
+            write_file(&file, &gas, &ours, 0x7f);
+            for (int c = 0; c < 7; c++) {
+                for (size_t i = 0; i + 1 < gas.setup.n; i++) {
+                    const double kept = file.values[c][i];
+                    file.values[c][i] = file.values[c][i + 1], file.values[c][i + 1] = kept;
+                }
+                if (!whole) file.values[c][0] = 2 * file.values[c][1] + 1;
+            }
+            const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+            for (size_t k = 0; k < check.count; k++) {
+                const struct rate_comparison *c = &check.columns[k];
+                assert_int_equal(!strncmp(c->cause, "rows: ", 6), whole);
+                assert_int_equal(c->follows, !whole && c->column > 1);
+            }
+            rate_table_free(&ours);
+        }
+}
+
 /* Quantities after the first wrong one follow from it; those before it do not. */
 TEST(order_of_causes)
 {
