@@ -132,20 +132,6 @@ void page_head(struct buffer *to, const char *title)
     buffer_format(to, "%s</style></head><body>\n", style_css());
 }
 
-void *page_room(struct buffer *to, size_t n, size_t size)
-{
-    void *room = calloc(n + 1, size);
-    to->failed |= !room;
-    return room;
-}
-
-double *page_numbers(struct buffer *to, const json_t *list, size_t *n)
-{
-    double *numbers = value_numbers(list, n);
-    to->failed |= *n < json_array_size(list);
-    return numbers;
-}
-
 bool page_end(struct page_writer *writer, struct page *page)
 {
     buffer_add(&writer->to, "</main></body></html>\n");

@@ -16,11 +16,6 @@ struct page;
 void page_head(struct buffer *to, const char *title);
 bool page_end(struct page_writer *writer, struct page *page);
 
-/* A table of n elements, all 0, and the numbers of a list (value_numbers), both malloced. Where
- * memory has ended, NULL, and the page fails. */
-void *page_room(struct buffer *to, size_t n, size_t size);
-double *page_numbers(struct buffer *to, const json_t *list, size_t *n);
-
 /* A line for the head of the page, the same as plain text, and the section: changes since the
  * previous night and over all nights. */
 void page_since(struct buffer *to, const json_t *results);

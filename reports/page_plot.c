@@ -6,6 +6,21 @@
 #include <string.h>
 
 #include "html.h"
+#include "value.h"
+
+void *page_room(struct buffer *to, size_t n, size_t size)
+{
+    void *room = calloc(n + 1, size);
+    to->failed |= !room;
+    return room;
+}
+
+double *page_numbers(struct buffer *to, const json_t *list, size_t *n)
+{
+    double *numbers = value_numbers(list, n);
+    to->failed |= *n < json_array_size(list);
+    return numbers;
+}
 
 static void keep(struct page_writer *writer, const char *name, const char *ending, char *bytes)
 {

@@ -3,6 +3,8 @@
  * to the page. */
 #pragma once
 
+#include <jansson.h>
+
 #include "buffer.h"
 #include "plot.h"
 
@@ -36,3 +38,8 @@ void page_plot(struct page_writer *writer, const struct plot *plot, const char *
 
 /* Makes a plot's name "CASE-WHAT", with '_' for characters that are not allowed. */
 void page_plot_name(char *name, size_t size, const char *case_name, const char *what);
+
+/* A table of n elements, all 0, and the numbers of a list (value_numbers), both malloced. Where
+ * memory has ended, NULL, and the page fails. */
+void *page_room(struct buffer *to, size_t n, size_t size);
+double *page_numbers(struct buffer *to, const json_t *list, size_t *n);

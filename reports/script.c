@@ -301,7 +301,8 @@ static void curve(struct buffer *to, const struct plot_series *series, const cha
 {
     static const int shapes[] = {7, 9, 5, 13, 11, 6, 8};
     const char *color = style_series(series->color, next);
-    int shape = shapes[(series->color > 0 ? series->color - 1 : next > 0 ? next - 1 : 0) % 7];
+    const int number = series->color > 0 ? series->color - 1 : next > 0 ? next - 1 : 0;
+    int shape = shapes[(size_t)number % (sizeof shapes / sizeof *shapes)];
     double size = series->size > 0 ? series->size : 1;
     if (size < 1) shape = shapes[0]; /* particles: dots, which svg.c combines */
     double width = series->color == PLOT_NEUTRAL ? 1.4 : 2;

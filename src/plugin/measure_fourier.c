@@ -96,7 +96,7 @@ void measure_fourier(const struct measure_spectrum *spectrum, struct measure_fou
 {
     *result = (struct measure_fourier){
         .least = (double)INFINITY, .first_negative = (double)NAN, .floor = 1e-13};
-    double last = 1, last_kappa = 0; /* last kappa with a positive transform */
+    double positive = 0; /* the last kappa with a positive transform */
     for (double kappa = step; kappa <= MEASURE_KAPPA_MAX; kappa += step) {
         const double value = measure_transform(spectrum, kappa);
         if (isnan(value)) result->least = value;
@@ -105,10 +105,7 @@ void measure_fourier(const struct measure_spectrum *spectrum, struct measure_fou
             result->least_at = kappa;
         }
         if (value < -result->floor && isnan(result->first_negative))
-            result->first_negative = last > 0 ? zero_between(spectrum, last_kappa, kappa) : kappa;
-        if (value > 0) {
-            last = value;
-            last_kappa = kappa;
-        }
+            result->first_negative = zero_between(spectrum, positive, kappa);
+        if (value > 0) positive = kappa;
     }
 }

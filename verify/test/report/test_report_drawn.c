@@ -183,8 +183,8 @@ TEST(cost_of_codes)
     json_decref(results);
 }
 
-/* Adds the settings, to six digits, of runs of cases, claims and pairing; the many studies have
- * tests of their own. */
+/* Adds the settings, to six digits, of runs of cases, claims and pairing (the many studies have
+ * tests of their own), and the rules of what measures time. */
 static void add_settings(struct buffer *to, const struct pool_job *job)
 {
     static const char *const names[] = {"profile of ", "rest_", "square,", "kelvin_", "rayleigh_"};
@@ -195,6 +195,11 @@ static void add_settings(struct buffer *to, const struct pool_job *job)
                                       JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(6))
                          : NULL;
     buffer_format(to, "  %s\n", settings ? settings : "");
+    if (!strncmp(job->name, "work-precision ", 15) || !strncmp(job->name, "skips ", 6)) {
+        const struct bench_rules *rules = &((const struct report_piece *)job->context)->rules;
+        buffer_format(to, "  %.9g s to %.9g s, %d samples\n", rules->least_s, rules->most_s,
+                      rules->samples);
+    }
     free(settings);
     json_decref(key);
 }
