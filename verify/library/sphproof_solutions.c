@@ -42,7 +42,8 @@ enum sphproof_status sphproof_solutions_riemann(double gamma, const double left[
                                                 double *P, struct sphproof_error *error)
 {
     struct riemann_solution solution;
-    if (!(t >= 0)) return fault("t: allowed: 0 or more", error);
+    if (!isfinite(x0)) return fault("x0: allowed: finite", error);
+    if (!(t >= 0 && isfinite(t))) return fault("t: allowed: finite, 0 or more", error);
     if (solve(gamma, left, right, &solution, error) || check(n, x, anywhere, error))
         return SPHPROOF_BAD_INPUT;
     for (size_t i = 0; i < n; i++) {
@@ -73,7 +74,7 @@ enum sphproof_status sphproof_solutions_sedov(double gamma, int dim, double rho0
                                               struct sphproof_error *error)
 {
     struct sedov sedov;
-    if (!(t > 0)) return fault("t: allowed: above 0", error);
+    if (!(t > 0 && isfinite(t))) return fault("t: allowed: finite, above 0", error);
     if (fault(sedov_solve(gamma, dim, rho0, E, &sedov), error) || check(n, r, radius, error))
         return SPHPROOF_BAD_INPUT;
     if (shock) *shock = sedov_shock(&sedov, t);
@@ -88,8 +89,8 @@ enum sphproof_status sphproof_solutions_noh(double gamma, int dim, double t, siz
                                             const double *r, double *rho, double *v, double *P,
                                             struct sphproof_error *error)
 {
-    if (!(gamma > 1) || dim < 1 || dim > 3 || !(t >= 0))
-        return fault("allowed: gamma > 1, dim from 1 to 3, t of 0 or more", error);
+    if (!(gamma > 1 && isfinite(gamma)) || dim < 1 || dim > 3 || !(t >= 0 && isfinite(t)))
+        return fault("allowed: gamma > 1, dim from 1 to 3, t of 0 or more, all finite", error);
     if (check(n, r, radius, error)) return SPHPROOF_BAD_INPUT;
     for (size_t i = 0; i < n; i++) {
         const struct noh_state s = noh_sample(gamma, dim, r[i], t);

@@ -35,8 +35,9 @@ struct sphproof_order {
         *kind; /**< "asymptotic", "floor-limited", "pre-asymptotic", "oscillating", "diverging" */
 };
 
-/** Fits the order of n >= 4 errors, coarsest first; spacing (a length: n^(-1/d), h, dt) must
- * decrease strictly. SPHPROOF_BAD_INPUT: too few errors, or spacings that do not decrease. */
+/** Fits the order of n = 4 to 64 errors, coarsest first; spacing (a length: n^(-1/d), h, dt) must
+ * decrease strictly. SPHPROOF_BAD_INPUT: too few or too many errors, or spacings that do not
+ * decrease. */
 enum sphproof_status sphproof_convergence_order(size_t n, const double *spacing,
                                                 const double *error_at,
                                                 struct sphproof_order *order,

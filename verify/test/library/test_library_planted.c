@@ -147,12 +147,20 @@ TEST(refused_solutions)
 #define WAVE(amplitude, t)                                                                         \
     sphproof_solutions_wave(1.4, 1, 0, 1, amplitude, 1, t, 1, at, rho, v, P, &error)
     refused(RIEMANN(wrong, 1), "must not be negative");
-    refused(RIEMANN(gas, -1e-300), "t: allowed: 0 or more");
+    refused(RIEMANN(gas, -1e-300), "t: allowed: finite, 0 or more");
+    refused(RIEMANN(gas, (double)INFINITY), "t: allowed: finite, 0 or more");
+    for (int k = 0; k < 2; k++)
+        refused(sphproof_solutions_riemann(1.4, gas, gas, k ? (double)NAN : -(double)INFINITY, 1, 1,
+                                           at, rho, v, P, &error),
+                "x0: allowed: finite");
     refused(sphproof_solutions_star(1.4, wrong, gas, &star, &error), "must not be negative");
     refused(SEDOV(0, 1), "");
     refused(SEDOV(4, 1), "");
-    refused(SEDOV(2, 0), "t: allowed: above 0");
-    refused(SEDOV(2, -1), "t: allowed: above 0");
+    refused(SEDOV(2, 0), "t: allowed: finite, above 0");
+    refused(SEDOV(2, -1), "t: allowed: finite, above 0");
+    refused(SEDOV(2, (double)INFINITY), "t: allowed: finite, above 0");
+    refused(NOH(1.4, 2, (double)INFINITY), "all finite");
+    refused(NOH((double)INFINITY, 2, 1), "all finite");
     refused(NOH(1, 1, 1), "gamma > 1");
     refused(NOH(1.4, 0, 1), "gamma > 1");
     refused(NOH(1.4, 4, 1), "gamma > 1");
