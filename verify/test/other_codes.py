@@ -319,7 +319,7 @@ def test_files_before():
     answer("ic", "sod", "n=60", "jitter=0.02", "--format", "csv", "--out", "here.csv")
     answer("run", "sod", "n=60", "--quiet", "--snapshot", "there.csv")
     for mode, status in ("same", 3), ("touches", 0):
-        bad_file(mode, "sod", ("@OUT@_*.csv", os.path.abspath("*here.csv")))
+        bad_file(mode, "sod", ("@OUT@_*.csv", "@HERE@/*here.csv"))
         done = document("run", "sod", "n=60", "--code", "bad.ini", status=status)
         assert done.get("reason", "") == ("old_snapshot" if status else ""), done
 
@@ -335,7 +335,7 @@ def test_cost():
 
 def test_threads():
     """Every command tells the code how many threads it may take."""
-    bad_file("good", "sound_wave", ("command = ", "shell = yes\ncommand = echo @THREADS@ >> %s/took && @HERE@/" % os.getcwd()), ("./code.py", "code.py"),
+    bad_file("good", "sound_wave", ("command = ", "shell = yes\ncommand = echo @THREADS@ >> \"@HERE@\"/took && \"@HERE@\"/"), ("./code.py", "code.py"),
              ("[case sound_wave]", "[case sound_wave]\nn = 16 20 24 28"))
     for words, runs in (("run", "sound_wave", "n=16"), 1), (("converge", "sound_wave", "--replicates", "1"), 4), \
             (("bench", "sound_wave", "--time", "1e-5", "--samples", "1", "--n", "16"), None):
@@ -382,7 +382,7 @@ def test_work():
     """Templates, a starting command of the user's, a shell; kept files."""
     write("par.txt.in", "n @N@ dim @DIM@ gamma @GAMMA@ box @LO@ @HI@ end @T_END@ out @OUT@ ic @IC@ seed @SEED@ spacing @SPACING@")
     write("line.ini", GOOD.replace("[case sod]", "parameters = par.txt.in\nshell = yes\n[case sod]")
-          .replace("./code.py good sod", "test -f @PARAMETERS@ && @HERE@/code.py good sod", 1))
+          .replace("./code.py good sod", "test -f @PARAMETERS@ && \"@HERE@\"/code.py good sod", 1))
     done = document("run", "sod", "n=100", "--code", "line.ini", "--work", "kept")
     assert read(os.path.join(done["code"]["folder"], "par.txt")) == ("n 100 dim 1 gamma 1.4 box -1 1 end 0.2 out out ic ic.csv seed 1 spacing 0.02"), done
     assert {"ic.csv", "out_1.csv", "par.txt", "stderr", "stdout"} == set(os.listdir(done["code"]["folder"]))
@@ -478,7 +478,7 @@ def test_changed_program():
     """Each way to name a program or its script: kept results are computed again after the file has changed."""
     ladder = ("converge", "sod", "--code", "named.ini", "--n", "50,52,54,56", "--replicates", "1", "--cache", "named")
     for command in ("./named.sh", "sh named.sh", "sh @HERE@/named.sh", "env A=1 @HERE@/named.sh",
-                    "shell = yes\ncommand = true; sh '@HERE@/named.sh'", "shell = yes\ncommand = A=1&&(@HERE@/named.sh"):
+                    "shell = yes\ncommand = true; sh \"@HERE@/named.sh\"", "shell = yes\ncommand = A=1&&(\"@HERE@/named.sh\""):
         write("named.ini", "[code]\nsnapshot = @OUT@_1.csv\n%s @N@ @T_END@ @OUT@%s\n[case sod]\ndensity_l1 = 0 1\n"
               % (command if "shell" in command else "command = " + command, ")" * command.count("(")))
         kept = []
