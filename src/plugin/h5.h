@@ -13,15 +13,16 @@
     X(Acreate2)                                                                                    \
     X(Aexists_by_name)                                                                             \
     X(Aget_space)                                                                                  \
-    X(Aget_type) X(Aopen_by_name) X(Aread) X(Awrite) X(Dclose) X(Dcreate2) X(Dget_space)           \
-        X(Dget_type) X(Dopen2) X(Dread) X(Dwrite) X(Eset_auto2) X(Fclose) X(Fcreate) X(Fflush)     \
-            X(Fget_file_image) X(Fopen) X(Gclose) X(Gcreate2) X(Iget_type) X(Lexists)              \
-                X(Literate_by_name) X(Oclose) X(Oexists_by_name) X(Oopen) X(Pclose) X(Pcreate)     \
-                    X(Pset_fapl_core) X(Pset_obj_track_times) X(Sclose) X(Screate)                 \
-                        X(Screate_simple) X(Sget_simple_extent_dims) X(Sget_simple_extent_ndims)   \
+    X(Aget_type)                                                                                   \
+    X(Aopen_by_name) X(Aread) X(Awrite) X(Dclose) X(Dcreate2) X(Dget_space) X(Dget_type) X(Dopen2) \
+        X(Dread) X(Dwrite) X(Eset_auto2) X(Fclose) X(Fcreate) X(Fflush) X(Fget_file_image)         \
+            X(Fopen) X(Gclose) X(Gcreate2) X(Iget_type) X(Lexists) X(Literate_by_name) X(Oclose)   \
+                X(Oexists_by_name) X(Oopen) X(Pclose) X(Pcreate) X(Pset_fapl_core)                 \
+                    X(Pset_obj_track_times) X(Sclose) X(Screate) X(Screate_simple)                 \
+                        X(Sget_simple_extent_dims) X(Sget_simple_extent_ndims)                     \
                             X(Sget_simple_extent_npoints) X(Tclose) X(Tcopy) X(Tget_class)         \
-                                X(Tget_size) X(Tis_variable_str) X(Tset_size) X(free_memory)       \
-                                    X(open)
+                                X(Tget_fields) X(Tget_size) X(Tis_variable_str) X(Tset_size)       \
+                                    X(free_memory) X(open)
 
 /* Identifiers of types and property list classes, which are variables of the library. */
 #define H5_IDENTIFIERS(X)                                                                          \

@@ -103,7 +103,8 @@ bool hdf5_last(const struct snapshot_source *source, const char *group, const ch
 static bool is_number(hid_t type)
 {
     const H5T_class_t class = h5.Tget_class(type);
-    return (class == H5T_INTEGER || class == H5T_FLOAT) && h5.Tget_size(type) <= 8;
+    return (class == H5T_INTEGER || class == H5T_FLOAT) &&
+           h5.Tget_size(type) <= sizeof(long double);
 }
 
 /* An attribute, or a dataset used in its place, with its type and space. */
@@ -237,8 +238,10 @@ size_t hdf5_rows(const struct snapshot_source *source, const char *path)
 static void set_precision(struct snapshot_file *file, enum snapshot_column column, hid_t type)
 {
     double *precision = &file->precision[column >= SNAPSHOT_VX];
-    const bool single = h5.Tget_class(type) == H5T_FLOAT && h5.Tget_size(type) <= sizeof(float);
-    *precision = fmax(*precision, single ? (double)FLT_EPSILON / 2 : DBL_EPSILON / 2);
+    size_t other, digits = DBL_MANT_DIG;
+    if (h5.Tget_class(type) == H5T_FLOAT)
+        h5.Tget_fields(type, &other, &other, &other, &other, &digits);
+    *precision = fmax(*precision, fmax(DBL_EPSILON, ldexp(1, -(int)digits)) / 2);
 }
 
 static enum status take(const struct dataset *d, const struct snapshot_source *source,

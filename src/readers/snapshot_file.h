@@ -26,6 +26,9 @@ extern const char *const snapshot_column_names[SNAPSHOT_COLUMNS];
 
 enum { SNAPSHOT_ROWS_MAX = 1 << 28, SNAPSHOT_NOTES_MAX = 24, SNAPSHOT_PARTS_MAX = 512 };
 
+/* Positions differ by rounding along directions whose extent over the greatest is at most this. */
+#define SNAPSHOT_ROUNDING 1e-6
+
 /* An assumption and its evidence. */
 struct snapshot_note {
     char what[32], value[80], evidence[240];

@@ -308,16 +308,21 @@ static enum status check_columns(const char *path, const struct snapshot_file *f
     return STATUS_OK;
 }
 
-/* The number of leading directions along which positions differ. */
+/* The number of leading directions along which positions differ by more than rounding. */
 static enum status find_dimension(const char *path, struct snapshot_file *file, struct error *error)
 {
     int dim = 0;
     char value[16];
+    double extent[3] = {0}, most = 0;
     for (int d = 0; d < 3 && file->column[d]; d++) {
         const double *x = file->column[d];
-        size_t i = 1;
-        while (i < file->n && x[i] == x[0]) i++;
-        if (i == file->n) continue;
+        double lo = x[0], hi = x[0];
+        for (size_t i = 0; i < file->n; i++) lo = fmin(lo, x[i]), hi = fmax(hi, x[i]);
+        extent[d] = hi - lo;
+        most = fmax(most, extent[d]);
+    }
+    for (int d = 0; d < 3; d++) {
+        if (!(extent[d] > SNAPSHOT_ROUNDING * most)) continue;
         if (d != dim)
             return error_set(error, STATUS_BAD_INPUT,
                              "%.200s: positions differ along %s but not along %s; allowed: flows "

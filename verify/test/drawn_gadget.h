@@ -66,7 +66,7 @@ static inline struct binary made(int dim)
         for (size_t i = 0; i < b.rows[k]; i++)
             for (int c = 0; c < 3; c++) {
                 double *to = &b.value[k][is_vector(k) ? 3 * i + (size_t)c : i];
-                *to = k == POS    ? (c < dim ? uniform(0, SIDE) : 0)
+                *to = k == POS    ? (c < dim ? uniform(0, SIDE) : uniform(0, SIDE * 0x1p-20))
                       : k == MASS ? (double)(float)uniform(1.4 * share, 1.6 * share)
                       : k == RHO  ? uniform(1, 2)
                       : k == HSML ? (double)(float)(uniform(1, 3) * pow(share, 1. / dim))

@@ -9,7 +9,21 @@
 enum { ITEM_NUMBERS = 64 };
 
 /* Types in which numbers and texts are stored. */
-enum stored { F64, F32, F32_BIG, I64, I32_BIG, I8, TEXT, TEXT_VARIABLE, OPAQUE, TYPE, GROUP };
+enum stored {
+    F64,
+    F32,
+    F32_BIG,
+    F80,
+    F16,
+    I64,
+    I32_BIG,
+    I8,
+    TEXT,
+    TEXT_VARIABLE,
+    OPAQUE,
+    TYPE,
+    GROUP
+};
 
 /* A dataset, or an attribute of the group before the last '/'. */
 struct item {
@@ -27,9 +41,15 @@ enum { ITEM_LETTERS = 5000 };
 
 static hid_t item_type(const struct item *item)
 {
-    const hid_t numbers[] = {H5T_IEEE_F64LE, H5T_IEEE_F32LE, H5T_IEEE_F32BE,
-                             H5T_STD_I64LE,  H5T_STD_I32BE,  H5T_STD_I8LE};
-    if (item->stored < TEXT) return H5Tcopy(numbers[item->stored]);
+    const hid_t numbers[] = {H5T_IEEE_F64LE, H5T_IEEE_F32LE, H5T_IEEE_F32BE, H5T_NATIVE_LDOUBLE,
+                             H5T_IEEE_F32LE, H5T_STD_I64LE,  H5T_STD_I32BE,  H5T_STD_I8LE};
+    if (item->stored < TEXT) {
+        const hid_t number = H5Tcopy(numbers[item->stored]);
+        if (item->stored == F16 && (H5Tset_fields(number, 15, 10, 5, 0, 10) < 0 ||
+                                    H5Tset_size(number, 2) < 0 || H5Tset_ebias(number, 15) < 0))
+            fail_msg("no type of 16 bits");
+        return number;
+    }
     if (item->stored > TEXT_VARIABLE) return H5Tcreate(H5T_OPAQUE, 8);
     const hid_t type = H5Tcopy(H5T_C_S1);
     H5Tset_size(type, item->stored == TEXT_VARIABLE ? H5T_VARIABLE

@@ -183,6 +183,7 @@ static bool plausible(const struct binary *b, const struct layout *layout, doubl
 static void extent(const struct binary *b, const struct record *positions, int *dim, double *volume)
 {
     const size_t width = width_of(positions, 3 * b->all);
+    double length[3], most = 0;
     *volume = 1;
     *dim = 0;
     for (size_t d = 0; d < 3; d++) {
@@ -191,9 +192,13 @@ static void extent(const struct binary *b, const struct record *positions, int *
             const double x = real(b, positions->bytes + width * (3 * i + d), width);
             lo = fmin(lo, x), hi = fmax(hi, x);
         }
-        if (!(hi > lo)) continue;
+        length[d] = hi - lo;
+        most = fmax(most, length[d]);
+    }
+    for (size_t d = 0; d < 3; d++) {
+        if (!(length[d] > SNAPSHOT_ROUNDING * most)) continue;
         ++*dim;
-        *volume *= b->box > 0 && hi - lo > 0.5 * b->box ? b->box : hi - lo;
+        *volume *= b->box > 0 && length[d] > 0.5 * b->box ? b->box : length[d];
     }
 }
 

@@ -127,7 +127,7 @@ TEST(reading_in_a_process)
 /* Numbers may be stored in any type and layout: what is read does not differ. */
 TEST(other_forms)
 {
-    static const enum stored numbers[] = {F32, F32_BIG, I64, I32_BIG};
+    static const enum stored numbers[] = {F32, F32_BIG, F80, F16, I64, I32_BIG};
     for (int a = 0; a < LAYOUTS; a++) {
         const struct layout *l = &layouts[a];
         for (size_t k = 0; k < l->count; k++) {

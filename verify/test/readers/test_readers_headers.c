@@ -267,28 +267,36 @@ TEST(corner_of_the_box)
 /* The precision is that of the coarsest column except positions. */
 TEST(precision)
 {
-    for (size_t k = 0; k < layouts[0].count; k++) {
-        const struct field *f = &layouts[0].fields[k];
-        struct snapshot_file file;
-        struct error error = {0};
-        struct item items[ITEMS_MAX];
-        items_of(&layouts[0], items);
-        items[k].stored = F32;
-        write_items(path_of("p.hdf5"), items, layouts[0].count);
-        if (snapshot_read(path_of("p.hdf5"), &here, &file, &error)) fail_msg("%s", error.message);
-        const bool column = f->meaning == COLUMN, x = column && f->column < SNAPSHOT_VX;
-        assert_true(file.precision[0] == (x ? (double)FLT_EPSILON : DBL_EPSILON) / 2);
-        assert_true(file.precision[1] == (column && !x ? (double)FLT_EPSILON : DBL_EPSILON) / 2);
-        snapshot_file_free(&file);
-    }
+    static const struct {
+        enum stored stored;
+        double precision;
+    } rows[] = {{F80, DBL_EPSILON / 2}, {F32, (double)FLT_EPSILON / 2}, {F16, 0x1p-11}};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
+        for (size_t k = 0; k < layouts[0].count; k++) {
+            const struct field *f = &layouts[0].fields[k];
+            struct snapshot_file file;
+            struct error error = {0};
+            struct item items[ITEMS_MAX];
+            items_of(&layouts[0], items);
+            items[k].stored = rows[r].stored;
+            write_items(path_of("p.hdf5"), items, layouts[0].count);
+            if (snapshot_read(path_of("p.hdf5"), &here, &file, &error))
+                fail_msg("%s", error.message);
+            const bool column = f->meaning == COLUMN, x = column && f->column < SNAPSHOT_VX;
+            assert_true(file.precision[0] == (x ? rows[r].precision : DBL_EPSILON / 2));
+            assert_true(file.precision[1] == (column && !x ? rows[r].precision : DBL_EPSILON / 2));
+            snapshot_file_free(&file);
+        }
 }
 
-/* The number of dimensions is that of the last direction along which positions vary. */
-TEST(dimensions)
+/* The number of dimensions is that of the last direction along which positions vary, by more than
+ * a millionth of the greatest extent, 2. */
+static void dimensions_with_noise(double noise)
 {
     for (int width = 1; width <= 3; width++)
-        for (int varies = 0; varies < 1 << width; varies++)
+        for (int planted = 0; planted < 1 << width; planted++)
             for (int v = 1; v <= 3; v++) {
+                const int varies = planted && noise > 2e-6 ? (1 << width) - 1 : planted;
                 struct snapshot_file file;
                 struct error error = {0};
                 struct item items[ITEMS_MAX];
@@ -300,7 +308,9 @@ TEST(dimensions)
                 velocity->shape[1] = (hsize_t)v;
                 for (int i = 0; i < N; i++)
                     for (int d = 0; d < width; d++)
-                        x->values[width * i + d] = varies >> d & 1 && i == N - 1 ? 7 : 5;
+                        x->values[width * i + d] = planted >> d & 1
+                                                       ? (i == N - 1 ? 7 : 5)
+                                                       : 5 + (planted && i % 2 ? noise : 0);
                 write_items(path_of("d.hdf5"), items, layouts[0].count);
                 const enum status status = snapshot_read(path_of("d.hdf5"), &here, &file, &error);
                 const int dim = varies == 1 ? 1 : varies == 3 ? 2 : varies == 7 ? 3 : 0;
@@ -318,6 +328,13 @@ TEST(dimensions)
                     assert_true(file.dim == dim);
                 snapshot_file_free(&file);
             }
+}
+
+TEST(dimensions)
+{
+    dimensions_with_noise(0);
+    dimensions_with_noise(1.99e-6);
+    dimensions_with_noise(2.01e-6);
 }
 
 /* The header states more dimensions than positions have columns. */
