@@ -154,8 +154,8 @@ int hdf5_numbers(const struct snapshot_source *source, const char *group, const 
                  double *values, int max)
 {
     struct entry e;
-    int count = -1;
-    if (!open_entry(source, group, name, &e)) return -1;
+    int count = 0;
+    if (!open_entry(source, group, name, &e)) return 0;
     double all[HEADER_NUMBERS_MAX];
     if (is_number(e.type) && read_entry(&e, h5.T_NATIVE_DOUBLE_g, all)) {
         count = (int)e.count;
@@ -336,7 +336,7 @@ int hdf5_numbers(const struct snapshot_source *source, const char *group, const 
                  double *values, int max)
 {
     (void)source, (void)group, (void)name, (void)values, (void)max;
-    return -1;
+    return 0;
 }
 
 void hdf5_text(const struct snapshot_source *source, const char *group, const char *name,

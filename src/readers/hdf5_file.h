@@ -28,7 +28,7 @@ bool hdf5_last(const struct snapshot_source *source, const char *group, const ch
                char *name, size_t size);
 
 /* Reads an attribute of the group, or a dataset in it, into values. Returns the number of values,
- * of which at most max are stored; a scalar has one. -1: missing or not numeric. */
+ * of which at most max are stored; a scalar has one. 0: missing or not numeric. */
 int hdf5_numbers(const struct snapshot_source *source, const char *group, const char *name,
                  double *values, int max);
 

@@ -154,7 +154,7 @@ enum status hdf5_header(const struct snapshot_source *source, struct snapshot_fi
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s: Header/NumFilesPerSnapshot = %g; allowed: 1 to %d", source->path,
                          part.value, SNAPSHOT_PARTS_MAX);
-    file->parts = part.known ? (int)part.value : 1;
+    if (part.known) file->parts = (int)part.value;
     file->total = hdf5_number(source, "Header", "NumPart_Total").value;
     if (dim.known && dim.value >= 1 && dim.value <= 3) file->dim = (int)dim.value;
     take_box(source, file);

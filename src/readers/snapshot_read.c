@@ -35,6 +35,7 @@ static enum status read_source(struct snapshot_source *source,
             (const struct snapshot_reader *)snapshot_reader_family.members[k];
         if (!reader->recognises(source)) continue;
         snprintf(file->layout, sizeof file->layout, "%s", reader->member.name);
+        file->parts = 1;
         return reader->read(source, options, file, error);
     }
     if (source->file) {

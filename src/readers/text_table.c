@@ -255,6 +255,5 @@ enum status text_table_read(const struct text_table *table, size_t from, size_t 
     free(type);
     note_unit(table, file);
     file->precision[0] = file->precision[1] = DBL_EPSILON / 2;
-    file->parts = 1;
     return status;
 }

@@ -386,8 +386,9 @@ static bool find_shift(const struct trial *trial, double by[3])
     enum { SIDE_LINE = 480, SIDE_PLANE = 40, SIDE_SPACE = 12, KEPT = 3 };
     const struct domain *box = &trial->gas->problem->domain;
     const int side = box->dim == 1 ? SIDE_LINE : box->dim == 2 ? SIDE_PLANE : SIDE_SPACE;
-    const int cells = box->dim == 1 ? side : box->dim == 2 ? side * side : side * side * side;
+    int cells = 1;
     double best[KEPT], at[KEPT][3] = {{0}};
+    for (int d = 0; d < box->dim; d++) cells *= side;
     for (int k = 0; k < KEPT; k++) best[k] = INFINITY;
     for (int c = 1; c < cells; c++) {
         const int position[3] = {c % side, c / side % side, c / side / side};

@@ -66,7 +66,7 @@ static inline struct table table_of(int dim, bool all)
                                       : "entropy");
         for (int i = 0; i < ROWS; i++) {
             const bool positive = c >= SNAPSHOT_M && c <= SNAPSHOT_H;
-            const double value = ldexp(1 + uniform(), (int)drawn(60) - 30);
+            const double value = ldexp(1 + uniform(), c < 3 ? (int)drawn(8) : (int)drawn(60) - 30);
             t.value[t.columns][i] = c == TYPE ? (drawn(2) ? 1 : (double)drawn(6) - 2)
                                               : (positive || drawn(2) ? value : -value);
         }

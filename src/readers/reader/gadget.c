@@ -173,8 +173,8 @@ static bool plausible(const struct binary *b, const struct layout *layout, doubl
         const double density = gas_value(b, rho, n, i);
         if (!positive(mass) || !positive(density) || !positive(gas_value(b, u, n, i))) return false;
         filled += mass / density;
-        const double width = h ? gas_value(b, h, n, i) : pow(mass / density, 1. / dim);
-        const double spacings = width / pow(mass / density, 1. / dim);
+        const double spacing = pow(mass / density, 1. / dim);
+        const double spacings = (h ? gas_value(b, h, n, i) : spacing) / spacing;
         if (!(spacings > 0.3 && spacings < 30)) return false;
     }
     return filled > 0.5 * volume && filled < 2 * volume;
@@ -361,7 +361,7 @@ static enum status read(const struct snapshot_source *source,
     file->time = (struct snapshot_value){true, b.time};
     file->boxed = b.box > 0 && isfinite(b.box);
     for (int d = 0; d < 3; d++) file->box[d] = file->boxed ? b.box : 0;
-    file->parts = b.parts ? b.parts : 1;
+    if (b.parts) file->parts = b.parts;
     snprintf(file->code, sizeof file->code, "GADGET or its kin");
     snapshot_note(&file->notes, "format", b.tagged ? "2" : "1", "%s byte order, %zu records",
                   b.swapped ? "the other" : "this machine's", b.count);

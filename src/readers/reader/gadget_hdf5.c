@@ -31,7 +31,8 @@ static void place(const struct snapshot_source *source, struct snapshot_file *fi
     hdf5_text(source, "Header", "Case", file->case_name, sizeof file->case_name);
     hdf5_text(source, "Header", "Boundary", file->boundary, sizeof file->boundary);
     hdf5_text(source, "Header", "Keys", file->keys, sizeof file->keys);
-    if (!file->boxed || hdf5_numbers(source, "Header", "Origin", corner, DIRECTIONS) != DIRECTIONS) return;
+    if (!file->boxed || hdf5_numbers(source, "Header", "Origin", corner, DIRECTIONS) != DIRECTIONS)
+        return;
     file->placed = true;
     for (int d = 0; d < DIRECTIONS && file->column[d]; d++) {
         file->corner[d] = corner[d];

@@ -248,7 +248,6 @@ static enum status read(const struct snapshot_source *source,
         status = error_set(error, STATUS_BAD_INPUT,
                            "%.200s: its particles need real arrays x, y, z and h; they have:%s",
                            source->path, dump.arrays);
-    file->parts = 1;
     snprintf(file->code, sizeof file->code, "%.79s", words + 3);
     file->code[strcspn(file->code, " ")] = '\0';
     if (!status) status = phantom_gas(source->path, &values.header, types, file, error);

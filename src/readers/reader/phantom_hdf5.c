@@ -33,7 +33,7 @@ static void take_header(const struct snapshot_source *source, struct phantom_hea
     static const char *const ends[3][2] = {{"xmin", "xmax"}, {"ymin", "ymax"}, {"zmin", "zmax"}};
     const int types =
         hdf5_numbers(source, "header", "massoftype", header->masses, PHANTOM_TYPES_MAX);
-    header->types = types < 0 ? 0 : types < PHANTOM_TYPES_MAX ? types : PHANTOM_TYPES_MAX;
+    header->types = types < PHANTOM_TYPES_MAX ? types : PHANTOM_TYPES_MAX;
     header->hfact = hdf5_number(source, "header", "hfact");
     header->time = hdf5_number(source, "header", "time");
     header->gamma = hdf5_number(source, "header", "gamma");
@@ -51,7 +51,6 @@ static enum status read(const struct snapshot_source *source,
                         struct error *error)
 {
     (void)options;
-    file->parts = 1;
     file->dim = 3;
     snprintf(file->code, sizeof file->code, "Phantom");
     struct phantom_header header = {0};

@@ -67,7 +67,6 @@ static enum status read(const struct snapshot_source *source,
         for (size_t i = 0; i < file->n; i++) file->column[SNAPSHOT_M][i] = mass.value;
     }
     take_box(source, step, file);
-    file->parts = 1;
     snapshot_note(&file->notes, "step", step, "the last one of the file");
     snprintf(file->code, sizeof file->code, "SPH-EXA");
     return STATUS_OK;

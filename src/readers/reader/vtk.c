@@ -282,7 +282,6 @@ static enum status read_vtk(const struct snapshot_source *source,
         refuse(&vtk, "has no POINTS", "");
         return error->status;
     }
-    file->parts = 1;
     snprintf(file->code, sizeof file->code, "unknown");
     return STATUS_OK;
 }

@@ -450,7 +450,6 @@ static enum status read_vtu(const struct snapshot_source *source,
         refuse(&vtk, "has no Piece; allowed: one, with points");
         return error->status;
     }
-    file->parts = 1;
     snprintf(file->code, sizeof file->code, "unknown");
     return STATUS_OK;
 }
