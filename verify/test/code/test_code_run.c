@@ -1,12 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Tests parts of a run of another code: the varied start, the name of the snapshot, its box, the
- * log, and the place of a profile. (The transcripts and other_codes.py test whole runs.) */
+ * log, the place of a profile, and a process that cannot begin. (The transcripts and other_codes.py
+ * test whole runs.) */
 #include "test.h"
 
-#include <sys/resource.h>
+#include <errno.h>
+#include <stdbool.h>
+#include <sys/socket.h>
 
-#include "code_process.h"
 #include "own_folder.h"
+
+static bool no_sockets;
+
+static int make_sockets(int domain, int type, int protocol, int ends[2])
+{
+    errno = EMFILE;
+    return no_sockets ? -1 : socketpair(domain, type, protocol, ends);
+}
+
+#define socketpair make_sockets
+#include "../../code/code_process.c"
+#undef socketpair
 /* the run itself, because its static functions are tested */
 #include "../../code/code_run.c"
 
@@ -223,29 +237,23 @@ TEST(no_initial_state)
     assert_false(course.reason || course.is_judged);
 }
 
-/* Where no file can be opened there is no process, with one descriptor that is left, too. */
-TEST(no_descriptors)
+/* Where no socket can be made there is no process. */
+TEST(no_sockets_left)
 {
     static const char *const words[] = {"true", NULL};
     const struct code_order order = {
         .words = words, .folder = own_folder, .seconds = 60, .bytes = (double)INFINITY};
-    struct code_outcome outcome;
-    struct rlimit usual;
-    const int next = dup(1);
-    assert_int_equal(getrlimit(RLIMIT_NOFILE, &usual), 0);
-    close(next);
-    for (int left = 0; left < 2; left++) {
+    for (int none = 0; none < 2; none++) {
+        struct code_outcome outcome = {.exit = 7};
         struct error error = {0};
-        const struct rlimit few = {(rlim_t)(next + left), usual.rlim_max};
-        assert_int_equal(setrlimit(RLIMIT_NOFILE, &few), 0);
-        const enum status status = code_process(&order, &outcome, &error);
-        assert_int_equal(setrlimit(RLIMIT_NOFILE, &usual), 0);
-        assert_int_equal(status, STATUS_ENVIRONMENT);
-        assert_non_null(strstr(error.message, "no process for another code: Too many open files"));
+        no_sockets = none;
+        assert_int_equal(code_process(&order, &outcome, &error),
+                         none ? STATUS_ENVIRONMENT : STATUS_OK);
+        assert_int_equal(outcome.exit, none ? 7 : 0);
+        assert_string_equal(error.message,
+                            none ? "no process for another code: Too many open files" : "");
     }
-    struct error error = {0};
-    assert_int_equal(code_process(&order, &outcome, &error), STATUS_OK);
-    assert_int_equal(outcome.exit, 0);
+    no_sockets = false;
 }
 
 TEST(places_of_profiles)
