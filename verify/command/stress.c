@@ -19,8 +19,8 @@ static const char *style_of(const struct table_style *style, const char *outcome
     return !strcmp(outcome, "ok") ? style->good : !strcmp(outcome, "broke_down") ? style->bad : "";
 }
 
-/* Prints "ok 3.6e-3", "broke down", ... for one cell, in 12 columns. */
-static void print_cell(const json_t *entry, const struct table_style *style)
+/* Prints "ok 3.6e-3", "broke down", ... for one cell. */
+static void print_cell(const json_t *entry, int width, const struct table_style *style)
 {
     const char *outcome = value_text(entry, "outcome");
     const json_t *measured = json_object_get(entry, "measured"),
@@ -34,7 +34,7 @@ static void print_cell(const json_t *entry, const struct table_style *style)
                  json_number_value(json_is_number(measured) ? measured : predicted));
     else
         snprintf(text, sizeof text, "%s", strcmp(outcome, "broke_down") ? outcome : "broke");
-    printf(" %s%12.12s%s", style_of(style, outcome), text, style->end);
+    printf(" %s%*s%s", style_of(style, outcome), width, text, style->end);
 }
 
 static void print_group(const json_t *group, const json_t *cells, const struct table_style *style)
@@ -42,17 +42,19 @@ static void print_group(const json_t *group, const json_t *cells, const struct t
     const json_t *rows = json_object_get(group, "rows"),
                  *columns = json_object_get(group, "columns"), *entry;
     const char *name = value_text(group, "name");
-    size_t i, shown = 0;
+    size_t i, shown = 0, width = strlen("broken down");
+    json_array_foreach(columns, i, entry)
+        if (json_string_length(entry) > width) width = json_string_length(entry);
     printf("\n%s%s%s: %s\n%-24s", style->bold, name, style->end, value_text(group, "title"),
            value_text(group, "column_title"));
     for (i = 0; i < json_array_size(columns); i++)
-        printf(" %12.12s", json_string_value(json_array_get(columns, i)));
+        printf(" %*s", (int)width, json_string_value(json_array_get(columns, i)));
     for (size_t r = 0; r < json_array_size(rows); r++) {
         const char *row = json_string_value(json_array_get(rows, r));
         printf("\n%-24.24s", row);
         json_array_foreach(cells, i, entry)
             if (!strcmp(value_text(entry, "group"), name) && !strcmp(value_text(entry, "row"), row))
-                print_cell(entry, style);
+                print_cell(entry, (int)width, style);
     }
     printf("\n");
     json_array_foreach(cells, i, entry) {

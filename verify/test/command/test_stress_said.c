@@ -27,10 +27,10 @@ static const char cells[] =
 
 static const char table[] =
     "\n[*g]: a group\n"
-    "of                                  c a column of \n"
-    "first                    [+ 0.250/0.500] [+      0.0312]\n"
-    "second row of a long nam %s        ~0.5%s [-       broke]\n"
-    "third                    %s          ~2%s %s     refused%s\n"
+    "of                                             c a column of a long name\n"
+    "first                    [+            0.250/0.500] [+                 0.0312]\n"
+    "second row of a long nam %s                   ~0.5%s [-                  broke]\n"
+    "third                    %s                     ~2%s %s                refused%s\n"
     "  [.second row of a long name that is cut, c: too far]\n    sphproof run a\n"
     "  [.second row of a long name that is cut, d: NaN]\n    sphproof run b\n"
     "  [.third, c: why]\n    sphproof run c\n"
