@@ -177,8 +177,8 @@ static enum status prepare(struct course *course, struct error *error)
 /* The pattern of the snapshot's name, in the run's folder unless it is absolute; malloced. */
 static char *pattern_of(const struct course *course)
 {
-    struct buffer pattern = {0};
     char *name = code_fill(course->external->of->way.value[CODE_snapshot], course->values.of);
+    struct buffer pattern = {.failed = !name};
     for (const char *c = course->folder; name && *name != '/' && *c; c++) {
         if (strchr("\\*?[", *c)) buffer_add(&pattern, "\\");
         buffer_add_bytes(&pattern, c, 1);

@@ -7,6 +7,7 @@ import hashlib
 import json
 import os
 import random
+import shlex
 import signal
 import subprocess
 import sys
@@ -395,7 +396,7 @@ def test_work():
         assert os.path.exists(os.path.join(done["code"]["folder"], words[words.index("ic") + 1])), entry
         assert ("box 0 2" if "gadget" in entry["name"] or entry["name"] == "swift" else "box -1 1") in " ".join(words), (entry, words)
     write("start.ini", GOOD.replace("[case sod]", "ic = ./start.sh @IC@ @N@\n[case sod]"))
-    write("start.sh", "#!/bin/sh\nexec %s ic sod n=$2 --format csv --out $1 --quiet\n" % program)
+    write("start.sh", "#!/bin/sh\nexec %s ic sod n=$2 --format csv --out $1 --quiet\n" % shlex.quote(program))
     os.chmod("start.sh", 0o700)
     write("start.ini", read("start.ini").replace("./code.py", "@HERE@/code.py"))
     # a command has to find the format of its file by itself
@@ -415,7 +416,7 @@ sed '/^# case/d;/^# keys/d' all.csv > $2_1.csv
 
 def test_slab(draw):
     """A code in 3D runs a case in 2D as layers: its errors are nearly ours in 2D, and n is that of a layer."""
-    write("slab.sh", SLAB % program)
+    write("slab.sh", SLAB % shlex.quote(program))
     os.chmod("slab.sh", 0o700)
     write("slab.ini", GOOD.replace("[case gresho]", "[case gresho]\nas_3d = %d\nequal_masses = yes" % draw.randint(8, 10))
           .replace("./code.py good gresho @N@ @T_END@ @SEED@ @OUT@", "./slab.sh @T_END@ @OUT@ @LO@ @HI@"))
@@ -483,7 +484,7 @@ def test_changed_program():
               % (command if "shell" in command else "command = " + command, ")" * command.count("(")))
         kept = []
         for change in "", "# changed\n":
-            write("named.sh", "#!/bin/sh\n%s%s run sod n=$1 t_end=$2 --quiet --snapshot $3_1.csv\n" % (change, program))
+            write("named.sh", "#!/bin/sh\n%s%s run sod n=$1 t_end=$2 --quiet --snapshot $3_1.csv\n" % (change, shlex.quote(program)))
             os.chmod("named.sh", 0o700)
             kept.append(answer(*ladder, "--list")[0].count("kept"))
             if not change:
@@ -497,8 +498,8 @@ def test_key():
     file."""
     ini = ("[code]\nic = sh start.sh @IC@ @N@\nparameters = one.in two.in\ndepends = three.txt four.txt\nsnapshot = @OUT@_1.csv\n"
            "command = sh key.sh @N@ @T_END@ @OUT@\n[case sod]\ndensity_l1 = 0 1\n")
-    files = {"start.sh": "exec %s ic sod n=$2 --format csv --out $1 --quiet\n" % program,
-             "key.sh": "exec %s run sod n=$1 t_end=$2 --quiet --snapshot $3_1.csv\n" % program,
+    files = {"start.sh": "exec %s ic sod n=$2 --format csv --out $1 --quiet\n" % shlex.quote(program),
+             "key.sh": "exec %s run sod n=$1 t_end=$2 --quiet --snapshot $3_1.csv\n" % shlex.quote(program),
              "one.in": "@N@\n", "two.in": "@N@\n", "three.txt": "3\n", "four.txt": "4\n"}
     ladder = ("converge", "sod", "--code", "key.ini", "--n", "50,52,54,56", "--replicates", "1", "--cache", "keyed")
     for name, text in (*files.items(), ("key.ini", ini)):

@@ -109,9 +109,10 @@ def main():
         file.write(rows(slice(None, None, 8)))
     check(result(*words)["levels"] != first["levels"], "another table, the same ladder")
     # another code, whose snapshot is ours
+    os.symlink(program, "ours")
     with open("code.ini", "w") as file:
-        file.write("[code]\ntitle = a code\nic = csv\ncommand = %s run sod n=@N@ t_end=@T_END@ --quiet --snapshot @OUT@.csv\n"
-                   "snapshot = @OUT@.csv\n[case ./so.ini]\n" % program)
+        file.write("[code]\ntitle = a code\nic = csv\ncommand = ./ours run sod n=@N@ t_end=@T_END@ --quiet --snapshot @OUT@.csv\n"
+                   "snapshot = @OUT@.csv\n[case ./so.ini]\n")
     ours, theirs = result("run", "./so.ini"), result("run", "./so.ini", "--code", "code.ini")
     for field in FIELDS:
         a, b = (e.get("errors", {}).get(field, {}).get("l1", 0) for e in (ours, theirs))
