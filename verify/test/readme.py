@@ -110,7 +110,7 @@ def job(text):
 
 
 def stub(path, text):
-    with open(path, "w", encoding="ascii") as file:
+    with open(path, "w", encoding="utf-8") as file:
         file.write("#!/bin/sh\n" + text)
     os.chmod(path, 0o755)
 

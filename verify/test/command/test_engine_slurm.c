@@ -234,11 +234,14 @@ TEST(number_of_shares)
  * a shell reads the same words. */
 TEST(command_line_of_a_share)
 {
-    char program[1000], text[3000];
+    char program[1000], quoted[2000] = "", text[4000];
     again();
     const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     assert_true(length > 0);
     program[length] = '\0';
+    for (const char *c = program; *c; c++) /* the folder's name may have quotes */
+        snprintf(quoted + strlen(quoted), sizeof quoted - strlen(quoted),
+                 *c == '\'' ? "'\\'%c" : "%c", *c);
     set("n", "1,2,3"), set("words", "it's \"$HOME\" `x`\n2"), set("flag", "");
     set("jobs", "2"), set("plot", "p.svg"), set("cache", "a b"), set("engine", "slurm");
     set("engine-tasks", "3"), set("list", ""), set("failures", ""), set("history", "h"),
@@ -253,7 +256,7 @@ TEST(command_line_of_a_share)
              "exec '%s' converge --shard $SLURM_ARRAY_TASK_ID/3 --only-build %s --threads 3 --jobs "
              "2 --n='1,2,3' --words='it'\\''s \"$HOME\" `x`\n2' --flag --cache='a b' -- 'sod' "
              "'-1'\\'''",
-             program, call.folder.cache.build);
+             quoted, call.folder.cache.build);
     assert_string_equal(slurm.wrap, text);
     static const char *const words[] = {
         "--requeue",   "--open-mode=append", "--cpus-per-task=6", "--partition=main",
