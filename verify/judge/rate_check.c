@@ -292,7 +292,7 @@ static bool is_reordered(const double *theirs, int column, const struct setup *s
 {
     const double scale = scale_of(ours, setup->m, column, 0);
     const size_t n = ours->n;
-    double *mine = malloc(2 * n * sizeof *mine), *other = mine + n;
+    double *mine = malloc(2 * n * sizeof *mine), *other = mine ? mine + n : NULL;
     bool same = mine != NULL;
     for (size_t i = 0; same && i < n; i++)
         mine[i] = value(ours, setup->m, column, i), other[i] = theirs[i];
