@@ -219,7 +219,7 @@ void page_bench(struct page_writer *writer, const json_t *bench, bool of_codes)
     explain(to, of_codes);
     json_array_foreach(bench, i, document) {
         size_t most = json_array_size(json_object_get(document, "schemes"));
-        struct curve *curves = page_room(to, most, sizeof *curves);
+        struct curve *curves = page_allocate(to, most, sizeof *curves);
         if (!curves) return;
         size_t count = read_curves(to, document, curves, most);
         html_format(to, "<h3><code>%s</code> <span>%s</span></h3>\n<div class=\"figures\">",

@@ -20,7 +20,7 @@ static const char *const quantities[QUANTITIES] = {"density", "velocity", "press
 static double *energies(struct buffer *to, const double *rho, const double *P, size_t n,
                         double gamma)
 {
-    double *u = rho && P && n ? page_room(to, n, sizeof *u) : NULL;
+    double *u = rho && P && n ? page_allocate(to, n, sizeof *u) : NULL;
     for (size_t i = 0; u && i < n; i++) u[i] = P[i] / ((gamma - 1) * rho[i]);
     return u;
 }

@@ -54,7 +54,7 @@ static void pairing_plot(struct page_writer *writer, const json_t *claim)
 {
     static const char *const titles[DIMS] = {"2D", "3D"};
     static const double ticks[] = {10, 20, 50, 100, 200, 400};
-    struct curve *curves = page_room(&writer->to, (size_t)DIMS * KERNELS, sizeof *curves);
+    struct curve *curves = page_allocate(&writer->to, (size_t)DIMS * KERNELS, sizeof *curves);
     struct plot_series series[DIMS][KERNELS];
     struct plot_panel panels[DIMS];
     size_t used = 0;

@@ -251,8 +251,8 @@ static void plot_profiles(struct page_writer *writer, const char *case_name,
 void page_cloud_plots(struct page_writer *writer, const char *case_name, const json_t *const *runs,
                       size_t count, bool all_maps)
 {
-    struct map *maps = page_room(&writer->to, count, sizeof *maps);
-    struct curves *curves = page_room(&writer->to, count, sizeof *curves);
+    struct map *maps = page_allocate(&writer->to, count, sizeof *maps);
+    struct curves *curves = page_allocate(&writer->to, count, sizeof *curves);
     if (maps && curves) {
         for (size_t r = 0; r < count; r++) {
             read_map(&writer->to, &maps[r], runs[r]);

@@ -352,7 +352,7 @@ static void plot_trend(struct page_writer *writer, const char *case_name, struct
 static void plot_trends(struct page_writer *writer, const json_t *history, size_t nights)
 {
     const json_t *trends = json_object_get(history, "trends"), *trend;
-    struct curves *curves = page_room(&writer->to, 1, sizeof *curves);
+    struct curves *curves = page_allocate(&writer->to, 1, sizeof *curves);
     const char *name = "";
     size_t i;
     if (!curves) return;

@@ -8,11 +8,11 @@
 #include "html.h"
 #include "value.h"
 
-void *page_room(struct buffer *to, size_t n, size_t size)
+void *page_allocate(struct buffer *to, size_t n, size_t size)
 {
-    void *room = calloc(n + 1, size);
-    to->failed |= !room;
-    return room;
+    void *table = calloc(n + 1, size);
+    to->failed |= !table;
+    return table;
 }
 
 double *page_numbers(struct buffer *to, const json_t *list, size_t *n)

@@ -41,5 +41,5 @@ void page_plot_name(char *name, size_t size, const char *case_name, const char *
 
 /* A table of n elements, all 0, and the numbers of a list (value_numbers), both malloced. Where
  * memory has ended, NULL, and the page fails. */
-void *page_room(struct buffer *to, size_t n, size_t size);
+void *page_allocate(struct buffer *to, size_t n, size_t size);
 double *page_numbers(struct buffer *to, const json_t *list, size_t *n);

@@ -36,7 +36,7 @@ static void label_of(struct buffer *to, char label[64], const json_t *row, bool 
 static void plot_growth(struct page_writer *writer, const json_t *atlas, const char *gradient)
 {
     static const double least = 1e-4;
-    struct curve *curves = page_room(&writer->to, CURVES, sizeof *curves);
+    struct curve *curves = page_allocate(&writer->to, CURVES, sizeof *curves);
     struct plot_series series[CURVES];
     const json_t *rows = json_object_get(atlas, "rows"), *row;
     size_t i, count = 0;
@@ -89,7 +89,7 @@ static void plot_growth(struct page_writer *writer, const json_t *atlas, const c
 /* Draws frequency and growth against the wavenumber. */
 static void plot_waves(struct page_writer *writer, const json_t *waves)
 {
-    struct curve *curves = page_room(&writer->to, 2 * CURVES, sizeof *curves);
+    struct curve *curves = page_allocate(&writer->to, 2 * CURVES, sizeof *curves);
     struct plot_series series[2][CURVES];
     size_t i, count = 0;
     const json_t *row;

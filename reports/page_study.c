@@ -416,7 +416,7 @@ void page_study(struct page_writer *writer, const char *case_name, const json_t 
                 size_t count)
 {
     struct buffer *to = &writer->to;
-    struct study *studies = page_room(to, count, sizeof *studies);
+    struct study *studies = page_allocate(to, count, sizeof *studies);
     if (!studies) return;
     for (size_t k = 0; k < count; k++) read_study(&studies[k], documents[k]);
     buffer_add(to, "<div class=\"figures\">\n");

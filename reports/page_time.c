@@ -76,7 +76,7 @@ static size_t read_series(const struct picture *picture, int curve, const json_t
 static void draw(struct page_writer *writer, const struct picture *picture, const char *case_name,
                  const json_t *const *runs, size_t count)
 {
-    struct line *lines = page_room(&writer->to, (size_t)CURVES * PAGE_SCHEMES, sizeof *lines);
+    struct line *lines = page_allocate(&writer->to, (size_t)CURVES * PAGE_SCHEMES, sizeof *lines);
     struct plot_series series[CURVES][PAGE_SCHEMES];
     struct plot_panel panels[CURVES];
     size_t used = 0;

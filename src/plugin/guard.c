@@ -144,7 +144,7 @@ static double now(void)
 }
 
 enum ending { ENDED, TOO_LATE, TOO_MUCH };
-enum { PRINTED_MAX = 1 << 26 };
+enum { STREAM_MAX = 1 << 26 }; /* bytes of an answer, and of what is printed */
 
 /* Reads both pipes until the process ends, or ends it; other processes may hold the pipes open. */
 static enum ending listen_to(pid_t pid, double limit, struct stream *streams, int *outcome)
@@ -162,9 +162,9 @@ static enum ending listen_to(pid_t pid, double limit, struct stream *streams, in
         }
         const pid_t done = waitpid(pid, outcome, WNOHANG | WUNTRACED);
         for (int i = 0; i < 2; i++)
-            while (drain(&streams[i]) && streams[i].seen <= PRINTED_MAX) continue;
+            while (drain(&streams[i]) && streams[i].seen <= STREAM_MAX) continue;
         over = done == pid && !WIFSTOPPED(*outcome);
-        const bool much = streams[1].seen > PRINTED_MAX, late = now() >= until;
+        const bool much = streams[1].seen > STREAM_MAX, late = now() >= until;
         if (over || (done != pid && !much && !late)) continue;
         ending = done == pid ? ENDED : much ? TOO_MUCH : TOO_LATE; /* ENDED: it was stopped */
         kill(pid, SIGKILL);
@@ -188,7 +188,7 @@ static void explain(struct guard_verdict *verdict, const struct watch *seen, enu
     else if (ending == TOO_LATE)
         snprintf(text, size, "did not end within %g s: stands%s", limit, where);
     else if (ending == TOO_MUCH)
-        snprintf(text, size, "prints without end, more than %d MB%s", PRINTED_MAX >> 20, where);
+        snprintf(text, size, "prints without end, more than %d MB%s", STREAM_MAX >> 20, where);
     else if (WIFSTOPPED(outcome))
         snprintf(text, size, "has stopped itself%s", where);
     else if (WIFSIGNALED(outcome))
@@ -263,7 +263,7 @@ static enum status start(guard_work *work, const void *context, double limit,
     const pid_t parent = getpid(), pid = fork();
     if (pid == 0) child(work, context, parent, answer[1], printed[1]);
     const int reason = errno;
-    struct stream streams[2] = {{.file = answer[0], .most = PRINTED_MAX},
+    struct stream streams[2] = {{.file = answer[0], .most = STREAM_MAX},
                                 {.file = printed[0], .most = sizeof verdict->printed}};
     close(answer[1]), close(printed[1]);
     for (int i = 0; i < 2; i++)

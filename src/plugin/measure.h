@@ -12,8 +12,7 @@ typedef double measure_function(const struct kernel *kernel, double r, double h,
 double measure_sphere(int dim);
 
 /* Integral of r^power f(r, h) over a h < r < b h, or over the whole support, by Gauss-Legendre
- * between the break points; adds the difference of two rules to *floor, unless floor
- * is NULL. */
+ * between the break points; adds the difference of two rules to *floor, unless floor is NULL. */
 double measure_between(const struct pieces *pieces, measure_function *f, int power, double h,
                        double a, double b, double *floor);
 double measure_support(const struct pieces *pieces, measure_function *f, int power, double h,

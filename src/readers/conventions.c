@@ -112,8 +112,8 @@ static enum status gather(const struct snapshot_file *file, const double box[3],
     return STATUS_OK;
 }
 
-/* rms of sum/rho - 1 over the sample; infinite if it is more than `most`, which a few particles
- * mostly show. */
+/* rms of sum/rho - 1 over the sample. INFINITY as soon as the particles so far show that it exceeds
+ * `most`. */
 static double residual(const struct sample *sample, const struct kernel *kernel,
                        enum density_sum sum, double ratio, double most)
 {

@@ -98,13 +98,13 @@ static enum status take_masses(const struct snapshot_source *source, struct snap
 
 static void take_box(const struct snapshot_source *source, struct snapshot_file *file)
 {
-    const char *name = "Sides"; /* of our own initial states, where BoxSize is the largest */
     double *box = file->box;
-    if (hdf5_numbers(source, "Header", name, box, 3) != 3) name = "BoxSize";
-    const int count = hdf5_numbers(source, "Header", name, box, 3);
+    /* our own initial states have Sides, and BoxSize is the largest */
+    int count = hdf5_numbers(source, "Header", "Sides", box, 3);
+    if (count != 3) count = hdf5_numbers(source, "Header", "BoxSize", box, 3);
     for (int d = 0; d < 3; d++) {
         if (count == 1) box[d] = box[0];
-        if (!(box[d] > 0 && isfinite(box[d]))) box[d] = 0;
+        if (!count || !(box[d] > 0 && isfinite(box[d]))) box[d] = 0;
     }
     file->boxed = box[0] > 0;
 }

@@ -12,7 +12,7 @@
 #include "table.h"
 #include "value.h"
 
-enum { SHOWN = 12 };
+enum { CELL = 12, SHOWN = 12 };
 
 static const char *style_of(const struct table_style *style, const char *outcome)
 {
@@ -42,7 +42,7 @@ static void print_group(const json_t *group, const json_t *cells, const struct t
     const json_t *rows = json_object_get(group, "rows"),
                  *columns = json_object_get(group, "columns"), *entry;
     const char *name = value_text(group, "name");
-    size_t i, shown = 0, width = strlen("broken down");
+    size_t i, shown = 0, width = CELL;
     json_array_foreach(columns, i, entry)
         if (json_string_length(entry) > width) width = json_string_length(entry);
     printf("\n%s%s%s: %s\n%-24s", style->bold, name, style->end, value_text(group, "title"),

@@ -342,7 +342,7 @@ static double median_error(const struct judged *judged, int f, double *errors, d
     const struct snapshot *s = &judged->result.snapshot;
     const int dim = judged->run.problem.domain.dim;
     const double *const values[FIELDS] = {s->rho, s->v[0], s->P, s->u};
-    double least = INFINITY, most = -least, sound = most, motion = most;
+    double least = INFINITY, most = -INFINITY, sound = -INFINITY, motion = -INFINITY;
     for (int all = 0; all < 2; all++) {
         size_t n = 0;
         for (size_t i = 0; i < s->n; i++) {
@@ -506,9 +506,9 @@ static enum status measure_start(struct judged *judged, bool glance, struct erro
             start->message, *start->message ? "; " : "", start->worst[START_VELOCITY],
             known ? "internal energies" : "the total energy",
             known ? start->worst[START_ENERGY] : energy_off(judged), masses);
-    }
-    if (start->looked && start->wrong)
+    } else if (start->looked) {
         snapshot_note(&judged->file.notes, "start", "damaged", "%s", start->message);
+    }
     return STATUS_OK;
 }
 

@@ -215,7 +215,7 @@ static void say_source(const struct judged *main, const struct case_gate *gate, 
     const size_t finest = file->ladder_count ? file->ladder[file->ladder_count - 1] : 0;
     int used = snprintf(text, SOURCE, "case %s: %.3g", file->name, gate->gate.bound);
     if (finest) used += snprintf(text + used, SOURCE - (size_t)used, " at n = %zu", finest);
-    if (n < (double)finest)
+    if (gate->gate.low > 0 && n < (double)finest)
         snprintf(text + used, SOURCE - (size_t)used, ", raised by order %g to n = %.0f",
                  gate->gate.low, n);
     else if (fabs(raise - 1) > 0)

@@ -243,10 +243,10 @@ static bool are_moved(const struct start_gas *gas)
             gas->problem->problem->mean_energy ? 0
                                                : start_off(gas, START_ENERGY, i, &gas->exact[i]),
             gas->wrong[i] & 1u << START_MASS ? start_off(gas, START_MASS, i, &gas->exact[i]) : 0};
-        bool near = gas->wrong[i];
-        for (int k = 0; k < 3; k++) near = near && off[k] <= most[k] + WRONG;
+        bool is_moved = gas->wrong[i];
+        for (int k = 0; k < 3; k++) is_moved = is_moved && off[k] <= most[k] + WRONG;
         wrong += gas->wrong[i] != 0;
-        moved += near;
+        moved += is_moved;
     }
     return PER_CENT * moved >= 98 * wrong;
 }

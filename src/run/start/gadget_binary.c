@@ -1,4 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "start_format.h"
+#include "gadget_binary.h"
 
 GADGET_BINARY(gadget_binary, "1", false);

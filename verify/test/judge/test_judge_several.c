@@ -449,15 +449,16 @@ TEST(sources_of_bounds)
     static const struct {
         double n, finer; /* over the finest n; over the bound */
         bool no_ladder;
-        double raised; /* the bound over the case's */
+        double low, raised; /* the order; the bound over the case's */
         const char *says;
     } rows[] = {
-        {1, 0, false, 1, "case leblanc: 0.0375 at n = 1600"},
-        {0.25, 0, false, 4, "case leblanc: 0.0375 at n = 1600, raised by order 1 to n = 400"},
-        {2, 0, false, 1, "case leblanc: 0.0375 at n = 1600"},
-        {2, 0.5, false, 0.5, "case leblanc: 0.0375 at n = 1600, beyond it 0.0187"},
-        {2, 2, false, 2, "case leblanc: 0.0375 at n = 1600, beyond it 0.075"},
-        {0.25, 0, true, 1, "case leblanc: 0.0375"}};
+        {1, 0, false, 1, 1, "case leblanc: 0.0375 at n = 1600"},
+        {0.25, 0, false, 1, 4, "case leblanc: 0.0375 at n = 1600, raised by order 1 to n = 400"},
+        {0.25, 0, false, 0, 1, "case leblanc: 0.0375 at n = 1600"},
+        {2, 0, false, 1, 1, "case leblanc: 0.0375 at n = 1600"},
+        {2, 0.5, false, 1, 0.5, "case leblanc: 0.0375 at n = 1600, beyond it 0.0187"},
+        {2, 2, false, 1, 2, "case leblanc: 0.0375 at n = 1600, beyond it 0.075"},
+        {0.25, 0, true, 1, 1, "case leblanc: 0.0375"}};
     struct judged judged = {.path = "made", .case_dim = 1, .file = {.layout = "made", .dim = 1}};
     struct run_settings *asked = &judged.run.asked;
     struct error error = {0};
@@ -466,7 +467,7 @@ TEST(sources_of_bounds)
     struct case_gate *gate = &file->gates[1];
     const size_t levels = file->ladder_count;
     *gate = file->gates[0];
-    file->ladder[levels - 1] = 1600, gate->gate.bound = 0.0375, gate->gate.low = 1;
+    file->ladder[levels - 1] = 1600, gate->gate.bound = 0.0375;
     file->gates[0] = (struct case_gate){.functional = "peak"}; /* has no exact value: no gate */
     file->gate_count = 2;
     judged.result.problem.problem = problem_of(&asked->settings);
@@ -476,6 +477,7 @@ TEST(sources_of_bounds)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         json_t *gates;
         file->ladder_count = rows[k].no_ladder ? 0 : levels;
+        gate->gate.low = rows[k].low;
         gate->finer = gate->gate, gate->finer.bound *= rows[k].finer;
         judged.case_n = 1600 * rows[k].n, judged.result.n = (size_t)judged.case_n;
         if (judge_gates(NULL, true, &judged, 1, &gates, &error)) fail_msg("%s", error.message);
