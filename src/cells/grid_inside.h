@@ -38,9 +38,13 @@ struct candidates {
     int32_t *slots; /* 2D: of the points of the surrounding cells */
 };
 
-/* Bounding box of a cell's points, and their largest squared radius. */
+/* Bounding box of a cell's points, their largest squared radius, and whether the nearest image of
+ * each candidate counts; side: then the periods in units, HUGE_VALF along axes without; otherwise
+ * HUGE_VALF. */
 struct surroundings {
     float lo[3], hi[3], radius2;
+    bool images;
+    float side[3];
 };
 
 struct grid;
@@ -52,9 +56,11 @@ typedef size_t take_loop(const struct grid *grid, size_t cell, const float moved
                          const struct surroundings *around, struct candidates *to, size_t count,
                          size_t at);
 
-/* Marks the candidates near a point. Returns their number. */
+/* Marks the candidates near a point. Returns their number. side: NULL; or, in a box hardly wider
+ * than the radii, where the nearest image of each candidate counts, the periods in units, HUGE_VALF
+ * if not periodic. */
 typedef int32_t find_loop(int dim, const struct candidates *candidates, size_t count,
-                          const float at[3], float radius2, uint16_t *marks);
+                          const float at[3], float radius2, const float *side, uint16_t *marks);
 
 /* Writes the slots of the marked candidates to list, which has space for all and BEYOND. Returns
  * their number. */
@@ -164,11 +170,6 @@ static inline ptrdiff_t grid_folded(const struct grid *grid, int axis, ptrdiff_t
 take_loop *grid_take_choose(void);
 find_loop *grid_find_choose(void);
 read_loop *grid_read_choose(void);
-
-/* As a find_loop, for a box hardly wider than the radii: takes the nearest image of each candidate.
- * side: periods in units, HUGE_VALF if not periodic. */
-int32_t grid_find_images(int dim, const struct candidates *candidates, size_t count,
-                         const float at[3], float radius2, const float side[3], uint16_t *marks);
 
 /* --- grid_lists.c ----------------------------------------------------------------------------- */
 

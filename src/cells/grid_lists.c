@@ -151,12 +151,17 @@ CLONES static void count_up(size_t n, int32_t first, int32_t *restrict to)
 }
 
 /* For a cell that is not empty. */
-static struct surroundings find_surroundings(const struct grid *grid, size_t cell)
+static struct surroundings find_surroundings(const struct grid *grid, size_t cell, bool images)
 {
     const uint32_t begin = grid->start[cell];
-    struct surroundings around = {.radius2 = grid->radius2[begin]};
+    struct surroundings around = {.radius2 = grid->radius2[begin], .images = images};
     float *lo = around.lo, *hi = around.hi;
-    for (int a = 0; a < 3; a++) lo[a] = hi[a] = grid->in_cell[a][begin];
+    for (int a = 0; a < 3; a++) {
+        lo[a] = hi[a] = grid->in_cell[a][begin];
+        around.side[a] =
+            images && grid_wraps(grid, a) ? (float)(grid->side[a] / grid->unit) : HUGE_VALF;
+    }
+    if (grid->box.dim == 2) return around; /* where all points around the cell are candidates */
     for (uint32_t s = begin; s < grid->start[cell + 1]; s++) {
         for (int a = 0; a < 3; a++) {
             lo[a] = grid->in_cell[a][s] < lo[a] ? grid->in_cell[a][s] : lo[a];
@@ -285,21 +290,15 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
         any |= is_listed(grid, s, beside);
     }
     if (!any) return 0;
-    float side[3];
     size_t own = SIZE_MAX; /* own points are not candidates */
-    for (int a = 0; a < 3; a++)
-        side[a] = grid_wraps(grid, a) ? (float)(grid->side[a] / grid->unit) : HUGE_VALF;
-    const bool drops = marked && !region.all;
-    struct surroundings around;
-    if (drops) around = find_surroundings(grid, cell);
+    const struct surroundings around = find_surroundings(grid, cell, region.all);
     const size_t count =
-        find_candidates(grid, c, &region, drops ? &around : NULL, candidates, &own);
+        find_candidates(grid, c, &region, marked ? &around : NULL, candidates, &own);
     if (count == SIZE_MAX) return -1;
     if (candidates->seen > candidates->most) candidates->most = candidates->seen;
-    grid->reached[cell] = NULL;
     if (!marked) {
         find_slots(grid, &region, candidates->slots);
-    } else if (drops) {
+    } else {
         const size_t words = (candidates->seen + 31) / 32;
         int32_t *marks = pool_take(pool, words);
         if (!marks) return -1;
@@ -314,12 +313,8 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
         if (!kept) return -1;
         uint16_t *marks = marked ? (uint16_t *)(void *)kept : candidates->marks;
         const float at[3] = {grid->in_cell[0][s], grid->in_cell[1][s], grid->in_cell[2][s]};
-        if (region.all) {
-            list->count = grid_find_images(grid->box.dim, candidates, count, at, grid->radius2[s],
-                                           side, marks);
-        } else {
-            list->count = grid->find(grid->box.dim, candidates, count, at, grid->radius2[s], marks);
-        }
+        list->count = grid->find(grid->box.dim, candidates, count, at, grid->radius2[s],
+                                 around.images ? around.side : NULL, marks);
         if (own != SIZE_MAX) {
             const size_t at_own = own + (s - grid->start[cell]);
             const uint16_t self = (uint16_t)(1u << at_own % 16);
@@ -414,9 +409,8 @@ static void enter_cell(const struct grid *grid, struct grid_reader *reader, size
     }
     const struct region region = find_region(grid, reader->at, cell);
     reader->count = find_slots(grid, &region, reader->candidates);
-    if (grid->reached[cell])
-        reader->count = (size_t)grid->read(reader->candidates, grid->reached[cell], reader->count,
-                                           reader->candidates);
+    reader->count = (size_t)grid->read(reader->candidates, grid->reached[cell], reader->count,
+                                       reader->candidates);
     reader->begin = grid->start[cell];
     reader->end = grid->start[cell + 1];
 }

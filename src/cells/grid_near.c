@@ -11,30 +11,49 @@
 #include <immintrin.h>
 #endif
 
-/* near[k] = 1 if candidate k is near the point at `at`, otherwise 0; count a multiple of 16. */
-#define NEAR(name, dim)                                                                            \
-    CLONES static void name(size_t count, const float at[3], float radius2,                        \
-                            const float *restrict x, const float *restrict y,                      \
-                            const float *restrict z, const float *restrict other,                  \
-                            uint8_t *restrict near)                                                \
-    {                                                                                              \
-        const float x0 = at[0], y0 = at[1], z0 = at[2];                                            \
-        _Pragma("omp simd") for (size_t k = 0; k < count; k++)                                     \
-        {                                                                                          \
-            const float dx = x[k] - x0, dy = y[k] - y0, dz = dim == 3 ? z[k] - z0 : 0;             \
-            const float r2 = dim == 3 ? dx * dx + dy * dy + dz * dz : dx * dx + dy * dy;           \
-            const float most = other[k] > radius2 ? other[k] : radius2;                            \
-            near[k] = r2 < most;                                                                   \
-        }                                                                                          \
-    }
-NEAR(near_2, 2)
-NEAR(near_3, 3)
-
-/* The periodic image of a difference of positions that is nearest to 0. */
-ALWAYS_INLINE float nearest(float d, float side)
+/* The distance along a periodic axis between points that are d apart, |d| < 1.5 side. */
+ALWAYS_INLINE float around_axis(float d, float side)
 {
-    const float half = 0.5f * side;
-    return d > half ? d - side : d < -half ? d + side : d;
+    const float one_way = fabsf(d), other_way = fabsf(side - one_way);
+    return one_way < other_way ? one_way : other_way;
+}
+
+/* candidates->near[k] = 1 if candidate k is near the point at `at`, otherwise 0; count a multiple
+ * of
+ * 16. images: the nearest image of each candidate counts. */
+ALWAYS_INLINE void near_body(int dim, bool images, const struct candidates *candidates,
+                             size_t count, const float at[3], float radius2, const float side[3])
+{
+    const float *restrict x = candidates->x[0], *restrict y = candidates->x[1],
+                          *restrict z = candidates->x[2], *restrict other = candidates->radius2;
+    uint8_t *restrict near = candidates->near;
+    const float x0 = at[0], y0 = at[1], z0 = at[2], sx = images ? side[0] : 0,
+                sy = images ? side[1] : 0, sz = images ? side[2] : 0;
+#pragma omp simd
+    for (size_t k = 0; k < count; k++) {
+        float dx = x[k] - x0, dy = y[k] - y0, dz = dim == 3 ? z[k] - z0 : 0;
+        if (images) {
+            dx = around_axis(dx, sx);
+            dy = around_axis(dy, sy);
+            dz = dim == 3 ? around_axis(dz, sz) : 0;
+        }
+        const float r2 = dim == 3 ? dx * dx + dy * dy + dz * dz : dx * dx + dy * dy;
+        const float most = other[k] > radius2 ? other[k] : radius2;
+        near[k] = r2 < most;
+    }
+}
+
+CLONES static void find_near(int dim, const struct candidates *candidates, size_t count,
+                             const float at[3], float radius2, const float *side)
+{
+    if (dim == 2 && side)
+        near_body(2, true, candidates, count, at, radius2, side);
+    else if (dim == 2)
+        near_body(2, false, candidates, count, at, radius2, side);
+    else if (side)
+        near_body(3, true, candidates, count, at, radius2, side);
+    else
+        near_body(3, false, candidates, count, at, radius2, side);
 }
 
 /* Packs bytes of 0 and 1 into bits. Returns the number of ones. */
@@ -60,10 +79,12 @@ ALWAYS_INLINE void put_marks(uint16_t *marks, size_t at, uint32_t near)
     marks[at / 16 + 1] = (uint16_t)(wide >> 16);
 }
 
-/* Distance of x from the interval lo .. hi. */
-ALWAYS_INLINE float outside(float x, float lo, float hi)
+/* Distance from x to the interval lo .. hi, or to its nearest image. */
+ALWAYS_INLINE float outside(float x, float lo, float hi, float side)
 {
-    const float above = x - hi, below = lo - x, d = above > below ? above : below;
+    const float above = x - hi, below = lo - x, one_way = above > below ? above : below;
+    const float farthest = above < below ? -above : -below, other_way = side - farthest;
+    const float d = one_way < other_way ? one_way : other_way;
     return d > 0 ? d : 0;
 }
 
@@ -77,7 +98,8 @@ CLONES static size_t take_plainly(const struct grid *grid, size_t cell, const fl
     const float moved_x = moved[0], moved_y = moved[1], moved_z = moved[2],
                 radius2 = around->radius2;
     const float x0 = around->lo[0], y0 = around->lo[1], z0 = around->lo[2], x1 = around->hi[0],
-                y1 = around->hi[1], z1 = around->hi[2];
+                y1 = around->hi[1], z1 = around->hi[2], side_x = around->side[0],
+                side_y = around->side[1], side_z = around->side[2];
     for (size_t begin = 0; begin < all; begin += COPIED) {
         const size_t n = all - begin < COPIED ? all - begin : COPIED;
         const size_t from = first + begin;
@@ -91,8 +113,9 @@ CLONES static size_t take_plainly(const struct grid *grid, size_t cell, const fl
             at_x[k] = x[k] + moved_x;
             at_y[k] = y[k] + moved_y;
             at_z[k] = z[k] + moved_z;
-            const float dx = outside(at_x[k], x0, x1), dy = outside(at_y[k], y0, y1),
-                        dz = outside(at_z[k], z0, z1);
+            const float dx = outside(at_x[k], x0, x1, side_x),
+                        dy = outside(at_y[k], y0, y1, side_y),
+                        dz = outside(at_z[k], z0, z1, side_z);
             const float r2 = dx * dx + dy * dy + dz * dz;
             const float widest = others[k] > radius2 ? others[k] : radius2;
             near[k] = r2 <= widest;
@@ -112,35 +135,10 @@ CLONES static size_t take_plainly(const struct grid *grid, size_t cell, const fl
     return count;
 }
 
-CLONES static void near_images(int dim, size_t count, const float at[3], float radius2,
-                               const float side[3], const struct candidates *candidates)
-{
-    const float *restrict x = candidates->x[0], *restrict y = candidates->x[1],
-                          *restrict z = candidates->x[2], *restrict other = candidates->radius2;
-    uint8_t *restrict near = candidates->near;
-    const float x0 = at[0], y0 = at[1], z0 = at[2], sx = side[0], sy = side[1], sz = side[2];
-#pragma omp simd
-    for (size_t k = 0; k < count; k++) {
-        const float dx = nearest(x[k] - x0, sx), dy = nearest(y[k] - y0, sy),
-                    dz = dim == 3 ? nearest(z[k] - z0, sz) : 0;
-        const float r2 = dx * dx + dy * dy + dz * dz;
-        const float most = other[k] > radius2 ? other[k] : radius2;
-        near[k] = r2 < most;
-    }
-}
-
-int32_t grid_find_images(int dim, const struct candidates *candidates, size_t count,
-                         const float at[3], float radius2, const float side[3], uint16_t *marks)
-{
-    near_images(dim, count, at, radius2, side, candidates);
-    return pack(candidates->near, count, marks);
-}
-
 static int32_t find_plainly(int dim, const struct candidates *candidates, size_t count,
-                            const float at[3], float radius2, uint16_t *marks)
+                            const float at[3], float radius2, const float *side, uint16_t *marks)
 {
-    (dim == 2 ? near_2 : near_3)(count, at, radius2, candidates->x[0], candidates->x[1],
-                                 candidates->x[2], candidates->radius2, candidates->near);
+    find_near(dim, candidates, count, at, radius2, side);
     return pack(candidates->near, count, marks);
 }
 
@@ -161,29 +159,46 @@ static int32_t read_plainly(const int32_t *candidates, const uint16_t *marks, si
 
 #if SPHPROOF_CLONES && defined __x86_64__
 
-__attribute__((target("avx512f,popcnt"))) static int32_t
-find_in_vectors(int dim, const struct candidates *candidates, size_t count, const float at[3],
-                float radius2, uint16_t *marks)
+/* The difference of a coordinate from that of 16 candidates, or the distance to their nearest
+ * images. */
+__attribute__((target("avx512f"), always_inline)) static inline __m512
+differ_in_vectors(bool images, const float *x, float x0, float side)
 {
-    const __m512 x0 = _mm512_set1_ps(at[0]), y0 = _mm512_set1_ps(at[1]), z0 = _mm512_set1_ps(at[2]),
-                 own = _mm512_set1_ps(radius2);
-    const float *const x = candidates->x[0], *const y = candidates->x[1],
-                       *const z = candidates->x[2], *const radius2_of = candidates->radius2;
+    const __m512 d = _mm512_sub_ps(_mm512_loadu_ps(x), _mm512_set1_ps(x0));
+    if (!images) return d;
+    const __m512 one_way = _mm512_abs_ps(d);
+    return _mm512_min_ps(one_way, _mm512_abs_ps(_mm512_sub_ps(_mm512_set1_ps(side), one_way)));
+}
+
+__attribute__((target("avx512f,popcnt"), always_inline)) static inline int32_t
+find_body(int dim, bool images, const struct candidates *candidates, size_t count,
+          const float at[3], float radius2, const float *side, uint16_t *marks)
+{
+    const __m512 own = _mm512_set1_ps(radius2);
     int32_t found = 0;
     for (size_t k = 0; k < count; k += 16) {
-        const __m512 dx = _mm512_sub_ps(_mm512_loadu_ps(x + k), x0),
-                     dy = _mm512_sub_ps(_mm512_loadu_ps(y + k), y0);
-        __m512 r2 = _mm512_add_ps(_mm512_mul_ps(dx, dx), _mm512_mul_ps(dy, dy));
-        if (dim == 3) {
-            const __m512 dz = _mm512_sub_ps(_mm512_loadu_ps(z + k), z0);
-            r2 = _mm512_add_ps(r2, _mm512_mul_ps(dz, dz));
+        __m512 r2 = _mm512_setzero_ps();
+        for (int a = 0; a < dim; a++) {
+            const __m512 d =
+                differ_in_vectors(images, candidates->x[a] + k, at[a], images ? side[a] : 0);
+            r2 = _mm512_add_ps(r2, _mm512_mul_ps(d, d));
         }
-        const __m512 most = _mm512_max_ps(_mm512_loadu_ps(radius2_of + k), own);
+        const __m512 most = _mm512_max_ps(_mm512_loadu_ps(candidates->radius2 + k), own);
         const __mmask16 near = _mm512_cmp_ps_mask(r2, most, _CMP_LT_OQ);
         marks[k / 16] = near;
         found += _mm_popcnt_u32(near);
     }
     return found;
+}
+
+__attribute__((target("avx512f,popcnt"))) static int32_t
+find_in_vectors(int dim, const struct candidates *candidates, size_t count, const float at[3],
+                float radius2, const float *side, uint16_t *marks)
+{
+    if (dim == 2 && side) return find_body(2, true, candidates, count, at, radius2, side, marks);
+    if (dim == 2) return find_body(2, false, candidates, count, at, radius2, side, marks);
+    if (side) return find_body(3, true, candidates, count, at, radius2, side, marks);
+    return find_body(3, false, candidates, count, at, radius2, side, marks);
 }
 
 /* As take_plainly; a compress instruction packs the lanes that are kept. */
@@ -201,8 +216,13 @@ take_in_vectors(const struct grid *grid, size_t cell, const float moved[3],
             x[a] = _mm512_add_ps(_mm512_loadu_ps(grid->in_cell[a] + first + begin),
                                  _mm512_set1_ps(moved[a]));
             const __m512 above = _mm512_sub_ps(x[a], _mm512_set1_ps(around->hi[a])),
-                         below = _mm512_sub_ps(_mm512_set1_ps(around->lo[a]), x[a]),
-                         d = _mm512_max_ps(_mm512_max_ps(above, below), none);
+                         below = _mm512_sub_ps(_mm512_set1_ps(around->lo[a]), x[a]);
+            __m512 d = _mm512_max_ps(above, below);
+            if (around->images) {
+                const __m512 nearest = _mm512_min_ps(above, below); /* minus the farthest end */
+                d = _mm512_min_ps(d, _mm512_add_ps(_mm512_set1_ps(around->side[a]), nearest));
+            }
+            d = _mm512_max_ps(d, none);
             r2 = _mm512_add_ps(r2, _mm512_mul_ps(d, d));
         }
         const __m512 others = _mm512_loadu_ps(grid->radius2 + first + begin);

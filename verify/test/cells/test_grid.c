@@ -33,7 +33,7 @@ static void draw(gsl_rng *rng, struct points *p)
         if (p->box.periodic[a] && side < least_side) least_side = side;
     }
     if (!isfinite(least_side)) least_side = scale;
-    const double usual = least_side * (0.02 + 0.3 * gsl_rng_uniform(rng)) / contrast;
+    const double usual = least_side * (0.02 + 0.47 * gsl_rng_uniform(rng)) / contrast;
     for (size_t i = 0; i < p->n; i++) {
         const bool clumped = gsl_rng_uniform(rng) < 0.5;
         for (int a = 0; a < p->box.dim; a++) {
