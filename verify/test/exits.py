@@ -122,7 +122,7 @@ def test_environment():
 def test_one_at_a_time():
     """Without --jobs one run begins after another has ended."""
     write("slow.ini", "[code]\nshell = yes\nsnapshot = none\n"
-          "command = echo begins >>@HERE@/log; sleep 0.02; echo ends >>@HERE@/log\n[case sod]\nn = 40 50 60 70\n")
+          "command = echo begins >>\"@HERE@/log\"; sleep 0.02; echo ends >>\"@HERE@/log\"\n[case sod]\nn = 40 50 60 70\n")
     for words in (["converge", "sod", "--code", "slow.ini", "--replicates", "1"], ["calibrate", "slow.ini", "--runs", "2"],
                   ["bench", "sod", "--code", "slow.ini", "--n", "40,60", "--samples", "1", "--time", "1e-4", "--cache", "slow"]):
         write("log", "")

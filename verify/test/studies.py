@@ -107,10 +107,12 @@ def test_where():
             write("own/share/sphproof/" + names[1], "{}")
         found = json.loads(subprocess.run(["own/bin/sphproof", "list", "--where", "--json", "-"], capture_output=True).stdout)
         elsewhere = elsewhere or found["installed"]
-        paths = [os.path.abspath("own/share/sphproof/" + name) if k < beside else elsewhere[name] for k, name in enumerate(names)]
+        paths = [os.path.abspath("own/share/sphproof/" + name) if k < beside
+                 else elsewhere[name] and elsewhere[name].encode() for k, name in enumerate(names)]
         expect("places, %d beside the program" % beside, list(found["installed"]) == list(names) and not found["families"]
-               and [p and os.path.realpath(p) for p in found["installed"].values()] == [p and os.path.realpath(p) for p in paths], found)
-        said = subprocess.run(["own/bin/sphproof", "list", "--where"], capture_output=True, text=True).stdout
+               and [p and os.path.realpath(p.encode()) for p in found["installed"].values()]
+               == [p and os.path.realpath(os.fsencode(p)) for p in paths], found)
+        said = subprocess.run(["own/bin/sphproof", "list", "--where"], capture_output=True, encoding="utf-8").stdout
         expect("places printed, %d beside the program" % beside, said == "".join(
             "%-24s %s\n" % (name, path or "not installed") for name, path in found["installed"].items()), said)
     for words in (["list", "keys", "--where"], ["list", "--markdown", "--where"]):
