@@ -322,15 +322,19 @@ ALWAYS_INLINE void react_body(int dim, int values, const struct pairs *pairs, do
     }
 }
 
-static void react(const struct cells_method *method, const struct pairs *pairs, double *of)
+CLONES static void react(const struct cells_method *method, const struct pairs *pairs, double *of)
 {
     const int dim = method->box.dim, values = cells_reaction_values(method);
-    if (dim == 2 && values == 4)
+    if (dim == 2 && values == 4) /* constant numbers of values unroll the loops over them */
         react_body(2, 4, pairs, of);
+    else if (dim == 2 && values == 10)
+        react_body(2, 10, pairs, of);
     else if (dim == 2)
         react_body(2, values, pairs, of);
     else if (values == 5)
         react_body(3, 5, pairs, of);
+    else if (values == 13)
+        react_body(3, 13, pairs, of);
     else
         react_body(3, values, pairs, of);
 }
