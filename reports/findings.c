@@ -159,14 +159,23 @@ void findings_of_verify(struct findings *to, const json_t *verify)
     json_array_foreach(json_object_get(verify, "mutants"), i, entry) add_mutant(to, entry, command);
 }
 
+/* A finding about the case and the scheme of a run or a study. */
+static struct finding finding_of(int rank, enum finding_status status, const json_t *document,
+                                 const json_t *entry)
+{
+    struct finding finding = figure(rank, status, value_text(document, "case"),
+                                    value_text(document, "reproduce"), entry);
+    finding.subject = value_text(document, "label");
+    return finding;
+}
+
 /* Adds a gate of a single run: a bound on an error or on conservation. */
 static void add_gate(struct findings *to, const json_t *run, const json_t *gate)
 {
     struct buffer subject = {0}, reason = {0};
-    const char *of = value_text(run, "case");
     const struct finding finding =
-        figure(AREA_GATE, status_of(to, gate, false, of), of, value_text(run, "reproduce"), gate);
-    buffer_format(&subject, "%s: %s", value_text(run, "label"), value_text(gate, "name"));
+        finding_of(AREA_GATE, status_of(to, gate, false, value_text(run, "case")), run, gate);
+    buffer_format(&subject, "%s: %s", finding.subject, value_text(gate, "name"));
     const bool fails = finding.status == FINDING_FAIL;
     const char *why = value_text(gate, "why"), *known = value_text(gate, "known");
     html_format(&reason, fails ? "the error of the run, %f, is not <= %f" : "%f, bound %f",
@@ -175,35 +184,41 @@ static void add_gate(struct findings *to, const json_t *run, const json_t *gate)
     add(to, finding, &subject, &reason);
 }
 
+/* Adds what became of a run or a study: its status in words, and its message. */
+static void add_outcome(struct findings *to, int rank, enum finding_status status,
+                        const json_t *document)
+{
+    struct buffer reason = {0};
+    const char *word = value_text(document, "status");
+    buffer_format(&reason, "%s: %s", strcmp(word, "broke_down") ? word : "broke down",
+                  value_text(document, "message"));
+    add(to, finding_of(rank, status, document, NULL), NULL, &reason);
+}
+
 static void add_run(struct findings *to, const json_t *run)
 {
     static const char *const words[] = {"ok", "broke_down", "failed", NULL};
-    static const enum finding_status statuses[] = {FINDING_PASS, FINDING_FAIL, FINDING_FAIL};
     char message[VALUE_MESSAGE];
-    struct buffer reason = {0};
-    const char *of = value_text(run, "case");
     const int word = value_need_word(run, "status", words, message);
     const json_t *gate;
     size_t i;
-    if (word < 0) unreadable(to, of, message);
-    struct finding finding = figure(AREA_RUN, word < 0 ? FINDING_SKIP : statuses[word], of,
-                                    value_text(run, "reproduce"), NULL);
-    finding.subject = value_text(run, "label");
-    buffer_format(&reason, "%s: %s", word == 1 ? "broke down" : value_text(run, "status"),
-                  value_text(run, "message"));
-    add(to, finding, NULL, &reason);
+    if (word < 0) unreadable(to, value_text(run, "case"), message);
+    add_outcome(to, AREA_RUN,
+                word < 0    ? FINDING_SKIP
+                : word == 0 ? FINDING_PASS
+                            : FINDING_FAIL,
+                run);
     json_array_foreach(json_object_get(run, "gates"), i, gate) add_gate(to, run, gate);
 }
 
 static void add_order(struct findings *to, const json_t *study, const json_t *order)
 {
     struct buffer subject = {0}, reason = {0};
-    const char *of = value_text(study, "case");
-    struct finding finding = figure(AREA_CONVERGENCE, status_of(to, order, false, of), of,
-                                    value_text(study, "reproduce"), NULL);
+    struct finding finding = finding_of(
+        AREA_CONVERGENCE, status_of(to, order, false, value_text(study, "case")), study, NULL);
     finding.value = value_member(order, "order");
-    buffer_format(&subject, "%s: order of %s(%s)", value_text(study, "label"),
-                  value_text(order, "norm"), value_text(order, "field"));
+    buffer_format(&subject, "%s: order of %s(%s)", finding.subject, value_text(order, "norm"),
+                  value_text(order, "field"));
     html_format(&reason, "%f (95 %% interval %f to %f) ", finding.value, value_member(order, "low"),
                 value_member(order, "high"));
     buffer_add(&reason, value_text(order, "why"));
@@ -214,9 +229,8 @@ static void add_still_gas(struct findings *to, const json_t *study, const json_t
 {
     struct buffer subject = {0}, reason = {0};
     const struct finding finding =
-        figure(AREA_BUDGET, status_of(to, still, false, "still gas"), value_text(study, "case"),
-               value_text(study, "reproduce"), still);
-    buffer_format(&subject, "%s: still gas", value_text(study, "label"));
+        finding_of(AREA_BUDGET, status_of(to, still, false, "still gas"), study, still);
+    buffer_format(&subject, "%s: still gas", finding.subject);
     html_format(&reason,
                 "gas that no wave has reached moves at %f of its sound speed, allowed is %f",
                 finding.value, finding.bound);
@@ -227,17 +241,13 @@ static void add_suspicion(struct findings *to, const json_t *study, const char *
 {
     struct buffer reason = {0};
     if (!*suspicion) return;
-    struct finding finding = figure(AREA_SUSPICION, FINDING_FAIL, value_text(study, "case"),
-                                    value_text(study, "reproduce"), NULL);
-    finding.subject = value_text(study, "label");
     buffer_format(&reason, "too good to be true: %s", suspicion);
-    add(to, finding, NULL, &reason);
+    add(to, finding_of(AREA_SUSPICION, FINDING_FAIL, study, NULL), NULL, &reason);
 }
 
 static void add_study(struct findings *to, const json_t *study)
 {
     const char *status = value_text(study, "status");
-    const bool broke = !strcmp(status, "broke_down");
     const json_t *entry;
     size_t i;
     json_array_foreach(json_object_get(study, "orders"), i, entry) add_order(to, study, entry);
@@ -246,13 +256,8 @@ static void add_study(struct findings *to, const json_t *study)
     json_array_foreach(json_object_get(study, "budgets"), i, entry)
         add_still_gas(to, study, json_object_get(entry, "still_gas"));
     add_suspicion(to, study, value_text(study, "suspicion"));
-    if (!broke && strcmp(status, "failed")) return;
-    struct buffer reason = {0};
-    struct finding finding = figure(AREA_STUDY, FINDING_FAIL, value_text(study, "case"),
-                                    value_text(study, "reproduce"), NULL);
-    finding.subject = value_text(study, "label");
-    buffer_format(&reason, "%s: %s", broke ? "broke down" : status, value_text(study, "message"));
-    add(to, finding, NULL, &reason);
+    if (!strcmp(status, "broke_down") || !strcmp(status, "failed"))
+        add_outcome(to, AREA_STUDY, FINDING_FAIL, study);
 }
 
 static void add_stress(struct findings *to, const json_t *failure)
@@ -316,13 +321,12 @@ static void for_each(struct findings *to, const json_t *list,
 
 void findings_of_report(struct findings *to, const json_t *results)
 {
-    const json_t *since = json_object_get(json_object_get(results, "history"), "since");
     for_each(to, json_object_get(results, "runs"), add_run);
     for_each(to, json_object_get(results, "studies"), add_study);
     for_each(to, json_object_get(results, "trouble"), add_trouble);
     findings_of_verify(to, json_object_get(results, "verify"));
-    for_each(to, json_object_get(json_object_get(results, "stress"), "failures"), add_stress);
-    for_each(to, json_object_get(since, "figures"), add_since);
+    for_each(to, html_member(results, "stress/failures"), add_stress);
+    for_each(to, html_member(results, "history/since/figures"), add_since);
     add_faults(to, json_object_get(results, "faults"));
     for (size_t i = 0; i < to->count; i++) {
         const struct finding *f = &to->list[i];

@@ -98,13 +98,7 @@ void html_digits(struct buffer *to, double value)
         html_number(to, value);
 }
 
-void html_cell_code(struct buffer *to, const char *string)
-{
-    html_format(to, "<td><code>%s</code></td>", string);
-}
-
-/* The member "a/b/0" of an object, or the object itself. */
-static const json_t *member_of(const json_t *of, const char *path)
+const json_t *html_member(const json_t *of, const char *path)
 {
     char name[64];
     while (path && *path && of) {
@@ -119,7 +113,7 @@ static const json_t *member_of(const json_t *of, const char *path)
 /* True if an optional column is omitted; first: the first entry of the table. */
 static bool left_out(const struct html_column *column, const json_t *first)
 {
-    return column->optional && !isfinite(value_real(member_of(first, column->member)));
+    return column->optional && !isfinite(value_real(html_member(first, column->member)));
 }
 
 static void heads(struct buffer *to, const char *class, const struct html_column *columns,
@@ -165,7 +159,8 @@ static void row(struct buffer *to, const struct html_column *columns, const json
         if (left_out(column, first)) continue;
         buffer_add(to, column->head[0] == '#' ? "<td class=\"n\">" : "<td>");
         show(to, column,
-             outside ? member_of(around, column->member + 1) : member_of(entry, column->member));
+             outside ? html_member(around, column->member + 1)
+                     : html_member(entry, column->member));
         buffer_add(to, "</td>");
     }
     buffer_add(to, "</tr>\n");

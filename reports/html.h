@@ -23,7 +23,6 @@ void html_table(struct buffer *to, const char *class, const char *columns);
 void html_table_end(struct buffer *to);
 void html_cell(struct buffer *to, const char *string);
 void html_cell_number(struct buffer *to, double value);
-void html_cell_code(struct buffer *to, const char *string);
 
 enum html_kind { CELL_NUMBER, CELL_TEXT, CELL_WORDS, CELL_CODE, CELL_DIGITS, CELL_STATUS };
 
@@ -46,6 +45,10 @@ struct html_column {
     {                                                                                              \
         .head = head_, .member = __VA_ARGS__                                                       \
     }
+
+/* The member "a/b/0" of an object (0: of a list); the object itself for NULL. NULL: there is none.
+ */
+const json_t *html_member(const json_t *of, const char *path);
 
 /* Write the head of a table, to be ended by html_table_end, and a row; without optional columns. */
 void html_heads(struct buffer *to, const char *class, const struct html_column *columns);

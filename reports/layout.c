@@ -35,20 +35,18 @@ static void include_all(struct layout_axis *axis, const double *values, size_t n
     for (size_t i = 0; values && i < n; i++) include(axis, values[i]);
 }
 
-/* Includes half a cell beyond the first and last centre of a heat map. */
+double layout_edge(const double *centres, size_t n, size_t i, int side)
+{
+    if (n < 2) return centres[0] + 0.5 * side;
+    const size_t inner = i == 0 ? 1 : i + 1 == n ? n - 2 : side < 0 ? i - 1 : i + 1;
+    return centres[i] + side * fabs(centres[inner] - centres[i]) / 2;
+}
+
 static void include_cells(struct layout_axis *axis, const double *centres, size_t n)
 {
     if (!n) return;
-    double first = n > 1 ? centres[0] : 0.9 * centres[0];
-    double second = n > 1 ? centres[1] : 1.1 * centres[0];
-    double before = n > 1 ? centres[n - 2] : first, last = n > 1 ? centres[n - 1] : second;
-    if (axis->log) {
-        include(axis, first * sqrt(first / second));
-        include(axis, last * sqrt(last / before));
-    } else {
-        include(axis, first - (second - first) / 2);
-        include(axis, last + (last - before) / 2);
-    }
+    include(axis, layout_edge(centres, n, 0, -1));
+    include(axis, layout_edge(centres, n, n - 1, +1));
 }
 
 /* Smallest relative difference visible in a plot, or in a script whose limits have ten digits. */
@@ -89,8 +87,9 @@ static void ranges(struct layout_panel *at, const struct plot_panel *panel)
         const struct plot_series *series = &panel->series[k];
         const bool filled = series->kind == PLOT_BAND || series->kind == PLOT_BARS;
         include_all(&at->x, series->x, series->n);
-        if (!filled) include_all(&at->y, series->y, series->n);
-        if (filled || series->kind == PLOT_ERROR_BARS) {
+        if (!filled)
+            include_all(&at->y, series->y, series->n);
+        else {
             include_all(&at->y, series->low, series->n);
             include_all(&at->y, series->high, series->n);
         }
@@ -139,11 +138,6 @@ static void key(struct layout *layout, const struct plot_panel *panel)
         count += n > 0;
         if (n > longest) longest = n;
     }
-    for (size_t k = 0; panel->heat && k < panel->heat->category_count; k++) {
-        size_t n = letters(panel->heat->categories[k]);
-        count++;
-        if (n > longest) longest = n;
-    }
     if (panel->key != PLOT_KEY_TOP || !count) return;
     double column = KEY_SAMPLE + KEY_LETTER * (double)longest;
     layout->key_columns = (int)fmax(1, floor((layout->right - layout->left) / column));
@@ -160,7 +154,7 @@ void layout_make(struct layout *layout, const struct plot *plot)
     for (size_t k = 0; k < n; k++) {
         const struct plot_panel *panel = &plot->panels[k];
         room = fmax(room, end_width(panel));
-        if (panel->heat && !panel->heat->category_count) room = fmax(room, 96);
+        if (panel->heat) room = fmax(room, 96);
     }
     layout->right = layout->width - room;
     layout->key_columns = layout->key_rows = 0;
@@ -190,18 +184,16 @@ void layout_make(struct layout *layout, const struct plot *plot)
         ranges(at, &plot->panels[k]);
         if (plot->panels[k].equal) equalise(at);
     }
-    for (size_t first = 0, k = 1; k <= n && !plot->beside;
-         k++) { /* a stack shares the widest x axis */
-        if (k < n && !plot->panels[k].own_x) {
-            layout->panels[first].x.min =
-                fmin(layout->panels[first].x.min, layout->panels[k].x.min);
-            layout->panels[first].x.max =
-                fmax(layout->panels[first].x.max, layout->panels[k].x.max);
-            continue;
-        }
-        for (; first < k; first++)
-            if (first + 1 < k) layout->panels[first + 1].x = layout->panels[first].x;
+    /* a stack shares the widest x axis: the last panel gets it, then those above */
+    for (size_t k = 1; k < n && !plot->beside; k++) {
+        const struct layout_axis *above = &layout->panels[k - 1].x;
+        struct layout_axis *x = &layout->panels[k].x;
+        if (plot->panels[k].own_x) continue;
+        x->min = fmin(x->min, above->min);
+        x->max = fmax(x->max, above->max);
     }
+    for (size_t k = n - 1; k > 0 && !plot->beside; k--)
+        if (!plot->panels[k].own_x) layout->panels[k - 1].x = layout->panels[k].x;
 }
 
 /* Pixel of a value, clipped to the panel. */

@@ -42,21 +42,11 @@ enum status movie_probe(const char *path, struct error *error)
     return status ? status : output_probe(path, error);
 }
 
-static void widen(struct movie_range *range, const double *values, size_t n)
-{
-    for (size_t i = 0; values && i < n; i++) {
-        if (!isfinite(values[i])) continue;
-        range->low = range->known ? fmin(range->low, values[i]) : values[i];
-        range->high = range->known ? fmax(range->high, values[i]) : values[i];
-        range->known = true;
-    }
-}
-
 static void keep_range(struct movie_range *range, struct plot_panel *panel, struct plot_heat *heat)
 {
     if (panel->heat) {
         *heat = *panel->heat;
-        widen(range, heat->z, heat->nx * heat->ny);
+        plot_range(heat->z, heat->nx * heat->ny, &range->low, &range->high);
         const double reach = fmax(fabs(range->low), fabs(range->high));
         panel->heat = heat;
         if (!(range->high - range->low > 1e-6 * reach)) return; /* uniform: default range */
@@ -64,7 +54,7 @@ static void keep_range(struct movie_range *range, struct plot_panel *panel, stru
         heat->high = heat->diverging ? reach : range->high;
     } else if (panel->y_min == panel->y_max) {
         for (size_t k = 0; k < panel->series_count; k++)
-            widen(range, panel->series[k].y, panel->series[k].n);
+            plot_range(panel->series[k].y, panel->series[k].n, &range->low, &range->high);
         const double margin = 0.05 * (range->high - range->low);
         if (!(margin > 1e-6 * fmax(fabs(range->low), fabs(range->high)))) return;
         panel->y_min = range->low - margin, panel->y_max = range->high + margin;
@@ -79,8 +69,10 @@ enum status movie_add(struct movie *movie, const struct plot *plot, struct error
     char *bytes, message[256] = "";
     size_t size;
     memcpy(panels, plot->panels, plot->panel_count * sizeof *panels);
-    for (size_t k = 0; k < plot->panel_count; k++)
+    for (size_t k = 0; k < plot->panel_count; k++) {
+        if (!movie->count) movie->range[k] = (struct movie_range){INFINITY, -INFINITY};
         keep_range(&movie->range[k], &panels[k], &heats[k]);
+    }
     wide.panels = panels;
     if (plot_draw(&wide, PLOT_PNG, &bytes, &size, message, sizeof message) != PLOT_OK)
         return error_set(error, STATUS_ENVIRONMENT, "a picture of a movie: %.250s", message);

@@ -11,7 +11,6 @@ enum { MOVIE_PANELS = 8, MOVIE_PICTURES_A_SECOND = 10 };
 
 struct movie_range {
     double low, high;
-    bool known;
 };
 
 struct movie { /* starts as zeros */

@@ -87,25 +87,25 @@ static void failures(struct buffer *to, const json_t *verdict)
     buffer_add(to, "</section>\n");
 }
 
-static void row(struct buffer *to, const char *name, const char *value)
+static void environment(struct page_writer *writer, const json_t *results)
 {
-    if (*value) html_format(to, "<tr><th>%s</th><td>%s</td></tr>\n", name, value);
-}
-
-static void environment(struct buffer *to, const json_t *results)
-{
-    const json_t *machine = json_object_get(results, "machine");
+    static const char *const rows[][2] = {{"program", "version"},
+                                          {"git", "git"},
+                                          {"compiler", "compiler"},
+                                          {"flags", "flags"},
+                                          {"system", "machine/system"},
+                                          {"architecture", "machine/architecture"},
+                                          {"processor", "machine/processor"}};
+    struct buffer *to = &writer->to;
     buffer_add(to, "<section id=\"environment\"><h2>Environment and definitions</h2>"
                    "<div class=\"scroll\"><table class=\"facts\"><tbody>\n");
-    row(to, "program", value_text(results, "version"));
-    row(to, "git", value_text(results, "git"));
-    row(to, "compiler", value_text(results, "compiler"));
-    row(to, "flags", value_text(results, "flags"));
-    row(to, "system", value_text(machine, "system"));
-    row(to, "architecture", value_text(machine, "architecture"));
-    row(to, "processor", value_text(machine, "processor"));
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const char *value = json_string_value(html_member(results, rows[k][1]));
+        if (value && *value)
+            html_format(to, "<tr><th>%s</th><td>%s</td></tr>\n", rows[k][0], value);
+    }
     buffer_format(to, "<tr><th>cores</th><td>%.0f</td></tr></tbody></table></div>\n",
-                  value_member(machine, "cores"));
+                  value_inner(results, "machine", "cores"));
     buffer_add(
         to, "<p>Norms over the particles i of a case's measure window, with volumes V: "
             "L1 = Σ V |q − q_exact| / Σ V, L2 = (Σ V (q − q_exact)² / Σ V)^½, "
@@ -141,63 +141,60 @@ bool page_end(struct page_writer *writer, struct page *page)
     return page->html;
 }
 
+/* Folded sections in their order, each shown if the results have its member (not an empty list);
+ * name NULL: without a link. */
+static const struct section {
+    const char *member, *id, *name;
+    void (*write)(struct page_writer *writer, const json_t *results);
+} sections[] = {
+    {"history/since", "history", "Changes", page_history},
+    {"studies", "overview", NULL, page_overview},
+    {"bench", "cost", "Cost", page_bench},
+    {"autopsies", "autopsies", "Lost orders", page_autopsies},
+    {"skips", "skips", "Skips", page_skips},
+    {"gradients", "gradients", "Gradients", page_gradients},
+    {"stress", "stability", "Stability", page_stress},
+    {"claims", "claims", "Claims", page_claims},
+    {"faults", "faults", "Faults", page_faults},
+    {"score", "score", "Score", page_score},
+    {"kernels", "kernels", "Kernels", page_kernels},
+    {"verify", "checks", "Checks", page_checks},
+    {"verify", "detection", "Detection", page_detection},
+    {NULL, "environment", "Environment", environment},
+};
+enum { SECTIONS = sizeof sections / sizeof *sections };
+
+static bool is_shown(const struct section *section, const json_t *results)
+{
+    const json_t *member = html_member(results, section->member);
+    return json_is_object(member) || json_array_size(member);
+}
+
 bool page_make(struct page *page, const json_t *results)
 {
     struct page_writer writer = {.to = {0}};
     struct buffer *to = &writer.to;
     const json_t *verdict = json_object_get(results, "verdict");
-    const json_t *verify = json_object_get(results, "verify");
-    const json_t *history = json_object_get(results, "history");
-    const json_t *kernels = json_object_get(results, "kernels");
-    const json_t *gradients = json_object_get(results, "gradients");
-    const json_t *stress = json_object_get(results, "stress");
-    const json_t *claims = json_object_get(results, "claims");
-    const json_t *bench = json_object_get(results, "bench");
-    const json_t *skips = json_object_get(results, "skips");
-    const json_t *autopsies = json_object_get(results, "autopsies");
-    const bool of_codes = !strcmp(value_text(results, "mode"), "code");
+    const bool of_codes = page_of_codes(results);
     head(to, results, verdict);
     buffer_add(to, "<nav>");
-    if (json_is_object(json_object_get(history, "since")))
-        buffer_add(to, "<a href=\"#history\">Changes</a> ");
-    buffer_add(to, "<a href=\"#cases\">Cases</a>");
-    if (json_array_size(bench)) buffer_add(to, " <a href=\"#cost\">Cost</a>");
-    if (json_array_size(autopsies)) buffer_add(to, " <a href=\"#autopsies\">Lost orders</a>");
-    if (json_array_size(skips)) buffer_add(to, " <a href=\"#skips\">Skips</a>");
-    if (gradients) buffer_add(to, " <a href=\"#gradients\">Gradients</a>");
-    if (stress) buffer_add(to, " <a href=\"#stability\">Stability</a>");
-    if (claims) buffer_add(to, " <a href=\"#claims\">Claims</a>");
-    if (json_object_get(results, "faults")) buffer_add(to, " <a href=\"#faults\">Faults</a>");
-    if (json_object_get(results, "score")) buffer_add(to, " <a href=\"#score\">Score</a>");
-    if (kernels) buffer_add(to, " <a href=\"#kernels\">Kernels</a>");
-    if (verify)
-        buffer_add(to, " <a href=\"#checks\">Checks</a>"
-                       " <a href=\"#detection\">Detection</a>");
-    buffer_add(to, " <a href=\"#environment\">Environment</a></nav>\n<main>\n");
+    for (size_t k = 0; k < SECTIONS; k++) {
+        if (k == 1) buffer_add(to, "<a href=\"#cases\">Cases</a>");
+        if (sections[k].name && is_shown(&sections[k], results))
+            buffer_format(to, "%s<a href=\"#%s\">%s</a>%s", k ? " " : "", sections[k].id,
+                          sections[k].name, k ? "" : " ");
+    }
+    buffer_add(to, "</nav>\n<main>\n");
     failures(to, verdict);
-    if (of_codes)
-        page_codes(&writer, results);
-    else
-        page_strip(&writer, results);
+    (of_codes ? page_codes : page_strip)(&writer, results);
     page_cases(&writer, results);
-    size_t start = to->size;
-#define FOLDED(part) start = to->size, part, fold_section(to, start)
-    if (history) FOLDED(page_history(&writer, history));
-    if (!of_codes) FOLDED(page_overview(&writer, results));
-    FOLDED(page_bench(&writer, bench, of_codes));
-    if (json_array_size(autopsies)) FOLDED(page_autopsies(&writer, autopsies));
-    if (json_array_size(skips)) FOLDED(page_skips(&writer, skips));
-    if (gradients) FOLDED(page_gradients(&writer, gradients));
-    if (stress) FOLDED(page_stress(&writer, stress));
-    if (claims) FOLDED(page_claims(&writer, claims));
-    if (json_object_get(results, "faults")) FOLDED(page_faults(&writer, results));
-    if (json_object_get(results, "score"))
-        FOLDED(page_score(&writer, json_object_get(results, "score")));
-    if (kernels) FOLDED(page_kernels(&writer, kernels));
-    if (verify) FOLDED(page_checks(&writer, verify));
-    if (verify) FOLDED(page_detection(&writer, verify));
-    FOLDED(environment(to, results));
-#undef FOLDED
+    for (size_t k = 0; k < SECTIONS; k++) {
+        const size_t start = to->size;
+        if (!is_shown(&sections[k], results) || (of_codes && sections[k].write == page_overview))
+            continue;
+        sections[k].write(&writer, results);
+        fold_section(to, start);
+    }
     buffer_add(to, fold_script);
     return page_end(&writer, page);
 }

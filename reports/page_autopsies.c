@@ -32,7 +32,7 @@ static void shares(struct buffer *to, const json_t *document)
     json_decref(list);
 }
 
-void page_autopsies(struct page_writer *writer, const json_t *autopsies)
+void page_autopsies(struct page_writer *writer, const json_t *results)
 {
     struct buffer *to = &writer->to;
     size_t k;
@@ -45,7 +45,7 @@ void page_autopsies(struct page_writer *writer, const json_t *autopsies)
         "viscosity cost is measured on exact fields, at regular positions and at those of the "
         "run's particles at its end. The order of a cause is that of its share of the error, with "
         "its 95 % interval.</p>\n");
-    json_array_foreach(autopsies, k, document) {
+    json_array_foreach(json_object_get(results, "autopsies"), k, document) {
         char name[NAME], what[32];
         snprintf(what, sizeof what, "autopsy-%zu", k + 1);
         page_plot_name(name, sizeof name, value_text(document, "case"), what);

@@ -210,14 +210,14 @@ static void explain(struct buffer *to, bool of_codes)
                          "turn.</p>\n");
 }
 
-void page_bench(struct page_writer *writer, const json_t *bench, bool of_codes)
+void page_bench(struct page_writer *writer, const json_t *results)
 {
     struct buffer *to = &writer->to;
     const json_t *document;
     size_t i;
-    if (!json_array_size(bench)) return;
+    const bool of_codes = page_of_codes(results);
     explain(to, of_codes);
-    json_array_foreach(bench, i, document) {
+    json_array_foreach(json_object_get(results, "bench"), i, document) {
         size_t most = json_array_size(json_object_get(document, "schemes"));
         struct curve *curves = page_allocate(to, most, sizeof *curves);
         if (!curves) return;

@@ -10,148 +10,106 @@
 #include "page_part.h"
 #include "value.h"
 
-enum { QUANTITIES = 4, PRESSURE = 2, ENERGY = 3 };
+enum { X, DENSITY, VELOCITY, PRESSURE, ENERGY, COLUMNS };
+enum { QUANTITIES = COLUMNS - 1 };
 
-static const char *const quantities[QUANTITIES] = {"density", "velocity", "pressure",
-                                                   "internal_energy"};
+static const char *const value_names[] = {"x", "density", "velocity", "pressure"},
+                         *const exact_names[] = {"x", "exact_density", "exact_velocity",
+                                                 "exact_pressure"};
 
-/* Internal energies of n particles with density rho and pressure P, malloced. NULL: no memory, or
- * an array is missing. */
-static double *energies(struct buffer *to, const double *rho, const double *P, size_t n,
-                        double gamma)
-{
-    double *u = rho && P && n ? page_allocate(to, n, sizeof *u) : NULL;
-    for (size_t i = 0; u && i < n; i++) u[i] = P[i] / ((gamma - 1) * rho[i]);
-    return u;
-}
-
-/* Data for the plots of a case; owned arrays. */
+/* Data for the plots of a case; residual: of particles, those of their values. */
 struct curves {
     size_t runs;
     const char *label[PAGE_SCHEMES];
-    size_t n[PAGE_SCHEMES], exact_n;
-    double *x[PAGE_SCHEMES], *value[PAGE_SCHEMES][QUANTITIES], *residual[PAGE_SCHEMES][QUANTITIES];
-    double *exact_x, *exact[QUANTITIES];
+    struct page_columns value[PAGE_SCHEMES], residual[PAGE_SCHEMES], exact;
 };
+
+/* Reads positions, densities, velocities and pressures, and computes internal energies. */
+static void read_columns(struct buffer *to, struct page_columns *columns, const json_t *from,
+                         const char *const *names, double gamma)
+{
+    page_columns_read(to, columns, from, names, ENERGY);
+    const double *rho = columns->of[DENSITY], *P = columns->of[PRESSURE];
+    double *u = rho && P && columns->n ? page_allocate(to, columns->n, sizeof *u) : NULL;
+    for (size_t i = 0; u && i < columns->n; i++) u[i] = P[i] / ((gamma - 1) * rho[i]);
+    columns->of[ENERGY] = u;
+}
 
 static void add_curve(struct buffer *to, struct curves *curves, const json_t *run)
 {
     const json_t *profile = json_object_get(run, "profile");
-    const double gamma = value_inner(run, "settings", "gamma");
-    size_t k = curves->runs, n = 0, length;
-    if (!profile || k == PAGE_SCHEMES) return;
-    curves->label[k] = value_text(run, "label");
-    curves->x[k] = page_numbers(to, json_object_get(profile, "x"), &n);
-    curves->n[k] = n;
-    for (int q = 0; q < ENERGY; q++) {
-        char name[64];
-        snprintf(name, sizeof name, "exact_%s", quantities[q]);
-        curves->value[k][q] = page_numbers(to, json_object_get(profile, quantities[q]), &length);
-        curves->residual[k][q] = page_numbers(to, json_object_get(profile, name), &n);
-        if (length < curves->n[k]) curves->n[k] = length;
-        if (n < curves->n[k]) curves->n[k] = n;
-    }
-    double *const *value = curves->value[k], **residual = curves->residual[k];
-    curves->value[k][ENERGY] = energies(to, value[0], value[PRESSURE], curves->n[k], gamma);
-    residual[ENERGY] = energies(to, residual[0], residual[PRESSURE], curves->n[k], gamma);
-    for (int q = 0; q < QUANTITIES; q++)
-        for (size_t i = 0; value[q] && residual[q] && i < curves->n[k]; i++)
-            residual[q][i] = value[q][i] - residual[q][i];
-    curves->runs++;
     const json_t *exact = json_object_get(profile, "exact");
-    if (curves->exact_x || !exact) return;
-    curves->exact_x = page_numbers(to, json_object_get(exact, "x"), &curves->exact_n);
-    for (int q = 0; q < ENERGY && curves->exact_x; q++) {
-        curves->exact[q] = page_numbers(to, json_object_get(exact, quantities[q]), &n);
-        if (n < curves->exact_n) curves->exact_n = n;
-    }
-    curves->exact[ENERGY] =
-        energies(to, curves->exact[0], curves->exact[PRESSURE], curves->exact_n, gamma);
+    const double gamma = value_inner(run, "settings", "gamma");
+    const size_t k = curves->runs;
+    struct page_columns *value = &curves->value[k], *residual = &curves->residual[k];
+    if (!profile) return;
+    curves->label[k] = value_text(run, "label");
+    read_columns(to, value, profile, value_names, gamma);
+    read_columns(to, residual, profile, exact_names, gamma);
+    if (residual->n < value->n) value->n = residual->n;
+    for (int q = DENSITY; q < COLUMNS; q++)
+        for (size_t i = 0; value->of[q] && residual->of[q] && i < value->n; i++)
+            residual->of[q][i] = value->of[q][i] - residual->of[q][i];
+    curves->runs++;
+    if (!exact || curves->exact.n) return;
+    page_columns_free(&curves->exact);
+    read_columns(to, &curves->exact, exact, value_names, gamma);
 }
 
 static void free_curves(struct curves *curves)
 {
-    for (size_t k = 0; k < curves->runs; k++) {
-        free(curves->x[k]);
-        for (int q = 0; q < QUANTITIES; q++) {
-            free(curves->value[k][q]);
-            free(curves->residual[k][q]);
-        }
-    }
-    free(curves->exact_x);
-    for (int q = 0; q < QUANTITIES; q++) free(curves->exact[q]);
+    for (size_t k = 0; k < curves->runs; k++)
+        page_columns_free(&curves->value[k]), page_columns_free(&curves->residual[k]);
+    page_columns_free(&curves->exact);
 }
 
-static void plot_profiles(struct page_writer *writer, const char *case_name,
-                          const struct curves *curves)
+/* Draws particles over the exact solution, or their residuals. */
+static void plot_curves(struct page_writer *writer, const char *case_name,
+                        const struct curves *curves, bool residuals)
 {
-    static const char *const labels[] = {"density", "velocity", "pressure", "internal energy"};
+    static const char *const labels[][QUANTITIES] = {
+        {"density", "velocity", "pressure", "internal energy"},
+        {"Δ density", "Δ velocity", "Δ pressure", "Δ internal energy"}};
+    static const struct plot_mark zero = {0, true, NULL};
     struct plot_series series[QUANTITIES][PAGE_SCHEMES + 1];
     struct plot_panel panels[QUANTITIES] = {0};
     for (int q = 0; q < QUANTITIES; q++) {
         size_t n = 0;
-        if (curves->exact_x)
+        if (curves->exact.of[X] && !residuals)
             series[q][n++] = (struct plot_series){.label = "exact",
                                                   .kind = PLOT_LINES,
-                                                  .n = curves->exact_n,
-                                                  .x = curves->exact_x,
-                                                  .y = curves->exact[q],
+                                                  .n = curves->exact.n,
+                                                  .x = curves->exact.of[X],
+                                                  .y = curves->exact.of[q + 1],
                                                   .color = PLOT_NEUTRAL};
         for (size_t k = 0; k < curves->runs; k++)
-            series[q][n++] = (struct plot_series){.label = curves->label[k],
-                                                  .kind = PLOT_POINTS,
-                                                  .n = curves->n[k],
-                                                  .x = curves->x[k],
-                                                  .y = curves->value[k][q],
-                                                  .color = (int)k + 1,
-                                                  .size = 0.5};
+            series[q][n++] = (struct plot_series){
+                .label = curves->label[k],
+                .kind = residuals ? PLOT_LINES : PLOT_POINTS,
+                .n = curves->value[k].n,
+                .x = curves->value[k].of[X],
+                .y = (residuals ? curves->residual : curves->value)[k].of[q + 1],
+                .color = (int)k + 1,
+                .size = 0.5};
         panels[q] = (struct plot_panel){.x_label = "position x",
-                                        .y_label = labels[q],
+                                        .y_label = labels[residuals][q],
                                         .key = q ? PLOT_KEY_NONE : PLOT_KEY_TOP,
                                         .series = series[q],
-                                        .series_count = n};
-    }
-    char name[96];
-    page_plot_name(name, sizeof name, case_name, "profiles");
-    const struct plot plot = {.name = name,
-                              .title =
-                                  "Profiles of density, velocity, pressure and internal energy",
-                              .panels = panels,
-                              .panel_count = QUANTITIES};
-    page_plot(writer, &plot, "Each point is a particle; the line is the exact solution.");
-}
-
-static void plot_residuals(struct page_writer *writer, const char *case_name,
-                           const struct curves *curves)
-{
-    static const char *const labels[] = {"Δ density", "Δ velocity", "Δ pressure",
-                                         "Δ internal energy"};
-    static const struct plot_mark zero = {0, true, NULL};
-    struct plot_series series[QUANTITIES][PAGE_SCHEMES];
-    struct plot_panel panels[QUANTITIES] = {0};
-    for (int q = 0; q < QUANTITIES; q++) {
-        for (size_t k = 0; k < curves->runs; k++)
-            series[q][k] = (struct plot_series){.label = curves->label[k],
-                                                .kind = PLOT_LINES,
-                                                .n = curves->n[k],
-                                                .x = curves->x[k],
-                                                .y = curves->residual[k][q],
-                                                .color = (int)k + 1};
-        panels[q] = (struct plot_panel){.x_label = "position x",
-                                        .y_label = labels[q],
-                                        .key = q ? PLOT_KEY_NONE : PLOT_KEY_TOP,
-                                        .series = series[q],
-                                        .series_count = curves->runs,
+                                        .series_count = n,
                                         .marks = &zero,
-                                        .mark_count = 1};
+                                        .mark_count = residuals};
     }
     char name[96];
-    page_plot_name(name, sizeof name, case_name, "residuals");
-    const struct plot plot = {.name = name,
-                              .title = "Residuals: particle minus exact solution",
-                              .panels = panels,
-                              .panel_count = QUANTITIES};
-    page_plot(writer, &plot, "The same particles minus the exact solution.");
+    page_plot_name(name, sizeof name, case_name, residuals ? "residuals" : "profiles");
+    const struct plot plot = {
+        .name = name,
+        .title = residuals ? "Residuals: particle minus exact solution"
+                           : "Profiles of density, velocity, pressure and internal energy",
+        .panels = panels,
+        .panel_count = QUANTITIES};
+    page_plot(writer, &plot,
+              residuals ? "The same particles minus the exact solution."
+                        : "Each point is a particle; the line is the exact solution.");
 }
 
 static void percent_cell(struct buffer *to, double part)
@@ -193,8 +151,8 @@ static void range(const double *values, size_t n, double *low, double *high)
 static double overshoot(const struct curves *curves, size_t k, int q)
 {
     double low, high, exact_low, exact_high;
-    range(curves->exact[q], curves->exact_n, &exact_low, &exact_high);
-    range(curves->value[k][q], curves->n[k], &low, &high);
+    range(curves->exact.of[q], curves->exact.n, &exact_low, &exact_high);
+    range(curves->value[k].of[q], curves->value[k].n, &low, &high);
     return fmax(0, fmax(high - exact_high, exact_low - low)) / (exact_high - exact_low);
 }
 
@@ -202,15 +160,16 @@ static double overshoot(const struct curves *curves, size_t k, int q)
  * points at a jump. */
 static double contact_of(const struct curves *curves)
 {
-    const double *rho = curves->exact[0], *P = curves->exact[PRESSURE];
+    const struct page_columns *exact = &curves->exact;
+    const double *rho = exact->of[DENSITY], *P = exact->of[PRESSURE], *x = exact->of[X];
     double low, high, most = 0, at = (double)NAN;
-    range(rho, curves->exact_n, &low, &high);
-    for (size_t i = 0; rho && P && i + 1 < curves->exact_n; i++) {
+    range(rho, exact->n, &low, &high);
+    for (size_t i = 0; rho && P && i + 1 < exact->n; i++) {
         const double jump = fabs(rho[i + 1] - rho[i]);
         if (jump < 0.01 * (high - low) || jump <= most || fabs(P[i + 1] - P[i]) > 1e-6 * fabs(P[i]))
             continue;
         most = jump;
-        at = (curves->exact_x[i] + curves->exact_x[i + 1]) / 2;
+        at = (x[i] + x[i + 1]) / 2;
     }
     return at;
 }
@@ -219,9 +178,10 @@ static double contact_of(const struct curves *curves)
 static double pressure_blip(const struct curves *curves, size_t k, double contact, double h)
 {
     double most = (double)NAN;
-    const double *P = curves->value[k][PRESSURE], *error = curves->residual[k][PRESSURE];
-    for (size_t i = 0; P && error && i < curves->n[k]; i++)
-        if (fabs(curves->x[k][i] - contact) <= 4 * h)
+    const struct page_columns *value = &curves->value[k];
+    const double *P = value->of[PRESSURE], *error = curves->residual[k].of[PRESSURE];
+    for (size_t i = 0; P && error && i < value->n; i++)
+        if (fabs(value->of[X][i] - contact) <= 4 * h)
             most = fmax(isnan(most) ? 0 : most, fabs(error[i] / (P[i] - error[i])));
     return most;
 }
@@ -234,7 +194,7 @@ static void shape_table(struct buffer *to, const struct curves *curves, const js
     for (size_t k = 0; k < curves->runs; k++) {
         buffer_add(to, "<tr>");
         html_cell(to, curves->label[k]);
-        for (int q = 0; q < QUANTITIES; q++) percent_cell(to, overshoot(curves, k, q));
+        for (int q = DENSITY; q < COLUMNS; q++) percent_cell(to, overshoot(curves, k, q));
         percent_cell(to, pressure_blip(curves, k, contact, value_member(runs[k], "h")));
         buffer_add(to, "</tr>\n");
     }
@@ -308,8 +268,8 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
         buffer_add(to, "</div>\n");
         page_cloud_plots(writer, name, runs, run_count, false);
     } else {
-        if (curves.runs) plot_profiles(writer, name, &curves);
-        if (curves.runs) plot_residuals(writer, name, &curves);
+        for (int residuals = 0; curves.runs && residuals < 2; residuals++)
+            plot_curves(writer, name, &curves, residuals);
     }
     buffer_add(to, "</div>\n");
     if (study_count) page_study(writer, name, studies, study_count);

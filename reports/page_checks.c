@@ -109,9 +109,10 @@ static void failing_figures(struct buffer *to, const json_t *figures, const stru
             span->failed - shown - 1);
 }
 
-void page_checks(struct page_writer *writer, const json_t *verify)
+void page_checks(struct page_writer *writer, const json_t *results)
 {
     struct buffer *to = &writer->to;
+    const json_t *verify = json_object_get(results, "verify");
     const json_t *figures = json_object_get(verify, "checks");
     size_t n = json_array_size(figures);
     if (!n) return;
@@ -142,9 +143,10 @@ void page_checks(struct page_writer *writer, const json_t *verify)
 
 /* ---- detection power ---- */
 
-void page_detection(struct page_writer *writer, const json_t *verify)
+void page_detection(struct page_writer *writer, const json_t *results)
 {
     struct buffer *to = &writer->to;
+    const json_t *verify = json_object_get(results, "verify");
     const json_t *mutants = json_object_get(verify, "mutants"), *entry;
     size_t n = json_array_size(mutants), caught = 0, i;
     buffer_add(to, "<section id=\"detection\"><h2>Detection power</h2>\n");

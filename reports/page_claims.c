@@ -147,7 +147,7 @@ static void claim_table(struct buffer *to, const json_t *claim)
     html_table_end(to);
 }
 
-void page_claims(struct page_writer *writer, const json_t *claims)
+void page_claims(struct page_writer *writer, const json_t *results)
 {
     struct buffer *to = &writer->to;
     const json_t *claim;
@@ -156,7 +156,7 @@ void page_claims(struct page_writer *writer, const json_t *claims)
                    "in one key on the same problem. A claim holds in a row if it makes the error "
                    "smaller by a factor of at least 1.25. Runs are small in the quick report; the "
                    "nightly one has runs of real size.</p>\n");
-    json_array_foreach(claims, i, claim) {
+    json_array_foreach(json_object_get(results, "claims"), i, claim) {
         if (json_object_get(claim, "ladders"))
             pairing_table(writer, claim);
         else

@@ -51,22 +51,6 @@ static double edge(const double *centres, size_t n, bool upper)
     return upper ? centres[n - 1] + half : centres[0] - half;
 }
 
-static struct plot_panel map_panel(const struct map *map, const struct plot_heat *heat,
-                                   const char *title)
-{
-    return (struct plot_panel){.title = title,
-                               .x_label = "x",
-                               .y_label = "y",
-                               .own_x = true,
-                               .equal = true,
-                               .x_min = edge(map->x, map->nx, false),
-                               .x_max = edge(map->x, map->nx, true),
-                               .y_min = edge(map->y, map->ny, false),
-                               .y_max = edge(map->y, map->ny, true),
-                               .key = PLOT_KEY_NONE,
-                               .heat = heat};
-}
-
 /* Draws one map as a separate figure, so that maps are placed side by side if there is space. The
  * figure is named after the case and `what`. */
 static void plot_map(struct page_writer *writer, const char *case_name, const char *what,
@@ -76,14 +60,18 @@ static void plot_map(struct page_writer *writer, const char *case_name, const ch
     const double x = edge(map->x, map->nx, true) - edge(map->x, map->nx, false);
     const double y = edge(map->y, map->ny, true) - edge(map->y, map->ny, false);
     const double scale = MAP_PIXELS / fmax(x, y);
-    const struct plot_panel panel = map_panel(map, heat, title);
+    const struct plot_panel panel = {.title = title,
+                                     .x_label = "x",
+                                     .y_label = "y",
+                                     .equal = true,
+                                     .key = PLOT_KEY_NONE,
+                                     .heat = heat};
     char name[96];
     page_plot_name(name, sizeof name, case_name, what);
     const struct plot plot = {.name = name,
                               .title = title,
                               .panels = &panel,
                               .panel_count = 1,
-                              .beside = true,
                               .width = 188 + (int)fmax(scale * x, 150),
                               .height = 84 + (int)(scale * y)};
     page_plot(writer, &plot, caption);
@@ -107,8 +95,7 @@ static void plot_first(struct page_writer *writer, const char *case_name, const 
                        const struct map *map)
 {
     char what[32], slice[96] = "", caption[256];
-    const json_t *z =
-        json_object_get(json_object_get(json_object_get(run, "profile"), "map"), "slice");
+    const json_t *z = html_member(run, "profile/map/slice");
     if (json_array_size(z) == 2)
         snprintf(slice, sizeof slice, " in the slice z = %.3g to %.3g",
                  value_real(json_array_get(z, 0)), value_real(json_array_get(z, 1)));
@@ -136,10 +123,7 @@ static void plot_each(struct page_writer *writer, const char *case_name, const j
     size_t n = 0;
     for (size_t r = 0; r < count; r++) {
         n += maps[r].z[k] != NULL;
-        for (size_t c = 0; maps[r].z[k] && c < maps[r].cells; c++) {
-            low = fmin(low, maps[r].z[k][c]);
-            high = fmax(high, maps[r].z[k][c]);
-        }
+        plot_range(maps[r].z[k], maps[r].cells, &low, &high);
     }
     if (n < 2) return;
     buffer_format(&writer->to,
@@ -161,38 +145,23 @@ static void plot_each(struct page_writer *writer, const char *case_name, const j
 /* ---- particles and the exact curve ---- */
 
 struct curves {
-    size_t quantities, n, exact_n;
-    const char *names[QUANTITIES];
-    double *x, *value[QUANTITIES], *exact_x, *exact[QUANTITIES];
+    size_t quantities;
+    const char *names[1 + QUANTITIES]; /* "x" and the quantities */
+    struct page_columns particles, exact;
 };
 
 static void read_curves(struct buffer *to, struct curves *curves, const json_t *run)
 {
     const json_t *profile = json_object_get(run, "profile"), *name;
-    const json_t *exact = json_object_get(profile, "exact");
-    size_t i, n;
-    curves->x = page_numbers(to, json_object_get(profile, "x"), &curves->n);
-    curves->exact_x = page_numbers(to, json_object_get(exact, "x"), &curves->exact_n);
+    size_t i, count = 1;
+    curves->names[0] = "x";
     json_array_foreach(json_object_get(profile, "quantities"), i, name) {
-        const char *word = json_string_value(name);
-        if (i == QUANTITIES || !word) break;
-        curves->names[i] = word;
-        curves->value[i] = page_numbers(to, json_object_get(profile, word), &n);
-        if (n < curves->n) curves->n = n;
-        curves->exact[i] = page_numbers(to, json_object_get(exact, word), &n);
-        if (n < curves->exact_n) curves->exact_n = n;
-        curves->quantities++;
+        if (i == QUANTITIES || !json_is_string(name)) break;
+        curves->names[count++] = json_string_value(name);
     }
-}
-
-static void free_curves(struct curves *curves)
-{
-    free(curves->x);
-    free(curves->exact_x);
-    for (int q = 0; q < QUANTITIES; q++) {
-        free(curves->value[q]);
-        free(curves->exact[q]);
-    }
+    curves->quantities = count - 1;
+    page_columns_read(to, &curves->particles, profile, curves->names, count);
+    page_columns_read(to, &curves->exact, json_object_get(profile, "exact"), curves->names, count);
 }
 
 static const char *quantity_label(const char *name)
@@ -217,21 +186,21 @@ static void plot_profiles(struct page_writer *writer, const char *case_name,
             if (curves[k].quantities != first->quantities) continue;
             series[q][n++] = (struct plot_series){.label = value_text(runs[k], "label"),
                                                   .kind = PLOT_POINTS,
-                                                  .n = curves[k].n,
-                                                  .x = curves[k].x,
-                                                  .y = curves[k].value[q],
+                                                  .n = curves[k].particles.n,
+                                                  .x = curves[k].particles.of[0],
+                                                  .y = curves[k].particles.of[q + 1],
                                                   .color = (int)k + 1,
                                                   .size = 0.4};
         }
         series[q][n++] = (struct plot_series){.label = "exact",
                                               .kind = PLOT_LINES,
-                                              .n = first->exact_n,
-                                              .x = first->exact_x,
-                                              .y = first->exact[q],
+                                              .n = first->exact.n,
+                                              .x = first->exact.of[0],
+                                              .y = first->exact.of[q + 1],
                                               .color = PLOT_NEUTRAL};
         panels[q] =
             (struct plot_panel){.x_label = around ? "distance R from the middle" : "position x",
-                                .y_label = quantity_label(first->names[q]),
+                                .y_label = quantity_label(first->names[q + 1]),
                                 .key = q ? PLOT_KEY_NONE : PLOT_KEY_TOP,
                                 .series = series[q],
                                 .series_count = n};
@@ -268,7 +237,7 @@ void page_cloud_plots(struct page_writer *writer, const char *case_name, const j
     }
     for (size_t r = 0; maps && curves && r < count; r++) {
         free_map(&maps[r]);
-        free_curves(&curves[r]);
+        page_columns_free(&curves[r].particles), page_columns_free(&curves[r].exact);
     }
     free(maps);
     free(curves);

@@ -14,6 +14,11 @@ static bool is_code(const json_t *document)
     return json_is_object(json_object_get(document, "code"));
 }
 
+bool page_of_codes(const json_t *results)
+{
+    return !strcmp(value_text(results, "mode"), "code");
+}
+
 /* The worst status of a document's gates; "none" if there is no gate. */
 static const char *gate_of(const json_t *document, const char *list)
 {

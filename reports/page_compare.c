@@ -2,7 +2,6 @@
  * The page of `sphproof compare`: verdict, table, and both sides with the exact solution or as maps
  * with the same colour scale. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "html.h"
@@ -11,37 +10,34 @@
 #include "style.h"
 #include "value.h"
 
-static const char *const fields[] = {"density", "velocity", "pressure"};
-enum { PANELS = sizeof fields / sizeof *fields, SIDES = 2, SERIES = SIDES + 1 };
+static const char *const fields[] = {"x", "density", "velocity", "pressure"};
+enum { FIELDS_READ = sizeof fields / sizeof *fields, PANELS = FIELDS_READ - 1 };
+enum { SIDES = 2, SERIES = SIDES + 1 };
 
 /* Draws both sides and the exact curve, in one panel per field. */
 static void lines(struct page_writer *writer, const json_t *const runs[SIDES])
 {
-    static const char *const axes[] = {"x", "density", "velocity", "pressure"};
     struct plot_series series[PANELS][SERIES];
     struct plot_panel panels[PANELS];
-    double *values[SERIES][PANELS + 1];
-    size_t n[SERIES][PANELS + 1];
+    struct page_columns curves[SERIES];
     bool whole = true;
-    for (int s = 0; s < SERIES; s++)
-        for (int k = 0; k <= PANELS; k++) {
-            const json_t *profile = json_object_get(runs[s < SIDES ? s : 0], "profile");
-            if (s == SIDES) profile = json_object_get(profile, "exact");
-            values[s][k] = page_numbers(&writer->to, json_object_get(profile, axes[k]), &n[s][k]);
-            whole = whole && n[s][k] && n[s][k] == n[s][0];
-        }
+    for (int s = 0; s < SERIES; s++) {
+        const json_t *profile = json_object_get(runs[s < SIDES ? s : 0], "profile");
+        if (s == SIDES) profile = json_object_get(profile, "exact");
+        whole = page_columns_read(&writer->to, &curves[s], profile, fields, FIELDS_READ) && whole;
+    }
     for (int k = 0; k < PANELS && whole; k++) {
         for (int s = 0; s < SERIES; s++)
             series[k][s] =
                 (struct plot_series){.label = s < SIDES ? value_text(runs[s], "label") : "exact",
                                      .kind = s < SIDES ? PLOT_POINTS : PLOT_LINES,
-                                     .n = n[s][0],
-                                     .x = values[s][0],
-                                     .y = values[s][k + 1],
+                                     .n = curves[s].n,
+                                     .x = curves[s].of[0],
+                                     .y = curves[s].of[k + 1],
                                      .color = s < SIDES ? s + 1 : PLOT_NEUTRAL,
                                      .size = 0.5};
         panels[k] = (struct plot_panel){.x_label = "x",
-                                        .y_label = fields[k],
+                                        .y_label = fields[k + 1],
                                         .key = k ? PLOT_KEY_NONE : PLOT_KEY_TOP,
                                         .series = series[k],
                                         .series_count = SERIES};
@@ -53,8 +49,7 @@ static void lines(struct page_writer *writer, const json_t *const runs[SIDES])
     if (whole)
         page_plot(writer, &plot,
                   "Particles of the first draw over the exact solution, code units.");
-    for (int s = 0; s < SERIES; s++)
-        for (int k = 0; k <= PANELS; k++) free(values[s][k]);
+    for (int s = 0; s < SERIES; s++) page_columns_free(&curves[s]);
 }
 
 static void table(struct buffer *to, const json_t *document)

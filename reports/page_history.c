@@ -193,7 +193,7 @@ static void add_worst(struct buffer *to, const json_t *since, const char *open, 
 
 void page_since(struct buffer *to, const json_t *results)
 {
-    const json_t *since = json_object_get(json_object_get(results, "history"), "since");
+    const json_t *since = html_member(results, "history/since");
     if (!json_is_object(since)) return;
     buffer_add(to, "<p class=\"facts\"><a href=\"#history\">Since the last report</a> (git ");
     revision(to, value_text(since, "git"));
@@ -206,7 +206,7 @@ void page_since(struct buffer *to, const json_t *results)
 
 void page_since_plain(struct buffer *to, const json_t *results)
 {
-    const json_t *since = json_object_get(json_object_get(results, "history"), "since");
+    const json_t *since = html_member(results, "history/since");
     if (!json_is_object(since)) return;
     buffer_format(to, "Since the last report (git %.*s): ", REVISION, value_text(since, "git"));
     since_words(to, since);
@@ -374,15 +374,14 @@ static void plot_trends(struct page_writer *writer, const json_t *history, size_
     free(curves);
 }
 
-void page_history(struct page_writer *writer, const json_t *history)
+void page_history(struct page_writer *writer, const json_t *results)
 {
     struct buffer *to = &writer->to;
-    const json_t *since = json_object_get(history, "since");
+    const json_t *history = json_object_get(results, "history");
     size_t nights = json_array_size(json_object_get(history, "nights"));
-    if (!json_is_object(since)) return;
     if (nights > NIGHTS) nights = NIGHTS;
     buffer_add(to, "<section id=\"history\"><h2>What changed</h2>\n");
-    since_section(to, since);
+    since_section(to, json_object_get(history, "since"));
     if (nights >= 3) {
         change_table(to, json_object_get(history, "changes"));
         plot_trends(writer, history, nights);

@@ -11,57 +11,35 @@
 #include "page_part.h"
 #include "value.h"
 
-static const char *const fields[] = {"density", "velocity", "pressure"};
-enum { PANELS = sizeof fields / sizeof *fields };
-
-struct curves {
-    size_t n, exact_n;
-    double *x, *exact_x, *y[PANELS], *exact[PANELS];
-};
-
-static void curves_free(struct curves *c)
-{
-    free(c->x), free(c->exact_x);
-    for (int k = 0; k < PANELS; k++) free(c->y[k]), free(c->exact[k]);
-}
-
-static bool curves_read(struct buffer *to, struct curves *c, const json_t *profile)
-{
-    const json_t *exact = json_object_get(profile, "exact");
-    c->x = page_numbers(to, json_object_get(profile, "x"), &c->n);
-    c->exact_x = page_numbers(to, json_object_get(exact, "x"), &c->exact_n);
-    bool whole = c->n && c->exact_n;
-    for (int k = 0; k < PANELS; k++) {
-        size_t n, exact_n;
-        c->y[k] = page_numbers(to, json_object_get(profile, fields[k]), &n);
-        c->exact[k] = page_numbers(to, json_object_get(exact, fields[k]), &exact_n);
-        whole = whole && n == c->n && exact_n == c->exact_n;
-    }
-    return whole;
-}
+static const char *const fields[] = {"x", "density", "velocity", "pressure"};
+enum { FIELDS_READ = sizeof fields / sizeof *fields, PANELS = FIELDS_READ - 1 };
 
 static void profiles(struct page_writer *writer, const json_t *judged, size_t number)
 {
-    struct curves c = {0};
+    const json_t *profile = json_object_get(judged, "profile");
+    struct page_columns particles, exact;
     struct plot_series series[PANELS][2];
     struct plot_panel panels[PANELS] = {0};
     char name[64], which[32];
-    if (curves_read(&writer->to, &c, json_object_get(judged, "profile"))) {
+    const bool whole = page_columns_read(&writer->to, &particles, profile, fields, FIELDS_READ);
+    if (page_columns_read(&writer->to, &exact, json_object_get(profile, "exact"), fields,
+                          FIELDS_READ) &&
+        whole) {
         for (int k = 0; k < PANELS; k++) {
             series[k][0] = (struct plot_series){.label = "exact",
                                                 .kind = PLOT_LINES,
-                                                .n = c.exact_n,
-                                                .x = c.exact_x,
-                                                .y = c.exact[k],
+                                                .n = exact.n,
+                                                .x = exact.of[0],
+                                                .y = exact.of[k + 1],
                                                 .color = PLOT_NEUTRAL};
             series[k][1] = (struct plot_series){.label = "particles",
                                                 .kind = PLOT_POINTS,
-                                                .n = c.n,
-                                                .x = c.x,
-                                                .y = c.y[k],
+                                                .n = particles.n,
+                                                .x = particles.of[0],
+                                                .y = particles.of[k + 1],
                                                 .size = 0.5};
             panels[k] = (struct plot_panel){.x_label = "x",
-                                            .y_label = fields[k],
+                                            .y_label = fields[k + 1],
                                             .key = k ? PLOT_KEY_NONE : PLOT_KEY_TOP,
                                             .series = series[k],
                                             .series_count = 2};
@@ -74,7 +52,7 @@ static void profiles(struct page_writer *writer, const json_t *judged, size_t nu
                                   .panel_count = PANELS};
         page_plot(writer, &plot, "Particles in the window over the exact solution, code units.");
     }
-    curves_free(&c);
+    page_columns_free(&particles), page_columns_free(&exact);
 }
 
 /* In 2D and 3D: maps, and particles with the exact curve if there is one. */
@@ -156,31 +134,39 @@ static const struct html_column gates[] = {
     COLUMN("#allowed", NULL, .cell = allowed), COLUMN("", "status", .kind = CELL_STATUS),
     COLUMN("why", NULL, .cell = why),          {0}};
 
+static void interval(struct buffer *to, const json_t *order)
+{
+    if (json_is_number(json_object_get(order, "order")))
+        buffer_format(to, "%.3f to %.3f", value_member(order, "low"), value_member(order, "high"));
+    else
+        buffer_add(to, "—");
+}
+
+static void pairwise(struct buffer *to, const json_t *list)
+{
+    const json_t *one;
+    size_t i;
+    json_array_foreach(list, i, one) buffer_format(to, "%s%.3f", i ? ", " : "", value_real(one));
+}
+
+static const struct html_column fitted[] = {
+    COLUMN("L1 of", "field", .kind = CELL_WORDS),
+    COLUMN("#order", "order", .format = "%.3f", .otherwise = "—", .finite = true),
+    COLUMN("#95 % interval", NULL, .cell = interval),
+    COLUMN("pairwise", "pairwise", .cell = pairwise),
+    {0}};
+
 /* Several snapshots have orders if their numbers of particles differ, and a drift of conserved
  * quantities if their times differ. */
 static void together(struct buffer *to, const json_t *document)
 {
     static const char *const kept[] = {"mass", "momentum", "angular_momentum", "energy"};
-    const json_t *orders = json_object_get(document, "orders"), *order, *one;
+    const json_t *orders = json_object_get(document, "orders");
     const json_t *drift = json_object_get(document, "conservation");
-    size_t k, i;
+    size_t k;
     if (json_array_size(orders)) {
         buffer_add(to, "<section id=\"orders\"><h2>Orders</h2>\n");
-        html_table(to, "orders", "L1 of|#order|#95 % interval|pairwise");
-        json_array_foreach(orders, k, order) {
-            const bool fitted = json_is_number(json_object_get(order, "order"));
-            html_format(to, "<tr><td>%-s</td>", value_text(order, "field"));
-            if (fitted)
-                buffer_format(to, "<td class=\"n\">%.3f</td><td class=\"n\">%.3f to %.3f</td><td>",
-                              value_member(order, "order"), value_member(order, "low"),
-                              value_member(order, "high"));
-            else
-                buffer_add(to, "<td class=\"n\">—</td><td class=\"n\">—</td><td>");
-            json_array_foreach(json_object_get(order, "pairwise"), i, one)
-                buffer_format(to, "%s%.3f", i ? ", " : "", value_real(one));
-            buffer_add(to, "</td></tr>\n");
-        }
-        html_table_end(to);
+        html_list(to, "orders", fitted, orders, NULL);
         buffer_add(to, "</section>\n");
     } else if (json_object_get(document, "no_orders")) {
         html_format(to, "<section id=\"orders\"><h2>Orders</h2><p>None: %s.</p></section>\n",

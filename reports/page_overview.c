@@ -118,7 +118,6 @@ void page_overview(struct page_writer *writer, const json_t *results)
 {
     struct buffer *to = &writer->to;
     const char *labels[PAGE_SCHEMES];
-    if (!json_array_size(json_object_get(results, "studies"))) return;
     const bool both = case_state_labels(json_object_get(results, "studies"), 1, 1, labels) &&
                       case_state_labels(json_object_get(results, "runs"), 2, 3, labels);
     buffer_add(to, "<section id=\"overview\"><h2>All cases at a glance</h2>\n");

@@ -16,28 +16,31 @@ struct page;
 void page_head(struct buffer *to, const char *title);
 bool page_end(struct page_writer *writer, struct page *page);
 
-/* A line for the head of the page, the same as plain text, and the section: changes since the
- * previous night and over all nights. */
+/* A line for the head of the page, and the same as plain text: changes since the previous night. */
 void page_since(struct buffer *to, const json_t *results);
 void page_since_plain(struct buffer *to, const json_t *results);
-void page_history(struct page_writer *writer, const json_t *history);
 
+/* True of a report of other codes. */
+bool page_of_codes(const json_t *results);
+
+/* Sections of the page; those that page.c lists are only called if the results have their member.
+ */
 void page_strip(struct page_writer *writer, const json_t *results);
-void page_overview(struct page_writer *writer, const json_t *results);
-void page_cases(struct page_writer *writer, const json_t *results);
-void page_autopsies(struct page_writer *writer, const json_t *autopsies);
-void page_skips(struct page_writer *writer, const json_t *skips);
-/* of_codes: in a report of other codes. */
-void page_bench(struct page_writer *writer, const json_t *bench, bool of_codes);
 void page_codes(struct page_writer *writer, const json_t *results);
-void page_gradients(struct page_writer *writer, const json_t *gradients);
-void page_stress(struct page_writer *writer, const json_t *stress);
-void page_claims(struct page_writer *writer, const json_t *claims);
+void page_cases(struct page_writer *writer, const json_t *results);
+void page_history(struct page_writer *writer, const json_t *results);
+void page_overview(struct page_writer *writer, const json_t *results);
+void page_bench(struct page_writer *writer, const json_t *results);
+void page_autopsies(struct page_writer *writer, const json_t *results);
+void page_skips(struct page_writer *writer, const json_t *results);
+void page_gradients(struct page_writer *writer, const json_t *results);
+void page_stress(struct page_writer *writer, const json_t *results);
+void page_claims(struct page_writer *writer, const json_t *results);
 void page_faults(struct page_writer *writer, const json_t *results);
-void page_score(struct page_writer *writer, const json_t *score);
-void page_kernels(struct page_writer *writer, const json_t *kernels);
-void page_checks(struct page_writer *writer, const json_t *verify);
-void page_detection(struct page_writer *writer, const json_t *verify);
+void page_score(struct page_writer *writer, const json_t *results);
+void page_kernels(struct page_writer *writer, const json_t *results);
+void page_checks(struct page_writer *writer, const json_t *results);
+void page_detection(struct page_writer *writer, const json_t *results);
 
 /* Convergence of a case from its studies (converge documents): errors against n with fitted and
  * reference slopes, orders and gates. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "page_plot.h"
 
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,6 +21,25 @@ double *page_numbers(struct buffer *to, const json_t *list, size_t *n)
     double *numbers = value_numbers(list, n);
     to->failed |= *n < json_array_size(list);
     return numbers;
+}
+
+bool page_columns_read(struct buffer *to, struct page_columns *columns, const json_t *from,
+                       const char *const *names, size_t count)
+{
+    bool whole = true;
+    *columns = (struct page_columns){.n = SIZE_MAX};
+    for (size_t k = 0; k < count; k++) {
+        size_t n;
+        columns->of[k] = page_numbers(to, json_object_get(from, names[k]), &n);
+        whole = whole && n && (n == columns->n || k == 0);
+        if (n < columns->n) columns->n = n;
+    }
+    return whole;
+}
+
+void page_columns_free(struct page_columns *columns)
+{
+    for (int k = 0; k < PAGE_COLUMNS; k++) free(columns->of[k]);
 }
 
 static void keep(struct page_writer *writer, const char *name, const char *ending, char *bytes)

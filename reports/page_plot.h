@@ -43,3 +43,15 @@ void page_plot_name(char *name, size_t size, const char *case_name, const char *
  * memory has ended, NULL, and the page fails. */
 void *page_allocate(struct buffer *to, size_t n, size_t size);
 double *page_numbers(struct buffer *to, const json_t *list, size_t *n);
+
+/* Lists of numbers of one object, such as a profile; owned. Each has n numbers at least. */
+enum { PAGE_COLUMNS = 5 };
+struct page_columns {
+    size_t n;
+    double *of[PAGE_COLUMNS];
+};
+
+/* Reads the lists of these names. True if all are of the same length, and not empty. */
+bool page_columns_read(struct buffer *to, struct page_columns *columns, const json_t *from,
+                       const char *const *names, size_t count);
+void page_columns_free(struct page_columns *columns);

@@ -27,9 +27,10 @@ static const struct html_column files[] = {COLUMN("file", "file", .kind = CELL_C
                                                COLUMN("", "why", .kind = CELL_TEXT),
                                                {0}};
 
-void page_score(struct page_writer *writer, const json_t *score)
+void page_score(struct page_writer *writer, const json_t *results)
 {
     struct buffer *to = &writer->to;
+    const json_t *score = json_object_get(results, "score");
     html_format(to,
                 "<section id=\"score\"><h2>Mutation score</h2>\n<p>One-line faults, generated at "
                 "every operator, constant, statement and returned status, that the tests must "

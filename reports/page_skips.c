@@ -25,40 +25,45 @@ static const json_t *sleep_of(const json_t *document)
     return json_array_get(json_object_get(document, "skips"), 0);
 }
 
-static void percent(struct buffer *to, double share, const char *mark)
+static void setup_words(struct buffer *to, const json_t *document)
 {
-    if (isfinite(share))
-        buffer_format(to, "<td class=\"n\">%.0f %%%s</td>", 100 * share, mark);
-    else
-        buffer_add(to, "<td class=\"n\">—</td>");
+    char name[NAME];
+    setup_of(document, name);
+    html_format(to, "<code>%s</code>", name);
 }
 
-static void shares_table(struct buffer *to, const json_t *skips)
+static void percent(struct buffer *to, const json_t *share)
 {
-    size_t i;
-    const json_t *document;
-    html_table(to, "costs",
-               "setup|#skipped|#allowed|#possible|#CPU time|#spread|#difference|#bound|answer");
-    json_array_foreach(skips, i, document) {
-        const json_t *sleep = sleep_of(document);
-        char setup[NAME];
-        setup_of(document, setup);
-        const bool coarse = !strcmp(value_text(sleep, "possible_by"), "coarse threshold");
-        buffer_add(to, "<tr>");
-        html_cell_code(to, setup);
-        percent(to, value_member(sleep, "skipped_fraction"), "");
-        percent(to, value_member(sleep, "allowed_fraction"), "");
-        percent(to, value_member(sleep, "possible_fraction"), coarse ? "*" : "");
-        buffer_format(to, "<td class=\"n\">%.2f</td>", 1 / value_member(sleep, "saves"));
-        percent(to, value_member(sleep, "spread"), "");
-        html_cell_number(to, value_member(sleep, "difference"));
-        html_cell_number(to, value_member(sleep, "bound"));
-        buffer_add(to, "<td>");
-        html_status(to, value_text(sleep, "status"));
-        buffer_add(to, "</td></tr>\n");
-    }
-    html_table_end(to);
+    buffer_format(to, "%.0f %%", 100 * value_real(share));
 }
+
+static void possible(struct buffer *to, const json_t *sleep)
+{
+    const json_t *share = json_object_get(sleep, "possible_fraction");
+    if (isfinite(value_real(share))) {
+        percent(to, share);
+        if (!strcmp(value_text(sleep, "possible_by"), "coarse threshold")) buffer_add(to, "*");
+    } else {
+        buffer_add(to, "—");
+    }
+}
+
+static void time_left(struct buffer *to, const json_t *saves)
+{
+    buffer_format(to, "%.2f", 1 / value_real(saves));
+}
+
+#define SHARE .cell = percent, .otherwise = "—", .finite = true
+static const struct html_column shares[] = {COLUMN("setup", NULL, .cell = setup_words),
+                                            COLUMN("#skipped", "skips/0/skipped_fraction", SHARE),
+                                            COLUMN("#allowed", "skips/0/allowed_fraction", SHARE),
+                                            COLUMN("#possible", "skips/0", .cell = possible),
+                                            COLUMN("#CPU time", "skips/0/saves", .cell = time_left),
+                                            COLUMN("#spread", "skips/0/spread", SHARE),
+                                            COLUMN("#difference", "skips/0/difference"),
+                                            COLUMN("#bound", "skips/0/bound"),
+                                            COLUMN("answer", "skips/0/status", .kind = CELL_STATUS),
+                                            {0}};
 
 /* Draws where (along x) and when (relative to t_end) particles are inactive. */
 static void plot_map(struct page_writer *writer, const json_t *document, size_t number)
@@ -83,7 +88,6 @@ static void plot_map(struct page_writer *writer, const json_t *document, size_t 
                                    .high = 1};
     const struct plot_panel panel = {.x_label = "x, in boxes",
                                      .y_label = "t / t_end",
-                                     .own_x = true,
                                      .x_min = 0,
                                      .x_max = 1,
                                      .y_min = 0,
@@ -104,9 +108,10 @@ static void plot_map(struct page_writer *writer, const json_t *document, size_t 
     page_plot(writer, &plot, setup);
 }
 
-void page_skips(struct page_writer *writer, const json_t *skips)
+void page_skips(struct page_writer *writer, const json_t *results)
 {
     struct buffer *to = &writer->to;
+    const json_t *skips = json_object_get(results, "skips");
     size_t i;
     const json_t *document;
     buffer_add(
@@ -124,7 +129,7 @@ void page_skips(struct page_writer *writer, const json_t *skips)
         "without, and the larger spread of the two. Difference: the largest of any field at t_end "
         "over its largest value. Noh's inflow converges: its density grows everywhere at the rate "
         "(d - 1)/r, so that it is nowhere at rest in 2D and 3D.</p>\n");
-    shares_table(to, skips);
+    html_list(to, "costs", shares, skips, NULL);
     buffer_add(to, "<div class=\"figures\">");
     json_array_foreach(skips, i, document) plot_map(writer, document, i + 1);
     buffer_add(to, "</div>\n");

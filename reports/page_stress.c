@@ -249,9 +249,10 @@ static void survivors(struct buffer *to, const json_t *comparison)
         value_member(comparison, "only_seed_survives"), value_member(comparison, "both_break"));
 }
 
-void page_stress(struct page_writer *writer, const json_t *stress)
+void page_stress(struct page_writer *writer, const json_t *results)
 {
     struct buffer *to = &writer->to;
+    const json_t *stress = json_object_get(results, "stress");
     const json_t *atlas = json_object_get(stress, "atlas"), *group;
     size_t i;
     buffer_add(

@@ -17,15 +17,6 @@ struct frame {
     double x0, x1, y0, y1;
 };
 
-static void widen(const double *values, size_t n, double *low, double *high)
-{
-    for (size_t i = 0; values && i < n; i++) {
-        if (!isfinite(values[i])) continue;
-        *low = fmin(*low, values[i]);
-        *high = fmax(*high, values[i]);
-    }
-}
-
 static double across(const struct frame *f, double x)
 {
     return MARGIN + (WIDTH - 2 * MARGIN) * (f->x1 > f->x0 ? (x - f->x0) / (f->x1 - f->x0) : 0.5);
@@ -71,7 +62,7 @@ static bool varies(struct buffer *to, const json_t *curve, const char *name)
     size_t n;
     double *y = page_numbers(to, json_object_get(curve, name), &n);
     double low = (double)INFINITY, high = -(double)INFINITY;
-    widen(y, n, &low, &high);
+    plot_range(y, n, &low, &high);
     free(y);
     return high - low > 1e-9 * fmax(fabs(low), fabs(high));
 }
@@ -100,22 +91,22 @@ static bool profile(struct buffer *to, const json_t *run)
 {
     const json_t *from = json_object_get(run, "profile"), *exact = json_object_get(from, "exact");
     const char *name = quantity_of(to, run, from);
-    size_t n, values, exact_n, exact_values;
-    double *x = page_numbers(to, json_object_get(from, "x"), &n);
-    double *y = page_numbers(to, json_object_get(from, name), &values);
-    double *exact_x = page_numbers(to, json_object_get(exact, "x"), &exact_n);
-    double *exact_y = page_numbers(to, json_object_get(exact, name), &exact_values);
+    const char *const names[] = {"x", name};
+    struct page_columns particles, curve;
+    page_columns_read(to, &particles, from, names, 2);
+    page_columns_read(to, &curve, exact, names, 2);
+    const double *x = particles.of[0], *y = particles.of[1], *exact_y = curve.of[1];
+    double *exact_x = curve.of[0];
+    const size_t n = particles.n, exact_n = curve.n;
     struct frame f = {(double)INFINITY, -(double)INFINITY, (double)INFINITY, -(double)INFINITY};
-    n = values < n ? values : n;
-    exact_n = exact_values < exact_n ? exact_values : exact_n;
     if (n && exact_n) {
-        widen(x, n, &f.x0, &f.x1);
-        widen(y, n, &f.y0, &f.y1);
+        plot_range(x, n, &f.x0, &f.x1);
+        plot_range(y, n, &f.y0, &f.y1);
         for (size_t i = 0; i < exact_n; i++) {
             if (!(exact_x[i] >= f.x0 && exact_x[i] <= f.x1))
                 exact_x[i] = (double)NAN;
             else
-                widen(&exact_y[i], 1, &f.y0, &f.y1);
+                plot_range(&exact_y[i], 1, &f.y0, &f.y1);
         }
         /* do not enlarge noise around a constant to the full height */
         if (!varies(to, exact, name)) {
@@ -127,7 +118,7 @@ static bool profile(struct buffer *to, const json_t *run)
         path(to, "dots", &f, x, y, n, DOTS, false);
         buffer_add(to, "</svg>");
     }
-    free(x), free(y), free(exact_x), free(exact_y);
+    page_columns_free(&particles), page_columns_free(&curve);
     return n && exact_n;
 }
 
@@ -158,7 +149,7 @@ static void bitmap(struct buffer *to, const double *z, size_t nx, size_t ny)
     unsigned char *bytes = page_allocate(to, size, 1);
     double low = (double)INFINITY, high = -(double)INFINITY;
     if (!bytes) return;
-    widen(z, nx * ny, &low, &high);
+    plot_range(z, nx * ny, &low, &high);
     bytes[0] = 'B', bytes[1] = 'M';
     put(bytes + 2, 4, size), put(bytes + 10, 4, HEAD + PALETTE), put(bytes + 14, 4, 40);
     put(bytes + 18, 4, nx), put(bytes + 22, 4, ny), put(bytes + 26, 2, 1), put(bytes + 28, 2, 8);
@@ -186,7 +177,7 @@ static bool map(struct buffer *to, const json_t *run)
     const bool there = cells && cells == nx * ny;
     if (there) {
         double low = (double)INFINITY, high = -(double)INFINITY;
-        widen(rho, cells, &low, &high);
+        plot_range(rho, cells, &low, &high);
         const bool flat = speeds == cells && high - low < 0.02 * fabs(high);
         const double scale = fmin((double)WIDTH / (double)nx, (double)HEIGHT / (double)ny);
         const double w = scale * (double)nx, h = scale * (double)ny;

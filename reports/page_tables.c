@@ -106,9 +106,10 @@ static void plot_league(struct page_writer *writer, const json_t *rows)
     buffer_add(&writer->to, "</div>\n");
 }
 
-void page_gradients(struct page_writer *writer, const json_t *gradients)
+void page_gradients(struct page_writer *writer, const json_t *results)
 {
     struct buffer *to = &writer->to;
+    const json_t *gradients = json_object_get(results, "gradients");
     const json_t *rows = json_object_get(gradients, "rows"), *row;
     size_t i;
     buffer_add(to,
@@ -173,7 +174,7 @@ static const struct html_column certificates[] = {
     COLUMN("certificate", "reproduce", .kind = CELL_CODE),
     {0}};
 
-void page_kernels(struct page_writer *writer, const json_t *kernels)
+void page_kernels(struct page_writer *writer, const json_t *results)
 {
     struct buffer *to = &writer->to;
     buffer_add(to,
@@ -181,6 +182,6 @@ void page_kernels(struct page_writer *writer, const json_t *kernels)
                "from the number of neighbours N on at which coincident pairs have less energy than "
                "single particles on the densest lattice; with a Fourier transform that is nowhere "
                "negative they never do.</p>\n");
-    html_list(to, "kernels", certificates, kernels, NULL);
+    html_list(to, "kernels", certificates, json_object_get(results, "kernels"), NULL);
     buffer_add(to, "</section>\n");
 }

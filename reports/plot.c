@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -158,6 +159,15 @@ static enum plot_status svg_document(const struct plot *plot, struct buffer *pic
     if (!picture->failed) return PLOT_OK;
     snprintf(message, n, "no memory for the plot %s", plot->name);
     return PLOT_FAILED;
+}
+
+void plot_range(const double *values, size_t n, double *low, double *high)
+{
+    for (size_t i = 0; values && i < n; i++) {
+        if (!isfinite(values[i])) continue;
+        *low = fmin(*low, values[i]);
+        *high = fmax(*high, values[i]);
+    }
 }
 
 bool plot_format_of(const char *path, enum plot_format *format)

@@ -19,9 +19,8 @@ enum plot_kind {
     PLOT_LINES,
     PLOT_POINTS,
     PLOT_LINES_POINTS,
-    PLOT_ERROR_BARS, /* points with low..high */
-    PLOT_BAND,       /* filled between low and high; y unused */
-    PLOT_BARS        /* filled between low and high, a bar at each x, from x/size to x*size */
+    PLOT_BAND, /* filled between low and high; y unused */
+    PLOT_BARS  /* filled between low and high, a bar at each x, from x/size to x*size */
 };
 
 enum { PLOT_AUTO = 0, PLOT_NEUTRAL = -1 }; /* colours: automatic, text colour, or 1..PLOT_COLORS */
@@ -32,7 +31,7 @@ struct plot_series {
     enum plot_kind kind;
     size_t n;
     const double *x, *y;      /* a non-finite value interrupts a line */
-    const double *low, *high; /* bands and error bars only */
+    const double *low, *high; /* bands and bars only */
     int color;                /* PLOT_AUTO: next of the palette */
     bool dashed;
     double size; /* size of points, 0: the default of 1; profiles of many particles use less */
@@ -51,19 +50,15 @@ struct plot_mark {
     const char *label; /* or NULL */
 };
 
-/* Heat map: cell (i, j) is centred at x[i], y[j] and has the value z[j * nx + i]; NaN cells are
- * empty. With categories, z is an index into them; they are coloured by the palette and named in
- * the key. */
+/* Heat map on linear axes: cell (i, j) is centred at x[i], y[j] and has the value z[j * nx + i];
+ * NaN cells are empty. */
 struct plot_heat {
     size_t nx, ny;
     const double *x, *y, *z;
     const char *label; /* of the colour scale, with unit */
-    bool log;          /* logarithmic colour scale */
-    const char *const *categories;
-    size_t category_count;
-    bool image;       /* equal cells on linear axes: drawn as an image, saved as a bare matrix */
-    bool diverging;   /* the middle of the colours is 0, with the same range for both signs */
-    double low, high; /* of the colour scale; equal: from the data */
+    bool image;        /* equal cells: drawn as an image, saved as a bare matrix */
+    bool diverging;    /* the middle of the colours is 0, with the same range for both signs */
+    double low, high;  /* of the colour scale; equal: from the data */
 };
 
 enum plot_key {
@@ -117,6 +112,9 @@ void plot_pen_free(struct plot_pen *pen);
  * bytes). pen: NULL for a separate gnuplot. */
 enum plot_status plot_svg(struct plot_pen *pen, const struct plot *plot, char **svg, char *message,
                           size_t n);
+
+/* Widens low..high so that it contains all finite values. */
+void plot_range(const double *values, size_t n, double *low, double *high);
 
 enum plot_format { PLOT_SVG, PLOT_PNG };
 

@@ -27,16 +27,6 @@ static void number(struct buffer *to, double value)
         buffer_add(to, " NaN");
 }
 
-static double edge(const double *centres, size_t n, size_t i, int side, bool log)
-{
-    size_t j = side < 0 ? (i ? i - 1 : i + 1) : (i + 1 < n ? i + 1 : i - 1);
-    if (n < 2) return centres[0] * (1 + 0.1 * side);
-    bool inside = side < 0 ? i > 0 : i + 1 < n;
-    double half = log ? sqrt(centres[j] / centres[i]) : (centres[j] - centres[i]) / 2;
-    if (log) return inside ? centres[i] * half : centres[i] / half;
-    return inside ? centres[i] + half : centres[i] - half;
-}
-
 /* Writes one line per row of cells, from bottom to top. */
 static void image_data(struct buffer *to, const struct plot_heat *heat)
 {
@@ -54,9 +44,8 @@ static void image_data(struct buffer *to, const struct plot_heat *heat)
     buffer_add(to, "\n\n");
 }
 
-static void heat_data(struct buffer *to, const struct plot_panel *panel)
+static void heat_data(struct buffer *to, const struct plot_heat *heat)
 {
-    const struct plot_heat *heat = panel->heat;
     if (heat->image) {
         image_data(to, heat);
         return;
@@ -68,10 +57,10 @@ static void heat_data(struct buffer *to, const struct plot_panel *panel)
             if (!isfinite(z)) continue;
             const double row[] = {heat->x[i],
                                   heat->y[j],
-                                  edge(heat->x, heat->nx, i, -1, panel->x_log),
-                                  edge(heat->x, heat->nx, i, +1, panel->x_log),
-                                  edge(heat->y, heat->ny, j, -1, panel->y_log),
-                                  edge(heat->y, heat->ny, j, +1, panel->y_log),
+                                  layout_edge(heat->x, heat->nx, i, -1),
+                                  layout_edge(heat->x, heat->nx, i, +1),
+                                  layout_edge(heat->y, heat->ny, j, -1),
+                                  layout_edge(heat->y, heat->ny, j, +1),
                                   z};
             for (size_t k = 0; k < sizeof row / sizeof *row; k++) number(to, row[k]);
             buffer_add(to, "\n");
@@ -84,19 +73,18 @@ void script_data(struct buffer *to, const struct plot *plot)
 {
     for (size_t p = 0; p < plot->panel_count; p++) {
         const struct plot_panel *panel = &plot->panels[p];
-        if (panel->heat) heat_data(to, panel);
+        if (panel->heat) heat_data(to, panel->heat);
         for (size_t k = 0; k < panel->series_count; k++) {
             const struct plot_series *series = &panel->series[k];
-            bool band = series->kind == PLOT_BAND || series->kind == PLOT_BARS,
-                 bars = series->kind == PLOT_ERROR_BARS;
-            buffer_format(to, "# x y%s: ", band || bars ? " low high" : "");
+            const bool filled = series->kind == PLOT_BAND || series->kind == PLOT_BARS;
+            buffer_format(to, "# x y%s: ", filled ? " low high" : "");
             for (const char *c = series->label ? series->label : ""; *c; c++)
                 buffer_add_bytes(to, (unsigned char)*c < ' ' ? " " : c, 1);
             buffer_add(to, "\n");
             for (size_t i = 0; i < series->n; i++) {
                 number(to, series->x[i]);
                 number(to, series->y ? series->y[i] : (double)NAN);
-                if (band || bars) {
+                if (filled) {
                     number(to, series->low[i]);
                     number(to, series->high[i]);
                 }
@@ -282,18 +270,10 @@ static void heat(struct buffer *to, const struct plot_heat *heat, const char *da
         image(to, heat, data, index);
         return;
     }
-    if (!heat->category_count)
-        buffer_format(to,
-                      "%s index %zu using 1:2:3:4:5:6:7 with boxxyerror notitle fillstyle solid "
-                      "noborder linecolor palette",
-                      data, index);
-    for (size_t c = 0; c < heat->category_count; c++) {
-        buffer_format(to,
-                      "%s%s index %zu using 1:2:3:4:5:($7 == %zu ? $6 : NaN) with boxxyerror "
-                      "fillstyle solid noborder linecolor rgb '%s' title ",
-                      c ? next_curve : "", data, index, c, style_series((int)c + 1, 0));
-        quote(to, heat->categories[c]);
-    }
+    buffer_format(to,
+                  "%s index %zu using 1:2:3:4:5:6:7 with boxxyerror notitle fillstyle solid "
+                  "noborder linecolor palette",
+                  data, index);
 }
 
 static void curve(struct buffer *to, const struct plot_series *series, const char *data,
@@ -321,10 +301,6 @@ static void curve(struct buffer *to, const struct plot_series *series, const cha
                       "pointsize %g",
                       width, dash, shape, 0.7 * size);
         break;
-    case PLOT_ERROR_BARS:
-        buffer_format(to, "using 1:2:3:4 with yerrorbars linewidth 1.5 pointtype %d pointsize %g",
-                      shape, 0.7 * size);
-        break;
     case PLOT_BAND:
         buffer_add(to, "using 1:3:4 with filledcurves fillstyle transparent solid 0.22 noborder");
         break;
@@ -349,17 +325,10 @@ static void curve(struct buffer *to, const struct plot_series *series, const cha
 
 /* Ticks of a colour bar of this height; on a low bar their distance follows from the height of the
  * labels. */
-static void color_ticks(struct buffer *to, const struct plot_heat *heat, double pixels)
+static void color_ticks(struct buffer *to, double low, double high, double pixels)
 {
-    const double label = 1.5 * LAYOUT_FONT;
-    double low = (double)INFINITY, high = -(double)INFINITY;
-    buffer_add(to, "set cbtics autofreq\n");
-    if (heat->log || heat->diverging || pixels > 8 * label) return;
-    for (size_t k = 0; k < heat->nx * heat->ny; k++)
-        if (isfinite(heat->z[k])) low = fmin(low, heat->z[k]), high = fmax(high, heat->z[k]);
-    if (heat->high > heat->low) low = heat->low, high = heat->high;
-    const double least = (high - low) / fmax(1, floor(pixels / label));
-    if (!(least > 0 && isfinite(least))) return;
+    const double label = 1.5 * LAYOUT_FONT, least = (high - low) / fmax(1, floor(pixels / label));
+    if (pixels > 8 * label || !(least > 0 && isfinite(least))) return;
     const double ten = pow(10, floor(log10(least))), part = least / ten;
     buffer_format(to, "set cbtics %.10g\n", ten * (part <= 2 ? 2 : part <= 5 ? 5 : 10));
 }
@@ -369,24 +338,24 @@ static void color_scale(struct buffer *to, const struct plot_heat *heat,
                         const struct layout *layout, const struct layout_panel *at)
 {
     const char *ink = style_colors[STYLE_plot_ink].light;
-    double reach = 0;
-    for (size_t k = 0; k < heat->nx * heat->ny; k++)
-        if (isfinite(heat->z[k])) reach = fmax(reach, fabs(heat->z[k]));
+    double low = (double)INFINITY, high = -(double)INFINITY;
+    plot_range(heat->z, heat->nx * heat->ny, &low, &high);
+    if (heat->diverging) high = fmax(-low, high), low = -high;
+    if (heat->high > heat->low) low = heat->low, high = heat->high;
     buffer_add(to, heat->diverging ? blue_to_red : viridis);
-    if (heat->high > heat->low)
-        buffer_format(to, "set cbrange [%.10g:%.10g]\n", heat->low, heat->high);
-    else if (heat->diverging && reach > 0)
-        buffer_format(to, "set cbrange [%.10g:%.10g]\n", -reach, reach);
+    if (heat->high > heat->low || (heat->diverging && high > 0))
+        buffer_format(to, "set cbrange [%.10g:%.10g]\n", low, high);
     else
         buffer_add(to, "set cbrange [*:*]\n");
-    buffer_format(to, "%s logscale cb\nset cblabel ", heat->log ? "set" : "unset");
+    buffer_add(to, "set cblabel ");
     quote(to, heat->label);
     buffer_format(to,
                   " textcolor rgb '%s'\nset colorbox user origin screen %.5f, screen %.5f size "
-                  "screen %.5f, screen %.5f noborder\nset cbtics textcolor rgb '%s'\n",
+                  "screen %.5f, screen %.5f noborder\nset cbtics textcolor rgb '%s'\nset cbtics "
+                  "autofreq\n",
                   ink, (at->right + 12) / layout->width, 1 - at->bottom / layout->height,
                   14.0 / layout->width, (at->bottom - at->top) / layout->height, ink);
-    color_ticks(to, heat, at->bottom - at->top);
+    if (!heat->diverging) color_ticks(to, low, high, at->bottom - at->top);
 }
 
 static void panel_script(struct buffer *to, const struct plot *plot, const struct layout *layout,
@@ -426,9 +395,7 @@ static void panel_script(struct buffer *to, const struct plot *plot, const struc
     else
         buffer_add(to, "unset key\n");
     if (panel->key == PLOT_KEY_END) end_labels(to, layout, p, panel);
-    if (panel->heat && !panel->heat->category_count) {
-        color_scale(to, panel->heat, layout, at);
-    }
+    if (panel->heat) color_scale(to, panel->heat, layout, at);
     buffer_add(to, "plot ");
     if (panel->heat) heat(to, panel->heat, data, (*index)++);
     int next = 0;
@@ -468,8 +435,7 @@ void script_make(struct buffer *to, const struct plot *plot, enum script_termina
     }
     buffer_format(to,
                   "set border 3 linecolor rgb '%s'\n"
-                  "set grid ytics linetype 1 dashtype solid linewidth 0.7 linecolor rgb '%s'\n"
-                  "set errorbars small\n",
+                  "set grid ytics linetype 1 dashtype solid linewidth 0.7 linecolor rgb '%s'\n",
                   style_colors[STYLE_plot_axis].light, style_colors[STYLE_plot_grid].light);
     if (plot->panel_count > 1) buffer_add(to, "set multiplot\n");
     size_t index = 0;

@@ -266,13 +266,12 @@ static enum status run(const struct options *options, int n, char **arguments, s
     struct report *report = NULL;
     struct codes *codes = NULL;
     if (n) return command_usage(options, error, "no argument is known: '%.40s'", arguments[0]);
-    const enum report_mode mode = options_value(options, "nightly") ? REPORT_NIGHTLY : REPORT_QUICK;
     if (check_options(options, error)) return error->status;
     enum status status;
     if (!options_value(options, "code"))
-        status = report_create(mode, &report, error);
+        status = report_create(options_value(options, "nightly"), NULL, 0, &report, error);
     else if (!(status = take_codes(options, &codes, error)))
-        status = report_create_codes(codes->of, codes->count, &report, error);
+        status = report_create(false, codes->of, codes->count, &report, error);
     if (!status) status = serialise_out(options, report, error);
     report_destroy(report);
     codes_free(codes);

@@ -80,21 +80,9 @@ static int severity(const struct difference *d)
     return d->regression ? 0 : order[d->verdict];
 }
 
-static const char *path_of(const struct difference *d)
-{
-    return d->new ? d->new->path : d->old->path;
-}
-
 static bool is_timing(const struct difference *d)
 {
     return d->new && d->new->kind == READING_TIMING;
-}
-
-/* The rank of the check that the figure belongs to; others come last. A failed check names the
- * cause; a broken run is its consequence. */
-static double rank_of(const struct difference *d)
-{
-    return (d->new ? d->new : d->old)->rank;
 }
 
 static int worst_first(const void *a, const void *b)
@@ -102,14 +90,15 @@ static int worst_first(const void *a, const void *b)
     const struct difference *x = a, *y = b;
     const int i = severity(x), j = severity(y);
     if (i != j) return i - j;
-    const double a_rank = rank_of(x), b_rank = rank_of(y);
+    /* a failed check names the cause; a broken run, which has no rank, is its consequence */
+    const double a_rank = x->any->rank, b_rank = y->any->rank;
     if (i == 0 && a_rank != b_rank) return a_rank < b_rank ? -1 : 1;
     const bool a_time = is_timing(x), b_time = is_timing(y);
     if (a_time != b_time) return a_time ? 1 : -1;
     const bool a_head = x->new && x->new->headline, b_head = y->new && y->new->headline;
     if (a_head != b_head) return a_head ? -1 : 1;
     if (x->amount != y->amount) return x->amount > y->amount ? -1 : 1;
-    return strcmp(path_of(x), path_of(y));
+    return strcmp(x->any->path, y->any->path);
 }
 
 static void judge(struct diff *diff, const struct metric *old, const struct metric *new,
@@ -117,7 +106,7 @@ static void judge(struct diff *diff, const struct metric *old, const struct metr
 {
     struct difference *d = &diff->list[diff->count++];
     bool fault;
-    *d = (struct difference){.old = old, .new = new};
+    *d = (struct difference){.old = old, .new = new, .any = new ? new : old};
     d->verdict = metric_judge(old, new, &d->amount, &fault);
     if (diff->problem[0] && old && new)
         d->verdict = VERDICT_INCOMPARABLE, d->amount = 0, fault = false;
@@ -151,34 +140,34 @@ static bool says_broke_down(const struct metric *metric)
     return metric && metric->word && strcmp(metric->word, "broke_down") == 0;
 }
 
+/* Removes the figures that are left out; returns their number. */
+static size_t leave_out(struct diff *diff)
+{
+    const size_t before = diff->count;
+    diff->count = 0;
+    for (size_t i = 0; i < before; i++)
+        if (!diff->list[i].left_out) diff->list[diff->count++] = diff->list[i];
+    return before - diff->count;
+}
+
 /* If a run broke down, before or now, its figures belong to other times or are missing: only the
  * breakdown is compared. */
-static void leave_out_broken(struct diff *diff)
+static void mark_broken(struct diff *diff)
 {
     struct difference *list = diff->list;
     for (size_t i = 0; i < diff->count; i++) {
         if (!says_broke_down(list[i].old) && !says_broke_down(list[i].new)) continue;
-        const char *path = path_of(&list[i]);
+        const char *path = list[i].any->path;
         const size_t object = object_length(path);
         for (size_t k = 0; k < diff->count; k++)
-            list[k].broken = list[k].broken || within(path, object, path_of(&list[k]));
+            list[k].left_out = list[k].left_out || within(path, object, list[k].any->path);
     }
-    size_t kept = 0;
-    for (size_t i = 0; i < diff->count; i++)
-        if (!list[i].broken) list[kept++] = list[i];
-    diff->left_out = diff->count - kept, diff->count = kept;
 }
 
-static void leave_out_times(struct diff *diff)
+static void mark_times(struct diff *diff)
 {
-    size_t kept = 0;
-    for (size_t i = 0; i < diff->count; i++) {
-        const struct difference *d = &diff->list[i];
-        const struct metric *any = d->new ? d->new : d->old;
-        if (any->kind != READING_TIMING) diff->list[kept++] = *d;
-    }
-    diff->left_out_times = diff->count - kept;
-    diff->count = kept;
+    for (size_t i = 0; i < diff->count; i++)
+        diff->list[i].left_out = diff->list[i].any->kind == READING_TIMING;
 }
 
 /* True if the documents name two different processors. */
@@ -195,10 +184,10 @@ static void count_causes(struct diff *diff)
     for (size_t i = 0; i < diff->count; i++) {
         struct difference *whole = &diff->list[i];
         if (!whole->regression || !whole->new->word) continue;
-        const char *path = path_of(whole);
+        const char *path = whole->any->path;
         const size_t object = strcmp(path, "verdict.status") ? object_length(path) : 0;
         for (size_t k = 0; k < diff->count && whole->regression; k++)
-            if (diff->list[k].regression && within(path, object, path_of(&diff->list[k])))
+            if (diff->list[k].regression && within(path, object, diff->list[k].any->path))
                 whole->regression = false;
     }
 }
@@ -261,8 +250,10 @@ enum status diff_documents(const json_t *old, const json_t *new, double threshol
         i += order <= 0;
         j += order >= 0;
     }
-    leave_out_broken(diff);
-    if (of_two_processors(old, new)) leave_out_times(diff);
+    mark_broken(diff);
+    diff->left_out = leave_out(diff);
+    if (of_two_processors(old, new)) mark_times(diff);
+    diff->left_out_times = leave_out(diff);
     count_causes(diff);
     conclude(diff);
     qsort(diff->list, diff->count, sizeof *diff->list, worst_first);

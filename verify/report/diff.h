@@ -11,10 +11,11 @@
 
 struct difference {
     const struct metric *old, *new; /* NULL: only in the other document */
+    const struct metric *any;       /* the new one if there is one, else the old one */
     enum metric_verdict verdict;
     double amount; /* see metric_judge */
     bool regression;
-    bool broken; /* a figure of a run that broke down */
+    bool left_out; /* a figure of a run that broke down, or a timing of another processor */
 };
 
 struct diff {

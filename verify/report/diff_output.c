@@ -20,22 +20,16 @@ static double ratio_of(const struct difference *d)
 /* The best value of a figure: 0 for an error, the exact value of a functional; NaN if unknown. */
 static double exact_of(const struct difference *d)
 {
-    const struct metric *metric = d->new ? d->new : d->old;
-    switch (metric->kind) {
+    switch (d->any->kind) {
     case READING_ERROR:
     case READING_CHECK:
     case READING_PART:
         return 0;
     case READING_EXACT:
-        return metric->exact;
+        return d->any->exact;
     default:
         return (double)NAN;
     }
-}
-
-static const char *path_of(const struct difference *d)
-{
-    return d->new ? d->new->path : d->old->path;
 }
 
 /* ---- JSON ---- */
@@ -54,7 +48,7 @@ json_t *diff_figures_json(const struct diff *diff, size_t most)
         json_array_append_new(
             figures,
             result_object("path=%s old=%p new=%p exact=%g? ratio=%g? verdict=%s regression=%d?",
-                          path_of(d), (void *)value_json(d->old), (void *)value_json(d->new),
+                          d->any->path, (void *)value_json(d->old), (void *)value_json(d->new),
                           exact_of(d), ratio_of(d), metric_verdicts[d->verdict], d->regression));
     }
     return figures;
@@ -106,7 +100,7 @@ static void print_difference(const struct difference *d, bool exact,
     print_value(d->new);
     if (exact) print_number(" %*.6g", 13, exact_of(d));
     print_number(" %*.4g", 9, ratio_of(d));
-    printf("  %s\n", path_of(d));
+    printf("  %s\n", d->any->path);
 }
 
 /* Prints the verdict and its reason in one line. */

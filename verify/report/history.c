@@ -283,9 +283,8 @@ static void add_changes(const struct metric *metric, const json_t *nights, json_
         value[n] = order ? now : log(fmax(now, metric->floor));
         night[n++] = i;
     }
-    const size_t count = trend_changes(
-        n, value, order ? fmax(order_noise, metric->noise) : fmax(error_noise, metric->noise),
-        found, HISTORY_NIGHTS_MAX);
+    const double noise = fmax(order ? order_noise : error_noise, metric->noise);
+    const size_t count = trend_changes(n, value, noise, found);
     for (size_t c = 0; c < count; c++)
         json_array_append_new(changes, change_json(metric, nights, night, &found[c]));
 }

@@ -33,8 +33,6 @@ enum status history_append(const json_t *results, const char *path, struct error
 /* Change points of a figure's history, from medians: a single odd night is none, unless it is the
  * last one (new changes must show at once); a lasting change of level is one. */
 
-enum { TREND_NIGHTS_MAX = 400 };
-
 struct trend_change {
     size_t at;            /* first night of the new level */
     double before, after; /* medians of the nights on either side, at most TREND_WINDOW each */
@@ -42,9 +40,7 @@ struct trend_change {
 
 #define TREND_WINDOW 5
 
-/* value: n <= TREND_NIGHTS_MAX nights, oldest first, all finite (logarithms of figures with
- * relative noise). At a change point the medians differ by more than noise plus three times the
- * scatter (1.4826 median |residual|) about them. Writes them in rising order; returns their number,
- * <= most. */
-size_t trend_changes(size_t n, const double *value, double noise, struct trend_change *changes,
-                     size_t most);
+/* value: n nights, oldest first, all finite (logarithms of figures with relative noise). At a
+ * change point the medians differ by more than noise plus three times the scatter (1.4826 median
+ * |residual|) about them. Writes them in rising order, less than n; returns their number. */
+size_t trend_changes(size_t n, const double *value, double noise, struct trend_change *changes);

@@ -16,9 +16,8 @@ enum { PATH_MAX_LENGTH = 1536, NAME_MAX_LENGTH = 900, KEYS_MAX = 64 };
 static const double check_floors = 10;
 
 /* Members without figures: requests and how results are drawn. */
-static const char *const closed[] = {"machine",  "profile",  "plan",        "settings",
-                                     "gate",     "spread",   "pairwise",    "history",
-                                     "failures", "excluded", "through_time"};
+static const char *const closed[] = {"machine",  "profile", "plan",     "settings", "gate",
+                                     "pairwise", "history", "failures", "excluded", "through_time"};
 
 /* Members that identify an entry of a list, in this order: words, then numbers. */
 static const char *const words[] = {
@@ -103,13 +102,10 @@ static bool is_headline(const struct place *at, const json_t *parent, const char
 {
     static const char *const minor[] = {"l1_whole",      "l2",    "linf",
                                         "particle_mean", "class", "suspicion"};
-    static const char *const elsewhere[] = {"kernels", "verify", "budget", "budgets"};
     const char *norm = json_string_value(json_object_get(parent, "norm"));
-    bool headline = !one_of(name, minor, LENGTH(minor)) && (!norm || !strcmp(norm, "l1")) &&
-                    metric->kind != READING_NEUTRAL;
-    for (size_t i = 0; i < LENGTH(elsewhere); i++)
-        headline = headline && !metric_passes(at->path, elsewhere[i]);
-    return headline;
+    return !one_of(name, minor, LENGTH(minor)) && (!norm || !strcmp(norm, "l1")) &&
+           metric->kind != READING_NEUTRAL &&
+           !metric_passes(at->path, "kernels verify budget budgets");
 }
 
 /* Takes the member `name` of parent. */
@@ -364,9 +360,8 @@ enum status metric_collect(const json_t *document, struct metrics *metrics, stru
         qsort(metrics->list, metrics->count, sizeof *metrics->list, by_path);
         join_alike(metrics);
     }
-    if (!metrics->failed && metrics->count) {
+    if (!metrics->failed && metrics->count)
         qsort(metrics->list, metrics->count, sizeof *metrics->list, by_path);
-    }
     if (!metrics->failed) return STATUS_OK;
     metric_free(metrics);
     return error_set(error, STATUS_ENVIRONMENT, "no memory for the figures of a document");

@@ -66,9 +66,10 @@ enum metric_verdict metric_judge(const struct metric *old, const struct metric *
 bool metric_worse(const struct metric *a, const struct metric *b);
 
 struct metric_rule {
-    /* inside: a member on the path to the figure, "" for any. name: the figure's own; "*x" matches
-     * names that end in x, "x*" those that begin with x. The first matching rule applies. */
-    const char *inside, *name;
+    /* Words separated by blanks. inside: members of which one is on the path to the figure, "" for
+     * any path. names: of the figure; "*x" matches names that end in x, "x*" those that begin with
+     * x. The first matching rule applies. */
+    const char *inside, *names;
     enum { RULE_FIGURE, RULE_LEFT_OUT } use; /* left out: context, or judged elsewhere */
     enum metric_kind kind;
     double noise, floor;
@@ -77,5 +78,5 @@ struct metric_rule {
 /* The rule for this member of the object at path; NULL: none. */
 const struct metric_rule *metric_rule(const char *path, const char *name);
 
-/* True if name is a component of the path outside brackets. */
-bool metric_passes(const char *path, const char *name);
+/* True if one of these names, separated by blanks, is a component of the path outside brackets. */
+bool metric_passes(const char *path, const char *names);

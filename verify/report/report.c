@@ -14,7 +14,6 @@
 #include "clock.h"
 #include "gates.h"
 #include "list.h"
-#include "pairing.h"
 #include "problem_list.h"
 #include "report_piece.h"
 #include "result.h"
@@ -77,16 +76,11 @@ struct report {
 
 /* ---- plan ---- */
 
-static const struct scheme_label *scheme_of(const struct reported *of, int s)
-{
-    return &of->entries[s];
-}
-
 /* The case with the scheme's keys. In a report of other codes our own schemes are not judged. */
 static enum status prepare(const struct reported *of, int s, struct run_settings *settings,
                            struct error *error)
 {
-    const struct scheme_label *scheme = scheme_of(of, s);
+    const struct scheme_label *scheme = &of->entries[s];
     const struct run_settings *other = of->entries[0].other;
     if (!other && run_prepare(settings, of->name, 0, NULL, error)) return error->status;
     if (other) *settings = scheme->other ? *scheme->other : *other;
@@ -110,7 +104,7 @@ static void take_ladder(const struct report *report, struct reported *of, int s)
         study->ladder[(*n)++] = file->night[i];
     if (report->nightly && !file->night_count)
         study->ladder[*n] = study->ladder[*n - 1] << file->dimension, ++*n;
-    if (codes ? scheme_of(of, s)->other != NULL : !day && !report->nightly) return;
+    if (codes ? of->entries[s].other != NULL : !day && !report->nightly) return;
     int used = 0;
     for (size_t i = 0; i < *n; i++)
         used += sprintf(of->more[s] + used, "%s%zu", i ? "," : " --n ", study->ladder[i]);
@@ -309,20 +303,12 @@ static void describe(const char *command, const struct reported *of, int s, cons
                      json_t *document)
 {
     struct buffer reproduce = {0};
-    const struct scheme_label *scheme = scheme_of(of, s);
+    const struct scheme_label *scheme = &of->entries[s];
     buffer_format(&reproduce, "sphproof %s %s%s%s%s%s", command, of->name, more,
                   *scheme->keys ? " " : "", scheme->keys, scheme->option ? scheme->option : "");
     result_add(document, "label=%s reproduce=%s", scheme->label,
                reproduce.data ? reproduce.data : "");
     buffer_free(&reproduce);
-}
-
-static void describe_run(const struct reported *of, int s, json_t *document)
-{
-    char size[40] = "";
-    if (*of->size) snprintf(size, sizeof size, " %s", of->size);
-    describe("run", of, s, size, document);
-    result_add(document, "dimension=%d", of->dimension);
 }
 
 static json_t *study_document(const struct reported *of, int s)
@@ -378,58 +364,49 @@ static json_t *run_document(const struct report *report, const struct report_pie
 {
     const struct reported *of = &report->cases[piece->case_number];
     json_t *document = json_copy(job->document);
-    describe_run(of, piece->scheme, document);
+    char size[40] = "";
+    if (*of->size) snprintf(size, sizeof size, " %s", of->size);
+    describe("run", of, piece->scheme, size, document);
+    result_add(document, "dimension=%d", of->dimension);
     if (of->dimension > 1 && strcmp(value_text(document, "status"), "ok") == 0)
         add_gates(of, piece, document);
     return document;
 }
 
+static void add_checks_of(const struct report *report, json_t *results, json_t *part)
+{
+    json_t *verify = json_object_get(results, "verify");
+    if (!verify) {
+        json_object_set_new(results, "verify", verify = result_new("verify"));
+        result_add(verify, "reproduce=%s",
+                   report->nightly ? "sphproof verify --slow" : "sphproof verify");
+    }
+    report_piece_join(verify, part);
+}
+
 static void add_documents(struct report *report, json_t *results)
 {
-    json_t *runs = json_array(), *kernels = json_array(), *bench = json_array(),
-           *skips = json_array(), *autopsies = json_array(), *verify = NULL;
+    static const char *const lists[] = {[REPORT_RUN] = "runs",
+                                        [REPORT_KERNEL] = "kernels",
+                                        [REPORT_BENCH] = "bench",
+                                        [REPORT_SKIPS] = "skips",
+                                        [REPORT_AUTOPSY] = "autopsies"};
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
+        if (lists[i]) json_object_set_new(results, lists[i], json_array());
     for (size_t k = 0; k < report->piece_count; k++) {
         const struct report_piece *piece = report->pieces[k];
         const struct pool_job *job = &report->pool.jobs[piece->job];
-        if (!job->document) {
+        if (!job->document)
             add_trouble(results, piece->where, job->error.message);
-            continue;
-        }
-        switch (piece->kind) {
-        case REPORT_RUN:
-            /* a copy: schemes with equal settings share the job */
-            json_array_append_new(runs, run_document(report, piece, job));
-            break;
-        case REPORT_KERNEL:
-            json_array_append(kernels, job->document);
-            break;
-        case REPORT_LEAGUE:
+        else if (piece->kind == REPORT_LEAGUE)
             json_object_set(results, "gradients", job->document);
-            break;
-        case REPORT_BENCH:
-            json_array_append(bench, job->document);
-            break;
-        case REPORT_SKIPS:
-            json_array_append(skips, job->document);
-            break;
-        case REPORT_AUTOPSY:
-            json_array_append(autopsies, job->document);
-            break;
-        case REPORT_CHECKS:
-            if (!verify) {
-                json_object_set_new(results, "verify", verify = result_new("verify"));
-                result_add(verify, "reproduce=%s",
-                           report->nightly ? "sphproof verify --slow" : "sphproof verify");
-            }
-            report_piece_join(verify, job->document);
-            break;
-        }
+        else if (piece->kind == REPORT_CHECKS)
+            add_checks_of(report, results, job->document);
+        else /* of a run a copy: schemes with equal settings share the job */
+            json_array_append_new(json_object_get(results, lists[piece->kind]),
+                                  piece->kind == REPORT_RUN ? run_document(report, piece, job)
+                                                            : json_incref(job->document));
     }
-    json_object_set_new(results, "runs", runs);
-    json_object_set_new(results, "kernels", kernels);
-    json_object_set_new(results, "bench", bench);
-    json_object_set_new(results, "skips", skips);
-    json_object_set_new(results, "autopsies", autopsies);
 }
 
 /* Adds FOLDER/NAME.json, which a script may have written. */
@@ -560,8 +537,8 @@ static enum status add_codes(struct report *report, struct error *error)
     return STATUS_OK;
 }
 
-static enum status create(struct report **report, const struct report_code *codes, size_t count,
-                          bool nightly, struct error *error)
+enum status report_create(bool nightly, const struct report_code *codes, size_t count,
+                          struct report **report, struct error *error)
 {
     *report = calloc(1, sizeof **report);
     if (!*report) return error_set(error, STATUS_ENVIRONMENT, "no memory for a report");
@@ -576,17 +553,6 @@ static enum status create(struct report **report, const struct report_code *code
         *report = NULL;
     }
     return status;
-}
-
-enum status report_create(enum report_mode mode, struct report **report, struct error *error)
-{
-    return create(report, NULL, 0, mode == REPORT_NIGHTLY, error);
-}
-
-enum status report_create_codes(const struct report_code *codes, size_t count,
-                                struct report **report, struct error *error)
-{
-    return create(report, codes, count, false, error);
 }
 
 struct pool *report_pool(struct report *report)

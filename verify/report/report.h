@@ -4,12 +4,11 @@
 #pragma once
 
 #include <jansson.h>
+#include <stdbool.h>
 
 #include "pool.h"
 #include "run.h"
 #include "status.h"
-
-enum report_mode { REPORT_QUICK, REPORT_NIGHTLY };
 
 /* Another code: its name, the command-line option that selects it, and the cases that it can run.
  * Nothing is owned. */
@@ -22,14 +21,11 @@ enum { REPORT_CODES_MAX = 5 };
 
 struct report;
 
-/* Creates a report of this mode with all its jobs in a pool; nothing has run. Owned by the
- * caller. */
-enum status report_create(enum report_mode mode, struct report **report, struct error *error);
-
-/* Likewise for other codes, REPORT_CODES_MAX at most: all cases that they can run, beside our
- * default scheme and textbook SPH. */
-enum status report_create_codes(const struct report_code *codes, size_t count,
-                                struct report **report, struct error *error);
+/* Creates a report with all its jobs in a pool; nothing has run. codes: NULL for our own program,
+ * or REPORT_CODES_MAX other codes at most: all cases that they can run, beside our default scheme
+ * and textbook SPH. Owned by the caller. */
+enum status report_create(bool nightly, const struct report_code *codes, size_t count,
+                          struct report **report, struct error *error);
 
 /* The pool to run; owned by the report. */
 struct pool *report_pool(struct report *report);

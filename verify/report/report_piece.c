@@ -167,37 +167,41 @@ static enum status compute_autopsy(const struct report_piece *piece, json_t **do
     return STATUS_OK;
 }
 
+static const struct {
+    const char *name;
+    double weight; /* estimated seconds; runs and checks have their own */
+    enum status (*compute)(const struct report_piece *, json_t **, struct error *);
+} kinds[] = {
+    [REPORT_RUN] = {"profile", 0, compute_run},
+    [REPORT_CHECKS] = {"checks", 0, compute_checks},
+    [REPORT_KERNEL] = {"kernel", 0.1, compute_kernel},
+    [REPORT_LEAGUE] = {"league", 2, compute_league},
+    [REPORT_BENCH] = {"work-precision", 5, compute_bench},
+    [REPORT_SKIPS] = {"skips", 3, compute_skips},
+    [REPORT_AUTOPSY] = {"autopsy", 4, compute_autopsy},
+};
+
 static enum status compute(const void *context, json_t **document, struct error *error)
 {
-    static enum status (*const computes[])(const struct report_piece *, json_t **,
-                                           struct error *) = {
-        [REPORT_RUN] = compute_run,         [REPORT_CHECKS] = compute_checks,
-        [REPORT_KERNEL] = compute_kernel,   [REPORT_LEAGUE] = compute_league,
-        [REPORT_BENCH] = compute_bench,     [REPORT_SKIPS] = compute_skips,
-        [REPORT_AUTOPSY] = compute_autopsy,
-    };
     const struct report_piece *piece = context;
-    return computes[piece->kind](piece, document, error);
+    return kinds[piece->kind].compute(piece, document, error);
 }
 
 /* Estimated seconds of a piece that is not a run. */
 static double weight_of(const struct report_piece *piece)
 {
-    static const double weights[] = {0, 0, 0.1, 2, 5, 3, 4};
     const struct suite_choice choice = {
         .groups = &piece->where, .group_count = 1, .slow = piece->slow};
-    double checks = 0;
+    double weight = kinds[piece->kind].weight;
     for (size_t i = 0; piece->kind == REPORT_CHECKS && i < check_registry_count; i++)
-        if (suite_chosen(check_registry[i], &choice)) checks += suite_cost(check_registry[i]);
-    return weights[piece->kind] + checks;
+        if (suite_chosen(check_registry[i], &choice)) weight += suite_cost(check_registry[i]);
+    return weight;
 }
 
 enum status report_piece_add(struct pool *pool, struct report_piece *piece, struct error *error)
 {
-    static const char *const names[] = {"profile",        "checks", "kernel", "league",
-                                        "work-precision", "skips",  "autopsy"};
     char name[128], *run = NULL, *key = name;
-    snprintf(name, sizeof name, "%s of %s%s%s%s%s", names[piece->kind], piece->where,
+    snprintf(name, sizeof name, "%s of %s%s%s%s%s", kinds[piece->kind].name, piece->where,
              *piece->keys ? " " : "", piece->keys, piece->sizes ? " " : "",
              piece->sizes ? piece->sizes : "");
     if (piece->kind == REPORT_CHECKS && piece->slow) strcat(name, ", slow ones too");
@@ -209,11 +213,11 @@ enum status report_piece_add(struct pool *pool, struct report_piece *piece, stru
         return error->status;
     const double weight = run ? run_job_weight(&piece->run) : weight_of(piece);
     piece->job = pool_add(pool, name, key, weight, compute, piece);
-    if (piece->job != (size_t)-1) pool->jobs[piece->job].fickle = piece->run.asked.external != NULL;
     free(run);
-    return piece->job == (size_t)-1
-               ? error_set(error, STATUS_ENVIRONMENT, "no memory for a piece of the report")
-               : STATUS_OK;
+    if (piece->job == (size_t)-1)
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for a piece of the report");
+    pool->jobs[piece->job].fickle = piece->run.asked.external != NULL;
+    return STATUS_OK;
 }
 
 /* ---- joining checks ---- */

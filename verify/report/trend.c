@@ -47,35 +47,26 @@ static struct split try_split(const double *value, size_t first, size_t end, siz
     return split;
 }
 
-struct search {
-    const double *value;
-    double noise;
-    struct trend_change *changes;
-    size_t count, most;
-};
-
-/* Splits at the clearest change and searches both sides separately, so that levels do not mix. */
-static void search_part(struct search *search, size_t first, size_t end)
+/* Splits first..end - 1 at the clearest change and searches both sides separately, so that levels
+ * do not mix. Returns the number of changes. */
+static size_t search(const double *value, size_t first, size_t end, double noise,
+                     struct trend_change *changes)
 {
     struct split best = {.accepted = false};
     size_t at = 0;
     for (size_t k = first + 1; k < end; k++) {
-        const struct split split = try_split(search->value, first, end, k, search->noise);
+        const struct split split = try_split(value, first, end, k, noise);
         if (!split.accepted || (best.accepted && !(split.merit > best.merit))) continue;
         best = split;
         at = k;
     }
-    if (!best.accepted) return;
-    search_part(search, first, at);
-    if (search->count < search->most)
-        search->changes[search->count++] = (struct trend_change){at, best.before, best.after};
-    search_part(search, at, end);
+    if (!best.accepted) return 0;
+    size_t count = search(value, first, at, noise, changes);
+    changes[count++] = (struct trend_change){at, best.before, best.after};
+    return count + search(value, at, end, noise, changes + count);
 }
 
-size_t trend_changes(size_t n, const double *value, double noise, struct trend_change *changes,
-                     size_t most)
+size_t trend_changes(size_t n, const double *value, double noise, struct trend_change *changes)
 {
-    struct search search = {.value = value, .noise = noise, .changes = changes, .most = most};
-    search_part(&search, 0, n);
-    return search.count;
+    return search(value, 0, n, noise, changes);
 }

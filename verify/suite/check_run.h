@@ -20,3 +20,6 @@ struct check_run {
     bool no_memory;
     bool mutant, rejected;
 };
+
+/* Frees what the run still owns. */
+void check_run_free(struct check_run *run);

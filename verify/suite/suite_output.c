@@ -10,7 +10,7 @@
 
 #include "findings.h"
 #include "output.h"
-#include "plot.h"
+#include "picture.h"
 #include "result.h"
 
 enum { SERIES_SHOWN = 8, PATH_LENGTH = 1024 };
@@ -277,16 +277,7 @@ static bool plot_failure(const struct suite *suite, const struct tally *t, const
                               .show_title = true,
                               .panels = curves ? panels : panels + 1,
                               .panel_count = curves ? 2 : 1};
-    char *bytes = NULL, message[256];
-    size_t size;
-    struct output output;
-    bool drawn = plot_draw(&plot, PLOT_SVG, &bytes, &size, message, sizeof message) == PLOT_OK &&
-                 output_open(&output, path, NULL) == STATUS_OK;
-    if (drawn) {
-        fwrite(bytes, 1, size, output.stream);
-        drawn = output_close(&output, NULL) == STATUS_OK;
-    }
-    free(bytes);
+    const bool drawn = picture_write(&plot, path, NULL) == STATUS_OK;
     free(values);
     return drawn;
 }

@@ -278,7 +278,7 @@ static void compute_report(const char *into)
     snprintf(drawn, sizeof drawn, "%.2000s/../drawn", folder);
     json_t *template = read_template(drawn, "pieces.json");
     struct drawing draw = {0, template};
-    assert_int_equal(report_create(REPORT_QUICK, &report, &error), STATUS_OK);
+    assert_int_equal(report_create(false, NULL, 0, &report, &error), STATUS_OK);
     assert_int_equal(cache_open(&cache, into, false, &error), STATUS_OK);
     drawn_pieces(&draw, report_pool(report), 20);
     for (size_t i = 0; i < report_pool(report)->count; i++) {

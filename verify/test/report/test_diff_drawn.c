@@ -187,18 +187,16 @@ TEST(series)
     digests_open(&kept, test_word(1), "series.txt");
     for (size_t k = 0; k < SERIES; k++) {
         struct drawing draw = {k, NULL};
-        struct trend_change changes[8];
+        struct trend_change changes[64];
         double value[64], level = 0;
-        const size_t n = drawn_below(&draw, k % 2 ? 12 : 64),
-                     most = k % 7 ? 8 : drawn_below(&draw, 3);
+        const size_t n = drawn_below(&draw, k % 2 ? 12 : 64);
         const double scatter = (double)drawn_below(&draw, 3) / 64;
         for (size_t i = 0; i < n; i++) {
             if (!drawn_below(&draw, 6)) level += (double)drawn_below(&draw, 33) / 16 - 1;
             value[i] = level + scatter * (double)drawn_below(&draw, 9);
             if (!drawn_below(&draw, 15)) value[i] += 1;
         }
-        const size_t count =
-            trend_changes(n, value, (double)drawn_below(&draw, 4) / 8, changes, most);
+        const size_t count = trend_changes(n, value, (double)drawn_below(&draw, 4) / 8, changes);
         for (size_t c = 0; c < count; c++)
             buffer_format(&text, "%zu %.10g %.10g\n", changes[c].at, changes[c].before,
                           changes[c].after);

@@ -25,6 +25,7 @@ static const struct kind {
     {"normalisation", NULL, "1", "1.5", VERDICT_WORSE, VERDICT_SAME, false},
     {"p_star", NULL, "1", "2", VERDICT_INCOMPARABLE, VERDICT_INCOMPARABLE, false},
     {"signal", NULL, "1", "\"nan\"", VERDICT_INCOMPARABLE, VERDICT_INCOMPARABLE, false},
+    {"regularity.spread", "regularity", "0.1", "0.3", VERDICT_WORSE, VERDICT_BETTER, false},
     {"outcome", NULL, "\"ok\"", "\"wrong\"", VERDICT_WORSE, VERDICT_BETTER, true},
     {"state", NULL, "\"pass\"", "\"none\"", VERDICT_WORSE, VERDICT_BETTER, true},
     {"state", NULL, "\"pass\"", "\"skip\"", VERDICT_WORSE, VERDICT_BETTER, true},
@@ -303,11 +304,6 @@ TEST(totals_and_parts)
 
 /* ---- lists ---- */
 
-static const char *path_of(const struct difference *d)
-{
-    return d->new ? d->new->path : d->old->path;
-}
-
 /* Two of the same rank, and one without rank (0). */
 static const struct {
     const char *group, *name;
@@ -371,9 +367,10 @@ TEST(diffs_in_both_directions)
         assert_int_equal(one.count, other.count);
         size_t verdicts[READING_VERDICTS] = {0}, regressions = 0, compared = 0;
         for (size_t i = 0; i < one.count; i++) {
-            const struct difference *d = &one.list[i], *e = find(&other, path_of(d));
+            const struct difference *d = &one.list[i], *e = find(&other, d->any->path);
             assert_non_null(e);
-            if (strcmp(path_of(d), "normalisation")) assert_int_equal(e->verdict, back[d->verdict]);
+            if (strcmp(d->any->path, "normalisation"))
+                assert_int_equal(e->verdict, back[d->verdict]);
             verdicts[d->verdict]++;
             regressions += d->regression;
             compared += d->old && d->new &&

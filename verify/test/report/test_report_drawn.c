@@ -8,7 +8,6 @@
 #include "claims.h"
 #include "drawn_pieces.h"
 #include "own_folder.h"
-#include "pairing.h"
 #include "report.h"
 #include "result.h"
 #include "value.h"
@@ -215,12 +214,12 @@ static void compare_plan(struct digests *kept, size_t number, struct report *rep
     compare(kept, "plan", number, &text);
 }
 
-static struct report *planned(struct digests *kept, enum report_mode mode)
+static struct report *planned(struct digests *kept, bool nightly)
 {
     struct error error = {0};
     struct report *report;
-    if (report_create(mode, &report, &error)) fail_msg("%s", error.message);
-    compare_plan(kept, mode == REPORT_NIGHTLY, report);
+    if (report_create(nightly, NULL, 0, &report, &error)) fail_msg("%s", error.message);
+    compare_plan(kept, nightly, report);
     return report;
 }
 
@@ -245,7 +244,7 @@ static void report_codes(struct digests *kept, struct drawing *draw)
         buffer_format(&command, "%s%zu", i ? "," : "", cases[0].file.ladder[i]);
     }
     cases[2].file.ladder_count = 0;
-    if (report_create_codes(codes, 2, &report, &error)) fail_msg("%s", error.message);
+    if (report_create(false, codes, 2, &report, &error)) fail_msg("%s", error.message);
     compare_plan(kept, 2, report);
     drawn_pieces(draw, report_pool(report), 150);
     if (report_judge(report, NULL, &results, &error)) fail_msg("%s", error.message);
@@ -258,7 +257,7 @@ static void report_codes(struct digests *kept, struct drawing *draw)
     json_decref(results);
     report_destroy(report);
     cases[3].file.ladder[0] = 1;
-    assert_int_equal(report_create_codes(codes, 2, &report, &error), STATUS_BAD_INPUT);
+    assert_int_equal(report_create(false, codes, 2, &report, &error), STATUS_BAD_INPUT);
     assert_null(report);
     assert_non_null(strstr(error.message, "n=1: allowed: "));
 }
@@ -281,7 +280,7 @@ TEST(equal_schemes)
     struct error error = {0};
     const char *before = "";
     size_t k, later = 0;
-    if (report_create(REPORT_QUICK, &report, &error)) fail_msg("%s", error.message);
+    if (report_create(false, NULL, 0, &report, &error)) fail_msg("%s", error.message);
     const struct pool *pool = report_pool(report);
     drawn_pieces(&draw, report_pool(report), SIZE_MAX);
     for (size_t i = 0; i < pool->count; i++)
@@ -315,7 +314,7 @@ TEST(reports)
     write_text("faults.json",
                "{\"schema\": \"sphproof/1\", \"command\": \"faults\", \"faults\": []}");
     write_text("score.json", "{");
-    struct report *report = planned(&kept, REPORT_QUICK);
+    struct report *report = planned(&kept, false);
     struct pool *pool = report_pool(report);
     compute_some(pool);
     drawn_pieces(&draw, pool, 150);
@@ -341,7 +340,7 @@ TEST(reports)
     assert_int_equal(report_judge(report, NULL, &results, &error), STATUS_BAD_INPUT);
     assert_null(results);
     report_destroy(report);
-    report_destroy(planned(&kept, REPORT_NIGHTLY)); /* judged as the daily one */
+    report_destroy(planned(&kept, true)); /* judged as the daily one */
     report_codes(&kept, &draw);
     digests_close(&kept);
     json_decref(template);

@@ -17,7 +17,7 @@ TEST(ranges_of_curves)
                 {{4, 3, NAN}, 1.9, 4.1},
                 {{3, INFINITY, 3}, 1.9, 4.1},
                 {{-6, 3, 3}, -6.5, 4.5}};
-    struct movie_range range = {0};
+    struct movie_range range = {INFINITY, -INFINITY};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct plot_series series[] = {{.n = 3, .x = x, .y = rows[k].y}, {.n = 3, .x = x}};
         struct plot_panel panel = {.series = series, .series_count = 2}, given = panel;
@@ -44,7 +44,7 @@ TEST(ranges_of_maps)
                 {{1, NAN, 0.5, 0.25}, false, -2 * (1 + 1.1e-6), 1},
                 {{1, 1, 1, 1}, true, -2 * (1 + 1.1e-6), 2 * (1 + 1.1e-6)},
                 {{1, 3, 1, 1}, true, -3, 3}};
-    struct movie_range range = {0};
+    struct movie_range range = {INFINITY, -INFINITY};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct plot_heat of = {
             .nx = 2, .ny = 2, .z = rows[k].z, .diverging = rows[k].diverging};

@@ -24,13 +24,13 @@ static const double x[] = {100, 200, 400, 800}, y[] = {1e-2, 5.1e-3, NAN, 1.3e-3
 static const struct plot_series series[] = {
     {.label = "a & <b> 'c'", .kind = PLOT_LINES_POINTS, .n = 4, .x = x, .y = y},
     {.label = "band", .kind = PLOT_BAND, .n = 4, .x = x, .low = low, .high = high},
-    {.label = "bars", .kind = PLOT_ERROR_BARS, .n = 4, .x = x, .y = low, .low = low, .high = high},
+    {.label = "bars", .kind = PLOT_BARS, .n = 4, .x = x, .low = low, .high = high, .size = 1.1},
     {.label = "nothing", .kind = PLOT_LINES, .n = 0, .x = x, .y = y},
 };
 static const struct plot_slope slope = {100, 800, 1e-2, -1, "first order"};
 static const struct plot_mark mark = {300, false, "here"};
 static const struct plot_heat heat = {
-    .nx = 4, .ny = 1, .x = x, .y = low, .z = high, .label = "rate", .log = true};
+    .nx = 4, .ny = 1, .x = x, .y = low, .z = high, .label = "rate"};
 static const struct plot_panel panels[] = {
     {.y_label = "L1",
      .x_log = true,

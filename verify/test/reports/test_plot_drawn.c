@@ -54,7 +54,6 @@ static void centres(struct drawing *draw, double *values, size_t n)
 
 static void draw_heat(struct drawing *draw, struct drawn *d, size_t p)
 {
-    static const char *const names[] = {"good", "it's bad", "ünklar"};
     struct plot_heat *heat = &d->heat[p];
     *heat = (struct plot_heat){.nx = 1 + drawn_below(draw, 4), .ny = 1 + drawn_below(draw, 4)};
     double *x = d->values[p][SERIES][0], *y = d->values[p][SERIES][1];
@@ -63,9 +62,8 @@ static void draw_heat(struct drawing *draw, struct drawn *d, size_t p)
     numbers(draw, d->z[p], heat->nx * heat->ny);
     heat->x = x, heat->y = y, heat->z = d->z[p];
     heat->label = words(draw);
-    heat->log = toss(draw, 4), heat->image = toss(draw, 2), heat->diverging = toss(draw, 4);
+    heat->image = toss(draw, 2), heat->diverging = toss(draw, 4);
     if (toss(draw, 3)) heat->low = -drawn_real(draw), heat->high = drawn_real(draw);
-    if (toss(draw, 3)) heat->categories = names, heat->category_count = 1 + drawn_below(draw, 3);
 }
 
 static void draw_series(struct drawing *draw, struct drawn *d, size_t p, size_t k)
@@ -84,7 +82,7 @@ static void draw_series(struct drawing *draw, struct drawn *d, size_t p, size_t 
                                            .color = (int)drawn_below(draw, 10) - 1,
                                            .dashed = toss(draw, 3),
                                            .size = dot_sizes[drawn_below(draw, 5)]};
-    if (d->series[p][k].kind == PLOT_BAND && toss(draw, 2)) d->series[p][k].y = NULL;
+    if (d->series[p][k].kind >= PLOT_BAND && toss(draw, 2)) d->series[p][k].y = NULL;
     if (d->series[p][k].color > PLOT_COLORS) d->series[p][k].color = PLOT_AUTO;
 }
 
@@ -126,7 +124,8 @@ static void draw_plot(struct drawing *draw, struct drawn *d, struct plot *plot)
                 1 + (double)k, 16, (double)(1 + drawn_below(draw, 9)), -1 - (double)k, words(draw)};
         for (size_t k = 0; k < panel->mark_count; k++)
             d->marks[p][k] = (struct plot_mark){drawn_real(draw), toss(draw, 2), words(draw)};
-        if (toss(draw, 3)) draw_heat(draw, d, p), panel->heat = &d->heat[p];
+        if (!panel->x_log && !panel->y_log && !toss(draw, 3))
+            draw_heat(draw, d, p), panel->heat = &d->heat[p];
     }
 }
 

@@ -8,17 +8,6 @@
 
 static const struct check check = {.group = "a", .name = "check", .property = "p"};
 
-static void clear(struct check_run *run)
-{
-    for (size_t i = 0; i < run->figure_count; i++) free(run->figures[i].subject);
-    for (size_t i = 0; i < run->subject_count; i++) free(run->subjects[i].copy);
-    for (size_t i = 0; i < run->series_count; i++)
-        free(run->series[i].label), free(run->series[i].x), free(run->series[i].y);
-    free(run->figures);
-    free(run->subjects);
-    free(run->series);
-}
-
 TEST(figures_of_a_check)
 {
     struct check_run run = {.check = &check, .began = clock_wall() - 1000};
@@ -47,7 +36,7 @@ TEST(figures_of_a_check)
         /* the time of a figure begins at the end of the previous figure */
         near_inside(f->seconds, k ? 0 : 1000, k ? 100 : 1100);
     }
-    clear(&run);
+    check_run_free(&run);
 }
 
 /* A mutant that has failed once is decided; the correct subject never is. */
@@ -62,6 +51,6 @@ TEST(mutants_that_are_decided)
         check_measure(&run, 0, 1, 0, "well again");
         check_skip(&run, "skipped");
         assert_int_equal(check_decided(&run), mutant);
-        clear(&run);
+        check_run_free(&run);
     }
 }
