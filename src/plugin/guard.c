@@ -15,10 +15,8 @@
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
 
+#include "clock.h"
 #include "guard_trace.h"
 #include "output.h"
 #include "result.h"
@@ -64,9 +62,7 @@ static void prepare(pid_t parent, int printed)
     const struct rlimit no_core = {0, 0};
     const struct itimerval period = {{0, 1000000 / TICKS}, {0, 1000000 / TICKS}};
     setpgid(0, 0);
-#ifdef __linux__
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-#endif
+    guard_end_with_parent();
     if (getppid() != parent) _exit(0); /* the parent has already ended */
     for (size_t i = 0; i < sizeof usual / sizeof *usual; i++) signal(usual[i], SIG_DFL);
     setrlimit(RLIMIT_CORE, &no_core);
@@ -136,13 +132,6 @@ static bool drain(struct stream *stream)
     return n > 0;
 }
 
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 enum ending { ENDED, TOO_LATE, TOO_MUCH };
 enum { STREAM_MAX = 1 << 26 }; /* bytes of an answer, and of what is printed */
 
@@ -150,7 +139,7 @@ enum { STREAM_MAX = 1 << 26 }; /* bytes of an answer, and of what is printed */
 static enum ending listen_to(pid_t pid, double limit, struct stream *streams, int *outcome)
 {
     enum { WAIT_MS = 20 };
-    const double until = now() + limit;
+    const double until = clock_wall() + limit;
     enum ending ending = ENDED;
     for (bool over = false; !over;) {
         struct pollfd polls[2];
@@ -164,7 +153,7 @@ static enum ending listen_to(pid_t pid, double limit, struct stream *streams, in
         for (int i = 0; i < 2; i++)
             while (drain(&streams[i]) && streams[i].seen <= STREAM_MAX) continue;
         over = done == pid && !WIFSTOPPED(*outcome);
-        const bool much = streams[1].seen > STREAM_MAX, late = now() >= until;
+        const bool much = streams[1].seen > STREAM_MAX, late = clock_wall() >= until;
         if (over || (done != pid && !much && !late)) continue;
         ending = done == pid ? ENDED : much ? TOO_MUCH : TOO_LATE; /* ENDED: it was stopped */
         kill(pid, SIGKILL);

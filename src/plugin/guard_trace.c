@@ -4,10 +4,14 @@
 #include <errno.h>
 #include <math.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 
 #include "guard.h"
 
@@ -44,6 +48,13 @@ void guard_back(void)
 void guard_begun(void)
 {
     if (guard_watched) guard_watched->begun = 1;
+}
+
+void guard_end_with_parent(void)
+{
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
 }
 
 /* Called in a new process, which has one thread. */

@@ -34,5 +34,8 @@ extern struct watch *guard_watched;
 /* Creates the shared memory; unmap it after use. NULL: no memory. */
 struct watch *guard_watch_make(struct error *error);
 
+/* Makes this process end when its parent ends. */
+void guard_end_with_parent(void);
+
 /* " in FUNCTION(a, b, dim), call 7", " after ..." or "". */
 void guard_place(const struct trace *seen, char *text, size_t size);

@@ -7,12 +7,9 @@
 #include <string.h>
 #include <sys/types.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
 
+#include "clock.h"
 #include "guard.h"
 #include "guard_trace.h"
 
@@ -22,13 +19,6 @@ static volatile sig_atomic_t watched_process;
 static void pass_on(int number)
 {
     kill((pid_t)watched_process, number);
-}
-
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
 static void say(const struct watch *watch, const struct trace *seen, const char *what)
@@ -78,7 +68,7 @@ struct calls {
 
 static const struct trace *find_stuck(const struct watch *watch, struct calls *calls)
 {
-    const double time = now();
+    const double time = clock_wall();
     for (int t = 0; t < GUARD_TRACES; t++) {
         const struct trace *seen = &watch->traces[t];
         if (!seen->inside || seen->calls != calls->number[t]) {
@@ -127,14 +117,6 @@ static _Noreturn void watch_over(const struct watch *watch, pid_t pid, int pipe)
     }
 }
 
-/* Makes this process end when its parent ends. */
-static void end_with_parent(void)
-{
-#ifdef __linux__
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-#endif
-}
-
 enum status guard_watch(const char *what, const char *path, struct error *error)
 {
     static struct watch *mine;
@@ -155,9 +137,9 @@ enum status guard_watch(const char *what, const char *path, struct error *error)
         watch_over(mine, pid, ends[0]);
     }
     close(ends[0]);
-    end_with_parent();
+    guard_end_with_parent();
     if (getppid() != parent) _exit(STATUS_ENVIRONMENT);
-    pthread_atfork(NULL, NULL, end_with_parent);
+    pthread_atfork(NULL, NULL, guard_end_with_parent);
     guard_watched = mine;
     return STATUS_OK;
 }

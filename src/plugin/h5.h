@@ -14,9 +14,10 @@
     X(Aexists_by_name)                                                                             \
     X(Aget_space)                                                                                  \
     X(Aget_type)                                                                                   \
-    X(Aopen_by_name) X(Aread) X(Awrite) X(Dclose) X(Dcreate2) X(Dget_space) X(Dget_type) X(Dopen2) \
-        X(Dread) X(Dwrite) X(Eset_auto2) X(Fclose) X(Fcreate) X(Fflush) X(Fget_file_image)         \
-            X(Fopen) X(Gclose) X(Gcreate2) X(Iget_type) X(Lexists) X(Literate_by_name) X(Oclose)   \
+    X(Aopen_by_name)                                                                               \
+    X(Aread) X(Awrite) X(Dclose) X(Dcreate2) X(Dget_space) X(Dget_type) X(Dopen2) X(Dread)         \
+        X(Dwrite) X(Eset_auto2) X(Fclose) X(Fcreate) X(Fflush) X(Fget_file_image) X(Fopen)         \
+            X(Gclose) X(Gcreate2) X(Iget_type) X(Lexists) X(Literate_by_name) X(Oclose)            \
                 X(Oexists_by_name) X(Oopen) X(Pclose) X(Pcreate) X(Pset_fapl_core)                 \
                     X(Pset_obj_track_times) X(Sclose) X(Screate) X(Screate_simple)                 \
                         X(Sget_simple_extent_dims) X(Sget_simple_extent_ndims)                     \

@@ -77,6 +77,22 @@ void measure_moments(const struct pieces *pieces, struct measure_moments *moment
         3 * sphere / (dim * (dim + 2)) * measure_support(pieces, kernel_value, dim + 3, 1, NULL);
 }
 
+double measure_deviation(const struct kernel *kernel, int dim)
+{
+    enum { STEPS = 2000 }; /* for Simpson's rule */
+    double moment = 0, volume = 0;
+    for (int k = 0; k <= STEPS; k++) {
+        const double q = (double)k / STEPS;
+        const double w = (k == 0 || k == STEPS ? 1
+                          : k % 2              ? 4
+                                               : 2) *
+                         kernel->w(kernel, q, dim) * pow(q, dim - 1);
+        moment += w * q * q;
+        volume += w;
+    }
+    return sqrt(moment / volume / dim);
+}
+
 const double measure_significant = 30;
 
 /* A table of n intervals gives slope and curvature of the spline with errors of (1/n)^3 and

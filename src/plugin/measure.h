@@ -29,6 +29,10 @@ struct measure_moments {
 
 void measure_moments(const struct pieces *pieces, struct measure_moments *moments);
 
+/* Standard deviation of a kernel over its support radius, along one direction, by Simpson's rule.
+ */
+double measure_deviation(const struct kernel *kernel, int dim);
+
 enum { MEASURE_CLASS_MAX = 9 }; /* a higher class is reported as this one */
 
 /* The highest class that can be determined with the kernel's rounding errors. */

@@ -22,11 +22,6 @@ struct leaves {
     int n;
 };
 
-double pieces_node(const struct pieces *pieces, int j)
-{
-    return pieces->node[j];
-}
-
 void pieces_fit(const struct pieces *pieces, const double values[PIECES_NODES],
                 struct series_fit *fit)
 {
@@ -77,22 +72,26 @@ static void sample(const struct pieces *pieces, kernel_shape *shape, double a, d
 {
     double values[N];
     for (int j = 0; j < N; j++)
-        values[j] =
-            shape(pieces->kernel, a + (b - a) / 2 * (1 + pieces_node(pieces, j)), pieces->dim);
+        values[j] = shape(pieces->kernel, a + (b - a) / 2 * (1 + pieces->node[j]), pieces->dim);
     pieces_fit(pieces, values, fit);
+}
+
+static void sample_both(const struct pieces *pieces, double a, double b, struct series_fit *w,
+                        struct series_fit *dw)
+{
+    sample(pieces, pieces->kernel->w, a, b, w);
+    sample(pieces, pieces->kernel->dw, a, b, dw);
 }
 
 void pieces_series(const struct pieces *pieces, int p, struct series_fit *w, struct series_fit *dw)
 {
-    sample(pieces, pieces->kernel->w, pieces->edge[p], pieces->edge[p + 1], w);
-    sample(pieces, pieces->kernel->dw, pieces->edge[p], pieces->edge[p + 1], dw);
+    sample_both(pieces, pieces->edge[p], pieces->edge[p + 1], w, dw);
 }
 
 static bool resolved_nearly(const struct pieces *pieces, double a, double b, double factor)
 {
     struct series_fit w, dw;
-    sample(pieces, pieces->kernel->w, a, b, &w);
-    sample(pieces, pieces->kernel->dw, a, b, &dw);
+    sample_both(pieces, a, b, &w, &dw);
     return w.noise <= factor * pieces->tolerance * pieces->max_w &&
            dw.noise <= factor * pieces->tolerance * pieces->max_dw;
 }
@@ -302,11 +301,9 @@ bool pieces_look_single(const struct pieces *pieces)
 /* Finds the noise of all pieces, and whether all are resolved. */
 static void find_noise(struct pieces *pieces)
 {
-    pieces->resolved = true;
     for (int i = 0; i < pieces->n; i++) {
         struct series_fit w, dw;
-        sample(pieces, pieces->kernel->w, pieces->edge[i], pieces->edge[i + 1], &w);
-        sample(pieces, pieces->kernel->dw, pieces->edge[i], pieces->edge[i + 1], &dw);
+        pieces_series(pieces, i, &w, &dw);
         pieces->noise_w = !(w.noise <= pieces->noise_w) ? w.noise : pieces->noise_w;
         pieces->noise_dw = !(dw.noise <= pieces->noise_dw) ? dw.noise : pieces->noise_dw;
     }

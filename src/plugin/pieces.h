@@ -49,7 +49,7 @@ struct pieces {
     double *places;           /* place_count, increasing; see places.h */
     int place_count;
     struct pieces_first first[PIECES_FIRST];
-    double node[PIECES_NODES];                 /* of a series, on ]-1, 1[ */
+    double node[PIECES_NODES];                 /* of a series, on x in ]-1, 1[ */
     double cosine[PIECES_NODES][PIECES_NODES]; /* T_k(node j) at [j][k] */
 };
 
@@ -72,9 +72,6 @@ bool pieces_look_single(const struct pieces *pieces);
 
 /* The series of w (dw) on piece p. */
 void pieces_series(const struct pieces *pieces, int p, struct series_fit *w, struct series_fit *dw);
-
-/* Node j of a series on x in [-1, 1] (never an end point). */
-double pieces_node(const struct pieces *pieces, int j);
 
 /* The series through values[j] at the nodes. */
 void pieces_fit(const struct pieces *pieces, const double values[PIECES_NODES],

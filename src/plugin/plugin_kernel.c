@@ -160,26 +160,14 @@ static enum status check(const struct plugin *plugin, int dim, struct error *err
 
 /* --- in this process -------------------------------------------------------------------------- */
 
-/* Standard deviation along one direction over the support radius. */
-static double deviation(const struct kernel *kernel, int dim)
-{
-    struct pieces pieces;
-    struct measure_moments moments;
-    struct error none;
-    if (pieces_find(&pieces, kernel, dim, NULL, &none)) return (double)NAN;
-    measure_moments(&pieces, &moments);
-    pieces_free(&pieces);
-    return sqrt(moments.second);
-}
-
 /* The default eta gives the kernel the same standard deviation as the cubic spline at its default
  * eta (Dehnen & Aly 2012, section 2.4), rounded to three decimals. */
 static double usual_eta(const struct kernel *kernel, int dim)
 {
     struct kernel cubic;
     kernel_select(&cubic, "cubic_spline", 5, NULL);
-    const double eta = (dim == 1 ? cubic.default_eta : cubic.cloud_eta) * deviation(&cubic, dim) /
-                       deviation(kernel, dim);
+    const double eta = (dim == 1 ? cubic.default_eta : cubic.cloud_eta) *
+                       measure_deviation(&cubic, dim) / measure_deviation(kernel, dim);
     return isfinite(eta) ? round(1000 * eta) / 1000 : cubic.default_eta;
 }
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "list.h"
+#include "measure.h"
 
 #define RATIO_LEAST 0.8
 #define RATIO_MOST  4.6
@@ -270,10 +271,9 @@ enum status conventions_find(const struct snapshot_file *file, const double box[
             kernel = *only;
         else if ((status = kernel_select(&kernel, kernel_family.members[k]->name, 5, error)))
             break;
-        const double ratio =
-            meaning->deviations > 0
-                ? 1 / (meaning->deviations * conventions_deviation(&kernel, file->dim))
-                : meaning->ratio;
+        const double ratio = meaning->deviations > 0
+                                 ? 1 / (meaning->deviations * measure_deviation(&kernel, file->dim))
+                                 : meaning->ratio;
         for (int sum = 0; sum < (found->same_masses ? 1 : DENSITY_SUMS); sum++) {
             const struct convention candidate = fit(sample, &kernel, (enum density_sum)sum, ratio);
             insert(found, &candidate);
@@ -284,20 +284,4 @@ enum status conventions_find(const struct snapshot_file *file, const double box[
     for (size_t k = 0; k < sample->n; k++) free(sample->near[k].neighbour);
     free(sample);
     return status;
-}
-
-double conventions_deviation(const struct kernel *kernel, int dim)
-{
-    enum { STEPS = 2000 }; /* for Simpson's rule */
-    double moment = 0, volume = 0;
-    for (int k = 0; k <= STEPS; k++) {
-        const double q = (double)k / STEPS;
-        const double w = (k == 0 || k == STEPS ? 1
-                          : k % 2              ? 4
-                                               : 2) *
-                         kernel->w(kernel, q, dim) * pow(q, dim - 1);
-        moment += w * q * q;
-        volume += w;
-    }
-    return sqrt(moment / volume / dim);
 }

@@ -48,6 +48,3 @@ struct conventions {
 enum status conventions_find(const struct snapshot_file *file, const double box[3],
                              const struct kernel *only, const struct width_meaning *meaning,
                              struct conventions *found, struct error *error);
-
-/* Standard deviation of a kernel over its support radius, along one direction. */
-double conventions_deviation(const struct kernel *kernel, int dim);

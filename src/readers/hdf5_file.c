@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef HAVE_HDF5
 #include "h5.h"
 
 enum { HEADER_NUMBERS_MAX = 4096, HEADER_TEXT_MAX = 4096 };
@@ -16,11 +15,6 @@ enum { HEADER_NUMBERS_MAX = 4096, HEADER_TEXT_MAX = 4096 };
 static hid_t file_of(const struct snapshot_source *source)
 {
     return (hid_t)(intptr_t)source->file;
-}
-
-enum status hdf5_load(const char *path, struct error *error)
-{
-    return h5_load(path, error);
 }
 
 enum status hdf5_open(struct snapshot_source *source, struct error *error)
@@ -263,12 +257,7 @@ static enum status take(const struct dataset *d, const struct snapshot_source *s
                            "%.200s: %.80s cannot be read: damaged, or packed by a filter that is "
                            "not installed",
                            source->path, path);
-    for (size_t c = 0; c < columns && !status; c++) {
-        if (!snapshot_file_make(file, (enum snapshot_column)(column + c)))
-            status = error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
-        else
-            for (size_t i = 0; i < file->n; i++) file->column[column + c][i] = all[i * columns + c];
-    }
+    if (!status) status = snapshot_file_split(file, column, columns, all, source->path, error);
     set_precision(file, column, d->type);
     free(all);
     return status;
@@ -289,79 +278,3 @@ enum status hdf5_read(const struct snapshot_source *source, const char *path,
     close_dataset(&d);
     return status;
 }
-
-#else
-
-enum status hdf5_load(const char *path, struct error *error)
-{
-    return error_set(error, STATUS_BAD_INPUT,
-                     "%.200s: is HDF5, which this program was built without: install libhdf5-dev "
-                     "(Debian), hdf5-devel (Fedora) or hdf5 (brew) and build again, or write the "
-                     "snapshot as CSV",
-                     path);
-}
-
-enum status hdf5_open(struct snapshot_source *source, struct error *error)
-{
-    (void)source, (void)error;
-    return STATUS_OK;
-}
-
-void hdf5_close(struct snapshot_source *source)
-{
-    (void)source;
-}
-
-bool hdf5_has(const struct snapshot_source *source, const char *path)
-{
-    (void)source, (void)path;
-    return false;
-}
-
-void hdf5_names(const struct snapshot_source *source, const char *group, char *text, size_t size)
-{
-    (void)source, (void)group;
-    snprintf(text, size, "%s", "");
-}
-
-bool hdf5_last(const struct snapshot_source *source, const char *group, const char *prefix,
-               char *name, size_t size)
-{
-    (void)source, (void)group, (void)prefix;
-    snprintf(name, size, "%s", "");
-    return false;
-}
-
-int hdf5_numbers(const struct snapshot_source *source, const char *group, const char *name,
-                 double *values, int max)
-{
-    (void)source, (void)group, (void)name, (void)values, (void)max;
-    return 0;
-}
-
-void hdf5_text(const struct snapshot_source *source, const char *group, const char *name,
-               char *text, size_t size)
-{
-    (void)source, (void)group, (void)name;
-    snprintf(text, size, "%s", "");
-}
-
-void hdf5_kind(const struct snapshot_source *source, const char *path, char *text, size_t size)
-{
-    (void)source, (void)path;
-    snprintf(text, size, "nothing");
-}
-
-size_t hdf5_rows(const struct snapshot_source *source, const char *path)
-{
-    (void)source, (void)path;
-    return 0;
-}
-
-enum status hdf5_read(const struct snapshot_source *source, const char *path,
-                      struct snapshot_file *file, enum snapshot_column column, struct error *error)
-{
-    (void)file, (void)column;
-    return error_set(error, STATUS_BAD_INPUT, "%.200s: %.80s: no HDF5", source->path, path);
-}
-#endif

@@ -9,11 +9,7 @@
 #include "snapshot_file.h"
 #include "source.h"
 
-/* Loads the library to read a file. STATUS_BAD_INPUT: the program was built without HDF5.
- * STATUS_ENVIRONMENT: the library is missing. */
-enum status hdf5_load(const char *path, struct error *error);
-
-/* Opens source->file, after hdf5_load. STATUS_BAD_INPUT: the library cannot read it. */
+/* Opens source->file, after h5_load. STATUS_BAD_INPUT: the library cannot read it. */
 enum status hdf5_open(struct snapshot_source *source, struct error *error);
 void hdf5_close(struct snapshot_source *source);
 

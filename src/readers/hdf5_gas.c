@@ -10,6 +10,12 @@ enum status hdf5_gas(const struct snapshot_source *source, const char *group,
                      struct error *error)
 {
     char path[128], there[300];
+    if (!hdf5_has(source, group)) {
+        hdf5_names(source, "/", there, sizeof there);
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: no gas (%s); it has: %.200s%s",
+                         source->path, group, there,
+                         hdf5_has(source, "PartType1") ? " (dark matter only?)" : "");
+    }
     for (size_t k = 0; k < n; k++) {
         const char *const *name = names[k].names;
         for (; *name; name++) {
@@ -89,11 +95,8 @@ static enum status take_masses(const struct snapshot_source *source, struct snap
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s: no masses: no PartType0/Masses, and %s%s; allowed: above 0",
                          source->path, table.known ? "" : "no ", there);
-    if (!snapshot_file_make(file, SNAPSHOT_M))
-        return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
-    for (size_t i = 0; i < file->n; i++) file->column[SNAPSHOT_M][i] = mass;
     snapshot_note(&file->notes, "masses", "from MassTable", "Header/MassTable[0] = %.9g", mass);
-    return STATUS_OK;
+    return snapshot_file_fill(file, SNAPSHOT_M, mass, source->path, error);
 }
 
 static void take_box(const struct snapshot_source *source, struct snapshot_file *file)

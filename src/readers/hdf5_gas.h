@@ -12,7 +12,8 @@ struct hdf5_names {
 };
 
 /* Reads the datasets of a group; positions come first in the list and give the number of rows.
- * STATUS_BAD_INPUT: a required one is missing (the message lists what exists), or unreadable. */
+ * STATUS_BAD_INPUT: the group or a required dataset is missing (the message lists what exists), or
+ * unreadable. */
 enum status hdf5_gas(const struct snapshot_source *source, const char *group,
                      const struct hdf5_names *names, size_t n, struct snapshot_file *file,
                      struct error *error);

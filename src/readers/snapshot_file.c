@@ -57,12 +57,34 @@ int snapshot_column_of(const char *name)
     return -1;
 }
 
-bool snapshot_file_make(struct snapshot_file *file, enum snapshot_column column)
+enum status snapshot_file_make(struct snapshot_file *file, enum snapshot_column column,
+                               const char *path, struct error *error)
 {
-    if (file->n > SNAPSHOT_ROWS_MAX) return false;
     free(file->column[column]);
-    file->column[column] = calloc(file->n + 1, sizeof(double));
-    return file->column[column] != NULL;
+    file->column[column] = file->n > SNAPSHOT_ROWS_MAX ? NULL : calloc(file->n + 1, sizeof(double));
+    return file->column[column]
+               ? STATUS_OK
+               : error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
+}
+
+enum status snapshot_file_fill(struct snapshot_file *file, enum snapshot_column column,
+                               double value, const char *path, struct error *error)
+{
+    const enum status status = snapshot_file_make(file, column, path, error);
+    for (size_t i = 0; !status && i < file->n; i++) file->column[column][i] = value;
+    return status;
+}
+
+enum status snapshot_file_split(struct snapshot_file *file, enum snapshot_column column,
+                                size_t columns, const double *table, const char *path,
+                                struct error *error)
+{
+    for (size_t c = 0; c < columns; c++) {
+        if (snapshot_file_make(file, (enum snapshot_column)(column + c), path, error))
+            return error->status;
+        for (size_t i = 0; i < file->n; i++) file->column[column + c][i] = table[i * columns + c];
+    }
+    return STATUS_OK;
 }
 
 void snapshot_file_free(struct snapshot_file *file)

@@ -100,8 +100,19 @@ enum status snapshot_check_gas(const char *path, struct snapshot_file *file, str
 
 /* ---- for readers ---- */
 
-/* Allocates a column of n zeros; false: no memory, or more rows than SNAPSHOT_ROWS_MAX. */
-bool snapshot_file_make(struct snapshot_file *file, enum snapshot_column column);
+/* Allocates a column of n zeros. STATUS_ENVIRONMENT: no memory, or more rows than
+ * SNAPSHOT_ROWS_MAX. */
+enum status snapshot_file_make(struct snapshot_file *file, enum snapshot_column column,
+                               const char *path, struct error *error);
+
+/* The same with this value in each row. */
+enum status snapshot_file_fill(struct snapshot_file *file, enum snapshot_column column,
+                               double value, const char *path, struct error *error);
+
+/* The same for `columns` columns from this one on, with the numbers of a table of n rows. */
+enum status snapshot_file_split(struct snapshot_file *file, enum snapshot_column column,
+                                size_t columns, const double *table, const char *path,
+                                struct error *error);
 
 void snapshot_note(struct snapshot_notes *notes, const char *what, const char *value,
                    const char *format, ...) __attribute__((format(printf, 4, 5)));

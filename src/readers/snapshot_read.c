@@ -8,10 +8,17 @@
 #include <unistd.h>
 
 #include "guard.h"
-#include "hdf5_file.h"
 #include "output.h"
 #include "snapshot_file.h"
 #include "source.h"
+
+#ifdef HAVE_HDF5
+#include "h5.h"
+#include "hdf5_file.h"
+#define HDF5_READER READER
+#else
+#define HDF5_READER(name)
+#endif
 
 #define READER(name) extern const struct snapshot_reader reader_##name;
 #include "readers.def"
@@ -38,6 +45,7 @@ static enum status read_source(struct snapshot_source *source,
         file->parts = 1;
         return reader->read(source, options, file, error);
     }
+#ifdef HAVE_HDF5
     if (source->file) {
         char there[300];
         hdf5_names(source, "/", there, sizeof there);
@@ -46,6 +54,7 @@ static enum status read_source(struct snapshot_source *source,
                          "SPH-EXA, Phantom); it has: %.200s",
                          source->path, there);
     }
+#endif
     return error_set(error, STATUS_BAD_INPUT,
                      "%.200s: no snapshot that is read: begins neither as HDF5, nor as a binary of "
                      "GADGET (a count of 256 or 8) or Phantom (its magic numbers), nor as text; "
@@ -53,6 +62,9 @@ static enum status read_source(struct snapshot_source *source,
                      source->path);
 }
 
+/* ---- HDF5 ---- */
+
+#ifdef HAVE_HDF5
 static enum status read_here(struct snapshot_source *source, const struct snapshot_options *options,
                              struct snapshot_file *file, struct error *error)
 {
@@ -64,8 +76,7 @@ static enum status read_here(struct snapshot_source *source, const struct snapsh
     return status;
 }
 
-/* ---- HDF5, in the child process ---- */
-
+/* What the child process reads. */
 struct errand {
     struct snapshot_source *source;
     const struct snapshot_options *options;
@@ -101,7 +112,7 @@ static enum status take_results(const char *path, FILE *results, struct snapshot
         const bool there = file->column[c] != NULL;
         file->column[c] = NULL;
         if (there && sound)
-            sound = snapshot_file_make(file, (enum snapshot_column)c) &&
+            sound = !snapshot_file_make(file, (enum snapshot_column)c, path, error) &&
                     fread(file->column[c], sizeof(double), file->n, results) == file->n;
     }
     return sound ? STATUS_OK
@@ -113,6 +124,8 @@ static enum status read_hdf5(struct snapshot_source *source, const struct snapsh
 {
     enum { SECONDS = 60 };
     struct guard_verdict verdict = {0};
+    if (h5_load(source->path, error)) return error->status; /* once, not in each child process */
+    if (options->here) return read_here(source, options, file, error);
     const struct errand errand = {source, options, output_temporary()};
     if (!errand.results)
         return error_set(error, STATUS_ENVIRONMENT, "no temporary file for what %.200s holds",
@@ -128,6 +141,18 @@ static enum status read_hdf5(struct snapshot_source *source, const struct snapsh
     fclose(errand.results);
     return status;
 }
+#else
+static enum status read_hdf5(struct snapshot_source *source, const struct snapshot_options *options,
+                             struct snapshot_file *file, struct error *error)
+{
+    (void)options, (void)file;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "%.200s: is HDF5, which this program was built without: install libhdf5-dev "
+                     "(Debian), hdf5-devel (Fedora) or hdf5 (brew) and build again, or write the "
+                     "snapshot as CSV",
+                     source->path);
+}
+#endif
 
 static enum status read_one(const char *path, const struct snapshot_options *options,
                             struct snapshot_file *file, struct error *error)
@@ -135,12 +160,7 @@ static enum status read_one(const char *path, const struct snapshot_options *opt
     struct snapshot_source source;
     *file = (struct snapshot_file){0};
     enum status status = source_open(&source, path, error);
-    /* once here, not in each child process */
-    if (!status && source.hdf5) status = hdf5_load(path, error);
-    if (!status)
-        status = (!source.hdf5    ? read_source
-                  : options->here ? read_here
-                                  : read_hdf5)(&source, options, file, error);
+    if (!status) status = (source.hdf5 ? read_hdf5 : read_source)(&source, options, file, error);
     source_free(&source);
     if (!status && options->map && strcmp(file->layout, "csv") && strcmp(file->layout, "splash"))
         status = error_set(error, STATUS_BAD_INPUT,

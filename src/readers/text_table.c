@@ -109,29 +109,28 @@ static void skip_blanks(const char **at, const char *end)
     while (*at < end && (**at == ' ' || **at == '\t' || **at == '\r')) ++*at;
 }
 
+enum { WORD = 48 };
+
 /* Reads one number of a line that ends at `end`, after its separator unless it is the first
- * number. */
-static bool take_number(const char **at, const char *end, char separator, bool first, double *value)
+ * number; word: its text, or the beginning if it is longer. */
+static bool take_number(const char **at, const char *end, char separator, bool first,
+                        char word[WORD], double *value)
 {
-    char word[48];
     size_t n = 0;
     skip_blanks(at, end);
-    if (!first && separator != ' ') {
-        if (*at == end || **at != separator) return false;
-        ++*at;
-        skip_blanks(at, end);
-    }
-    while (*at < end && **at != separator && **at != ' ' && **at != '\t' && **at != '\r') {
-        if (n + 1 == sizeof word) return false;
-        word[n++] = *(*at)++;
-    }
-    word[n] = '\0';
-    return text_table_number(word, value);
+    const bool separated = first || separator == ' ' || (*at < end && **at == separator);
+    if (!first && separator != ' ' && separated) ++*at;
+    skip_blanks(at, end);
+    for (; *at < end && **at != separator && **at != ' ' && **at != '\t' && **at != '\r'; ++*at)
+        if (n < WORD) word[n++] = **at;
+    const bool whole = n < WORD;
+    word[whole ? n : WORD - 1] = '\0';
+    return separated && whole && text_table_number(word, value);
 }
 
 static bool blank(const char *line, const char *end)
 {
-    while (line < end && (*line == ' ' || *line == '\t' || *line == '\r')) line++;
+    skip_blanks(&line, end);
     return line == end || *line == '#';
 }
 
@@ -149,28 +148,19 @@ static size_t count_rows(const struct text_table *table, size_t from)
     return rows;
 }
 
-/* Reports that the text from `at` to the next separator is not a number. */
+/* Reports that a word is not a number. */
 static enum status no_number(const struct text_table *table, size_t line, size_t column,
-                             const char *at, const char *end, struct snapshot_file *file,
-                             struct error *error)
+                             char word[WORD], struct snapshot_file *file, struct error *error)
 {
-    char found[48];
-    size_t n = 0;
-    skip_blanks(&at, end);
-    if (column && table->separator != ' ' && at < end && *at == table->separator) at++;
-    skip_blanks(&at, end);
-    while (at < end && n + 1 < sizeof found && *at != table->separator && !strchr(" \t\r", *at))
-        found[n++] = *at++;
-    found[n] = '\0';
-    status_clean(found);
-    file->impossible = n && !isfinite(strtod(found, NULL)); /* "nan", "-inf" */
-    return n ? error_set(error, STATUS_BAD_INPUT,
-                         "%.200s:%zu: column %zu, '%s': no number: '%s'; allowed: such as 1, -0.5, "
-                         "2.5e-3",
-                         table->source->path, line, column + 1, table->names[column], found)
-             : error_set(error, STATUS_BAD_INPUT,
-                         "%.200s:%zu: column %zu, '%s': no number (or a row that is too short)",
-                         table->source->path, line, column + 1, table->names[column]);
+    status_clean(word);
+    file->impossible = *word && !isfinite(strtod(word, NULL)); /* "nan", "-inf" */
+    return *word ? error_set(error, STATUS_BAD_INPUT,
+                             "%.200s:%zu: column %zu, '%s': no number: '%s'; allowed: such as 1, "
+                             "-0.5, 2.5e-3",
+                             table->source->path, line, column + 1, table->names[column], word)
+                 : error_set(error, STATUS_BAD_INPUT,
+                             "%.200s:%zu: column %zu, '%s': no number (or a row that is too short)",
+                             table->source->path, line, column + 1, table->names[column]);
 }
 
 static enum status take_rows(const struct text_table *table, size_t from, size_t line,
@@ -184,10 +174,10 @@ static enum status take_rows(const struct text_table *table, size_t from, size_t
         if (!stop) stop = end;
         if (!blank(at, stop)) {
             for (size_t c = 0; c < table->columns; c++) {
+                char word[WORD];
                 double value;
-                const char *begin = at;
-                if (!take_number(&at, stop, table->separator, c == 0, &value))
-                    return no_number(table, line, c, begin, stop, file, error);
+                if (!take_number(&at, stop, table->separator, c == 0, word, &value))
+                    return no_number(table, line, c, word, file, error);
                 const int meaning = table->meaning[c];
                 if (meaning == TABLE_TYPE)
                     type[row] = value;
@@ -234,16 +224,18 @@ static void note_unit(const struct text_table *table, struct snapshot_file *file
 enum status text_table_read(const struct text_table *table, size_t from, size_t line,
                             struct snapshot_file *file, struct error *error)
 {
-    bool typed = false, known = true;
+    enum status status = STATUS_OK;
+    bool typed = false;
     file->n = file->gas = count_rows(table, from);
     for (size_t c = 0; c < table->columns; c++) {
         typed = typed || table->meaning[c] == TABLE_TYPE;
         if (table->meaning[c] >= 0 && table->meaning[c] < SNAPSHOT_COLUMNS)
-            known = known && snapshot_file_make(file, (enum snapshot_column)table->meaning[c]);
+            status = status ? status
+                            : snapshot_file_make(file, (enum snapshot_column)table->meaning[c],
+                                                 table->source->path, error);
     }
     double *type = calloc(2 * file->n + 2, sizeof *type);
-    enum status status = STATUS_OK;
-    if (!known || !type)
+    if (!type)
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", table->source->path);
     if (!status) status = take_rows(table, from, line, file, type, error);
     if (!status && typed) gas_first(file, type, type + file->n);

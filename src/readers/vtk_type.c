@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "vtk_type.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "fortran.h"
@@ -25,4 +26,18 @@ double vtk_number(const struct vtk_type *type, const unsigned char *bytes, bool 
     return type->kind == 'r'   ? fortran_real(bytes, type->width, swapped)
            : type->kind == 's' ? fortran_integer(bytes, type->width, swapped)
                                : (double)fortran_unsigned(bytes, type->width, swapped);
+}
+
+bool vtk_is_vector(int column)
+{
+    return column == SNAPSHOT_X || column == SNAPSHOT_VX || column == SNAPSHOT_AX;
+}
+
+enum status vtk_columns(struct snapshot_file *file, int column, size_t columns, const double *table,
+                        const char *type, const char *path, struct error *error)
+{
+    const struct vtk_type *of = vtk_type_of(type);
+    double *precision = &file->precision[column != SNAPSHOT_X];
+    *precision = fmax(*precision, of->kind == 'r' && of->width == 4 ? 6e-8 : 1.2e-16);
+    return snapshot_file_split(file, (enum snapshot_column)column, columns, table, path, error);
 }

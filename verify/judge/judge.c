@@ -48,9 +48,8 @@ static enum status complete_liquid(struct judged *judged, struct error *error)
     for (size_t k = 0; k < 2; k++) {
         const bool pressure = columns[k] == SNAPSHOT_P;
         if (file->column[columns[k]]) continue;
-        if (!snapshot_file_make(file, columns[k]))
-            return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", judged->path);
-        for (size_t i = 0; pressure && i < file->n; i++) file->column[SNAPSHOT_P][i] = (double)NAN;
+        if (snapshot_file_fill(file, columns[k], pressure ? (double)NAN : 0, judged->path, error))
+            return error->status;
         if (pressure) snapshot_note(&file->notes, "pressure", "unknown", "the file stores none");
     }
     return STATUS_OK;
@@ -67,8 +66,8 @@ static enum status complete(struct judged *judged, double gamma, struct error *e
         sharpen_pressure(file, gamma);
         return STATUS_OK;
     }
-    if (!snapshot_file_make(file, lacks_P ? SNAPSHOT_P : SNAPSHOT_U))
-        return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", judged->path);
+    if (snapshot_file_make(file, lacks_P ? SNAPSHOT_P : SNAPSHOT_U, judged->path, error))
+        return error->status;
     double *P = file->column[SNAPSHOT_P], *u = file->column[SNAPSHOT_U],
            *rho = file->column[SNAPSHOT_RHO];
     for (size_t i = 0; i < file->n; i++) {
@@ -286,6 +285,16 @@ static bool counts(const struct judged *judged, size_t i, struct problem_state *
     return window_contains(&p->window, position);
 }
 
+/* Magnitude of the difference of a particle's velocity from that of a state. */
+static double velocity_off(const struct judged *judged, size_t i, const struct problem_state *state)
+{
+    const struct snapshot *s = &judged->result.snapshot;
+    double squares = 0;
+    for (int d = 0; d < judged->run.problem.domain.dim; d++)
+        squares += (s->v[d][i] - state->v[d]) * (s->v[d][i] - state->v[d]);
+    return sqrt(squares);
+}
+
 /* The region of the exact solution that a particle is in; "" where the problem has none. */
 static const char *region_of(const struct judged *judged, size_t i)
 {
@@ -310,17 +319,13 @@ static bool near_jump(const struct judged *judged, size_t i)
  * time or position are not. NaN if the window has no particles. */
 static double moves_ahead(const struct judged *judged, double range)
 {
-    const struct snapshot *s = &judged->result.snapshot;
     size_t all = 0, ahead = 0;
-    for (size_t i = 0; i < s->n; i++) {
+    for (size_t i = 0; i < judged->result.snapshot.n; i++) {
         struct problem_state now, before;
         if (!counts(judged, i, &now, &before)) continue;
         all++;
-        if (strcmp(region_of(judged, i), "undisturbed")) continue;
-        double squares = 0;
-        for (int d = 0; d < judged->run.problem.domain.dim; d++)
-            squares += (s->v[d][i] - now.v[d]) * (s->v[d][i] - now.v[d]);
-        ahead += sqrt(squares) > 0.1 * range;
+        ahead += !strcmp(region_of(judged, i), "undisturbed") &&
+                 velocity_off(judged, i, &now) > 0.1 * range;
     }
     return (double)ahead / (double)all;
 }
@@ -355,10 +360,8 @@ static double median_error(const struct judged *judged, int f, double *errors, d
             motion = fmax(motion, (f == FIELD_PRESSURE ? now.rho : 1) * speed * speed);
             if (near_jump(judged, i)) continue;
             if (!all && fabs(exact - value_of(&before, f, dim)) <= 1e-3 * fabs(exact)) continue;
-            double squares = 0;
-            for (int d = 0; d < dim; d++)
-                squares += (s->v[d][i] - now.v[d]) * (s->v[d][i] - now.v[d]);
-            errors[n++] = f == FIELD_VELOCITY ? sqrt(squares) : fabs(values[f][i] - exact);
+            errors[n++] =
+                f == FIELD_VELOCITY ? velocity_off(judged, i, &now) : fabs(values[f][i] - exact);
         }
         const double size = fmax(fabs(most), fabs(least));
         const bool varies = most - least > 1e-9 * size;

@@ -56,12 +56,10 @@ static json_t *figures_of(const struct judged *judged, size_t n)
         add_norms(figures, "azimuthal", &r->azimuthal);
         add_norms(figures, "radial", &r->radial);
     }
-    for (size_t k = 0; k < r->functional_count; k++)
-        if (isfinite(r->functionals[k].exact))
-            add_figure(figures, "", r->functionals[k].name,
-                       fabs(r->functionals[k].value - r->functionals[k].exact));
-        else
-            add_figure(figures, "", r->functionals[k].name, r->functionals[k].value);
+    for (size_t k = 0; k < r->functional_count; k++) {
+        const struct run_functional *f = &r->functionals[k];
+        add_figure(figures, "", f->name, isfinite(f->exact) ? fabs(f->value - f->exact) : f->value);
+    }
     for (size_t k = 0; r->budget.regions && r->budget.regions->names[k]; k++)
         add_figure(figures, "density_l1.", r->budget.regions->names[k],
                    r->budget.l1[k][FIELD_DENSITY]);
@@ -110,9 +108,7 @@ static json_t *gate_json(const char *name, const json_t *figure, bool least, dou
     }
     json_t *gate = result_object("name=%s relation=%s value=%g bound=%g status=%s source=%s", name,
                                  least ? ">=" : "<=", value, bound, finding_words[status], source);
-    if (order) {
-        result_add(gate, "low=%g high=%g", low, high);
-    }
+    if (order) result_add(gate, "low=%g high=%g", low, high);
     if (*why) result_add(gate, "why=%s", why);
     return gate;
 }
@@ -250,9 +246,8 @@ static void add_case(const struct judged *main, const json_t *figures, json_t *g
         snprintf(text, sizeof text, "case %s: its ladder's order", file->name);
         const double low = gates_at(file, gate, (size_t)main->case_n).low;
         json_t *found = gate_json(name, order, true, low, text);
-        if (*gate->known.why && strcmp(value_text(found, "status"), finding_words[FINDING_PASS])) {
+        if (*gate->known.why && strcmp(value_text(found, "status"), finding_words[FINDING_PASS]))
             result_add(found, "status=%s why=%s", finding_words[FINDING_KNOWN], gate->known.why);
-        }
         json_array_append_new(gates, found);
     }
     for (size_t k = 0; k < (round ? 4 : 3); k++)

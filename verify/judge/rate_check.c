@@ -16,18 +16,10 @@ static const char *const names[RATE_COLUMNS] = {"h", "rho", "P", "ax", "ay", "az
 /* The value of a particle in this column of the file. */
 static double value(const struct rate_table *table, const double *m, int column, size_t i)
 {
-    switch (column) {
-    case 0:
-        return table->h[i];
-    case 1:
-        return table->rho[i];
-    case 2:
-        return table->P[i];
-    case 6:
-        return table->dU[i] / m[i];
-    default:
-        return table->force[column - 3][i] / m[i];
-    }
+    const double *const of[RATE_COLUMNS] = {table->h,        table->rho,      table->P,
+                                            table->force[0], table->force[1], table->force[2],
+                                            table->dU};
+    return of[column][i] / (column < 3 ? 1 : m[i]);
 }
 
 /* The scale by which differences of a column are divided. */
@@ -49,123 +41,79 @@ static double relative(double difference, double scale)
     return difference == 0 ? 0 : difference / scale;
 }
 
-/* Fills everything except the cause. The particle stays 0 if nothing differs. */
-static void compare(struct rate_comparison *c, const double *theirs, const struct rate_table *ours,
-                    const double *m, int column)
+/* What is compared; theirs: NULL where the file has no such column. */
+struct both {
+    const double *theirs[RATE_COLUMNS];
+    const struct setup *setup;
+    const struct rate_table *ours;
+    double tolerance;
+};
+
+/* Compares a column with this table; fills everything except the cause. The particle stays 0 if
+ * nothing differs. */
+static void compare(struct rate_comparison *c, const struct both *both,
+                    const struct rate_table *table)
 {
-    const double common = scale_of(ours, m, column, 0);
+    const double *theirs = both->theirs[c->column], *m = both->setup->m;
+    const double common = scale_of(table, m, c->column, 0);
     double sum = 0;
     c->worst = 0;
-    for (size_t i = 0; i < ours->n; i++) {
-        const double scale = column < 3 ? scale_of(ours, m, column, i) : common;
-        const double d = relative(fabs(theirs[i] - value(ours, m, column, i)), scale);
+    for (size_t i = 0; i < table->n; i++) {
+        const double scale = c->column < 3 ? scale_of(table, m, c->column, i) : common;
+        const double d = relative(fabs(theirs[i] - value(table, m, c->column, i)), scale);
         if (!(d <= c->worst)) c->particle = i;
         worst_keep(&c->worst, d);
         sum += d * d;
     }
-    c->rms = sqrt(sum / (double)ours->n);
+    c->rms = sqrt(sum / (double)table->n);
 }
 
 /* --- causes ----------------------------------------------------------------------------------- */
 
-typedef void change(struct setup *setup);
-
-#define CHANGE(name, key, value)                                                                   \
-    static void name(struct setup *setup)                                                          \
-    {                                                                                              \
-        setup->key = value;                                                                        \
-    }
-CHANGE(no_viscosity, scheme.viscosity, VISCOSITY_NONE)
-CHANGE(constant_viscosity, scheme.viscosity, VISCOSITY_CONSTANT)
-CHANGE(no_beta, scheme.beta, 0)
-CHANGE(beta_alpha, scheme.beta, setup->scheme.alpha)
-CHANGE(twice_alpha, scheme.alpha, 2 * setup->scheme.alpha)
-CHANGE(half_alpha, scheme.alpha, setup->scheme.alpha / 2)
-CHANGE(mu_form, scheme.viscosity_form, VISCOSITY_FORM_MU)
-CHANGE(signal_form, scheme.viscosity_form, VISCOSITY_FORM_SIGNAL)
-CHANGE(with_balsara, scheme.balsara, BALSARA_ON)
-CHANGE(without_balsara, scheme.balsara, BALSARA_OFF)
-CHANGE(width_max, scheme.pair_width, PAIR_WIDTH_MAX)
-CHANGE(width_mean, scheme.pair_width, PAIR_WIDTH_MEAN)
-CHANGE(width_harmonic, scheme.pair_width, PAIR_WIDTH_HARMONIC)
-CHANGE(standard, scheme.gradient, GRADIENT_STANDARD)
-CHANGE(ia, scheme.gradient, GRADIENT_IA)
-CHANGE(corrected, scheme.gradient, GRADIENT_CORRECTED)
-CHANGE(blended, scheme.gradient, GRADIENT_BLENDED)
-CHANGE(vanilla_ice, scheme.formulation, FORMULATION_VANILLA_ICE)
-CHANGE(lagrangian, scheme.formulation, FORMULATION_LAGRANGIAN)
-CHANGE(mass, scheme.volume_element, VOLUME_MASS)
-CHANGE(energy, scheme.volume_element, VOLUME_ENERGY)
-CHANGE(number, scheme.volume_element, VOLUME_NUMBER)
-CHANGE(gamma_5_3, gamma, 5. / 3)
-CHANGE(gamma_7_5, gamma, 1.4)
-CHANGE(half_eta, scheme.eta, setup->scheme.eta / 2)
-CHANGE(twice_eta, scheme.eta, 2 * setup->scheme.eta)
+/* Makes the k-th change of a setup. Returns what it means if the other code has it; NULL behind the
+ * last change. */
+static const char *make_change(struct setup *setup, int k)
+{
+    struct scheme *s = &setup->scheme;
+#define CHANGE(change, cause)                                                                      \
+    if (k-- == 0) return change, cause
+    CHANGE(s->viscosity = VISCOSITY_NONE, "viscosity: they have none");
+    CHANGE(s->viscosity = VISCOSITY_CONSTANT, "viscosity: theirs is constant");
+    CHANGE(s->beta = 0, "viscosity: theirs has no quadratic term (beta = 0)");
+    CHANGE(s->beta = s->alpha, "viscosity: beta = alpha in theirs");
+    CHANGE(s->alpha *= 2, "viscosity: alpha is twice ours");
+    CHANGE(s->alpha /= 2, "viscosity: alpha is half of ours");
+    CHANGE((s->alpha *= 2, s->beta *= 2), "viscosity: alpha and beta are twice ours");
+    CHANGE((s->alpha /= 2, s->beta /= 2), "viscosity: alpha and beta are half of ours");
+    CHANGE(s->viscosity_form = VISCOSITY_FORM_MU, "viscosity: theirs is of the form mu");
+    CHANGE(s->viscosity_form = VISCOSITY_FORM_SIGNAL, "viscosity: theirs is of the form signal");
+    CHANGE(s->balsara = BALSARA_ON, "viscosity: theirs has a Balsara factor");
+    CHANGE(s->balsara = BALSARA_OFF, "viscosity: theirs has no Balsara factor");
+    CHANGE(s->pair_width = PAIR_WIDTH_MAX, "pair width: theirs is max(h_i, h_j)");
+    CHANGE(s->pair_width = PAIR_WIDTH_MEAN, "pair width: theirs is the mean of both gradients");
+    CHANGE(s->pair_width = PAIR_WIDTH_HARMONIC, "pair width: theirs is the harmonic mean");
+    CHANGE(s->gradient = GRADIENT_STANDARD, "gradient: theirs is standard");
+    CHANGE(s->gradient = GRADIENT_IA, "gradient: theirs is ia");
+    CHANGE(s->gradient = GRADIENT_CORRECTED, "gradient: theirs is corrected");
+    CHANGE(s->gradient = GRADIENT_BLENDED, "gradient: theirs is blended");
+    CHANGE(s->formulation = FORMULATION_VANILLA_ICE, "pressure: their formulation is vanilla_ice");
+    CHANGE(s->formulation = FORMULATION_LAGRANGIAN,
+           "pressure: their formulation is lagrangian, with grad-h factors");
+    CHANGE(s->volume_element = VOLUME_MASS, "volume element: theirs is mass");
+    CHANGE(s->volume_element = VOLUME_ENERGY, "volume element: theirs is energy");
+    CHANGE(s->volume_element = VOLUME_NUMBER, "volume element: theirs is number");
+    CHANGE(s->alpha_u = s->shock_conductivity = 0, "conductivity: they have none");
+    CHANGE(s->shock_conductivity = 1,
+           "conductivity: theirs is 1 in strong shocks (shock_conductivity=1)");
+    CHANGE(setup->gamma = 5. / 3, "gamma: theirs is 5/3");
+    CHANGE(setup->gamma = 1.4, "gamma: theirs is 1.4");
+    CHANGE(s->eta /= 2, "eta: theirs is half of ours (h is the support radius here)");
+    CHANGE(s->eta *= 2, "eta: theirs is twice ours (h is the support radius here)");
+    CHANGE(setup->boundary[0] = setup->boundary[1] = setup->boundary[2] = BOUNDARY_OPEN,
+           "boundary: theirs is open");
 #undef CHANGE
-
-static void conduction(struct setup *setup)
-{
-    setup->scheme.alpha_u = setup->scheme.shock_conductivity = 0;
+    return NULL;
 }
-
-static void shock_conduction(struct setup *setup)
-{
-    setup->scheme.shock_conductivity = 1;
-}
-
-static void twice_viscosity(struct setup *setup)
-{
-    twice_alpha(setup);
-    setup->scheme.beta *= 2;
-}
-
-static void half_viscosity(struct setup *setup)
-{
-    half_alpha(setup);
-    setup->scheme.beta /= 2;
-}
-
-static void open_box(struct setup *setup)
-{
-    for (int a = 0; a < setup->dim; a++) setup->boundary[a] = BOUNDARY_OPEN;
-}
-
-static const struct {
-    change *make;
-    const char *cause;
-} changes[] = {
-    {no_viscosity, "viscosity: they have none"},
-    {constant_viscosity, "viscosity: theirs is constant"},
-    {no_beta, "viscosity: theirs has no quadratic term (beta = 0)"},
-    {beta_alpha, "viscosity: beta = alpha in theirs"},
-    {twice_alpha, "viscosity: alpha is twice ours"},
-    {half_alpha, "viscosity: alpha is half of ours"},
-    {twice_viscosity, "viscosity: alpha and beta are twice ours"},
-    {half_viscosity, "viscosity: alpha and beta are half of ours"},
-    {mu_form, "viscosity: theirs is of the form mu"},
-    {signal_form, "viscosity: theirs is of the form signal"},
-    {with_balsara, "viscosity: theirs has a Balsara factor"},
-    {without_balsara, "viscosity: theirs has no Balsara factor"},
-    {width_max, "pair width: theirs is max(h_i, h_j)"},
-    {width_mean, "pair width: theirs is the mean of both gradients"},
-    {width_harmonic, "pair width: theirs is the harmonic mean"},
-    {standard, "gradient: theirs is standard"},
-    {ia, "gradient: theirs is ia"},
-    {corrected, "gradient: theirs is corrected"},
-    {blended, "gradient: theirs is blended"},
-    {vanilla_ice, "pressure: their formulation is vanilla_ice"},
-    {lagrangian, "pressure: their formulation is lagrangian, with grad-h factors"},
-    {mass, "volume element: theirs is mass"},
-    {energy, "volume element: theirs is energy"},
-    {number, "volume element: theirs is number"},
-    {conduction, "conductivity: they have none"},
-    {shock_conduction, "conductivity: theirs is 1 in strong shocks (shock_conductivity=1)"},
-    {gamma_5_3, "gamma: theirs is 5/3"},
-    {gamma_7_5, "gamma: theirs is 1.4"},
-    {half_eta, "eta: theirs is half of ours (h is the support radius here)"},
-    {twice_eta, "eta: theirs is twice ours (h is the support radius here)"},
-    {open_box, "boundary: theirs is open"},
-};
 
 /* A cause explains a difference if it reduces the difference to the tolerance or by a factor of
  * 1000. An infinite difference, relative to rates of 0, must fall to the tolerance. */
@@ -174,38 +122,23 @@ static double near_enough(const struct rate_comparison *c, double tolerance)
     return isinf(c->worst) ? tolerance : fmax(tolerance, 1e-3 * c->worst);
 }
 
-/* Names this cause for the columns that it explains better than the cause named so far. left: the
- * remaining difference of each column with the cause named so far, INFINITY before the first; a
- * column keeps a cause that explains as much. open: relative uncertainty of the other code's eta; a
- * difference of that size also counts as explained if the cause removes nine tenths of it. */
-static void propose_better(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
-                           const struct rate_table *changed, const double *m, double tolerance,
-                           double open, double left[RATE_COLUMNS], const char *cause)
+/* Names this cause for the columns that it explains and that have none yet. Of kernels the one that
+ * explains most is named: left (else NULL) has the remaining difference of each column with the
+ * kernel named so far, INFINITY before the first. open: relative uncertainty of the other code's
+ * eta; a difference of that size also counts as explained if the cause removes nine tenths of it.
+ */
+static void propose(struct rate_check *check, const struct both *both,
+                    const struct rate_table *changed, double open, double *left, const char *cause)
 {
     for (size_t k = 0; k < check->count; k++) {
         struct rate_comparison *c = &check->columns[k], now = *c;
-        if (c->good || (c->cause[0] && isinf(left[k]))) continue;
-        compare(&now, theirs[c->column], changed, m, c->column);
-        const double near = fmax(near_enough(c, tolerance), fmin(open, 0.1 * c->worst));
-        if (!(now.worst <= near && now.worst < left[k])) continue;
-        left[k] = now.worst;
+        if (c->good || (c->cause[0] && (!left || isinf(left[k])))) continue;
+        compare(&now, both, changed);
+        const double near = fmax(near_enough(c, both->tolerance), fmin(open, 0.1 * c->worst));
+        if (!(now.worst <= near && (!left || now.worst < left[k]))) continue;
+        if (left) left[k] = now.worst;
         snprintf(c->cause, sizeof c->cause, "%s", cause);
     }
-}
-
-static void leave_all(double left[RATE_COLUMNS])
-{
-    for (int k = 0; k < RATE_COLUMNS; k++) left[k] = INFINITY;
-}
-
-/* Names this cause for the columns that it explains and that have no cause yet. */
-static void propose(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
-                    const struct rate_table *changed, const double *m, double tolerance,
-                    const char *cause)
-{
-    double left[RATE_COLUMNS];
-    leave_all(left);
-    propose_better(check, theirs, changed, m, tolerance, 0, left, cause);
 }
 
 /* Other codes iterate h to 1e-4 or so. Their particles' eta may scatter by this fraction. */
@@ -213,10 +146,10 @@ static const double eta_known = 2e-3;
 
 /* The eta that the other code's smoothing lengths and densities have in common; ours if they have
  * none. open: its relative scatter. */
-static double their_eta(const double *const theirs[RATE_COLUMNS], const struct setup *setup,
-                        double *open)
+static double their_eta(const struct both *both, double *open)
 {
-    const double *h = theirs[0], *rho = theirs[1];
+    const struct setup *setup = both->setup;
+    const double *h = both->theirs[0], *rho = both->theirs[1];
     double least = INFINITY, most = -INFINITY;
     if (!h || !rho) return setup->scheme.eta;
     for (size_t i = 0; i < setup->n; i++) {
@@ -231,19 +164,17 @@ static double their_eta(const double *const theirs[RATE_COLUMNS], const struct s
 
 /* Proposes another kernel, the one that explains most, with our eta or the other code's; or that
  * eta alone. */
-static void propose_kernels(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
-                            const struct setup *setup, double tolerance)
+static void propose_kernels(struct rate_check *check, const struct both *both)
 {
     double open = 0, left[RATE_COLUMNS];
-    leave_all(left);
-    const double found = their_eta(theirs, setup, &open), ours = setup->scheme.eta;
+    const double found = their_eta(both, &open), ours = both->setup->scheme.eta;
     const bool other = fabs(found - ours) > 1e-6 * ours;
-    for (int k = -1; k < (int)kernel_family.n; k++) {
-        struct setup changed = *setup;
+    for (int k = 0; k < RATE_COLUMNS; k++) left[k] = INFINITY;
+    for (int k = other ? -1 : 0; k < (int)kernel_family.n; k++) {
+        struct setup changed = *both->setup;
         struct rate_table table;
         char cause[RATE_CAUSE];
         const char *name = k < 0 ? "" : kernel_family.members[k]->name;
-        if (k < 0 && !other) continue;
         if (k >= 0 && kernel_select(&changed.scheme.kernel, name, 5, NULL)) continue;
         if (other) changed.scheme.eta = found;
         if (k < 0)
@@ -253,33 +184,31 @@ static void propose_kernels(struct rate_check *check, const double *const theirs
         else
             snprintf(cause, sizeof cause, "kernel: theirs is %s", name);
         if (!rate_table_make(&table, &changed, NULL))
-            propose_better(check, theirs, &table, setup->m, tolerance, open, left, cause);
+            propose(check, both, &table, open, left, cause);
         rate_table_free(&table);
     }
 }
 
 /* Proposes rates without grad-h factors, which the oracle can compute and the solver cannot. */
-static void propose_no_grad_h(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
-                              const struct setup *setup, const struct rate_table *ours,
-                              double tolerance)
+static void propose_no_grad_h(struct rate_check *check, const struct both *both)
 {
+    const struct setup *setup = both->setup;
     struct oracle oracle;
-    struct rate_table changed = *ours;
+    struct rate_table changed = *both->ours;
     if (setup->scheme.formulation != FORMULATION_LAGRANGIAN || setup->n > ORACLE_MOST) return;
     for (int a = 0; a < setup->dim; a++)
         if (setup->boundary[a] != BOUNDARY_PERIODIC || setup->gravity[a] != 0) return;
-    double *storage = changed.storage = NULL;
     if (oracle_create(&oracle, setup, NULL)) return;
     oracle.without_grad_h = true;
-    if (!oracle_evaluate(&oracle, NULL) &&
-        (storage = malloc(4 * setup->n * sizeof *storage)) != NULL) {
+    double *storage = malloc(4 * setup->n * sizeof *storage);
+    if (storage && !oracle_evaluate(&oracle, NULL)) {
         for (int a = 0; a < 3; a++) changed.force[a] = storage + (size_t)a * setup->n;
         changed.dU = storage + 3 * setup->n;
         for (size_t i = 0; i < setup->n; i++) {
             for (int a = 0; a < 3; a++) changed.force[a][i] = (double)oracle.particles[i].F[a];
             changed.dU[i] = (double)oracle.particles[i].dU;
         }
-        propose(check, theirs, &changed, setup->m, tolerance,
+        propose(check, both, &changed, 0, NULL,
                 "grad-h: their lagrangian formulation has no grad-h factors");
     }
     free(storage);
@@ -287,15 +216,16 @@ static void propose_no_grad_h(struct rate_check *check, const double *const thei
 }
 
 /* True if theirs are our values in another order: codes sort particles by keys of their own. */
-static bool is_reordered(const double *theirs, int column, const struct setup *setup,
-                         const struct rate_table *ours, double close)
+static bool is_reordered(const struct both *both, int column, double close)
 {
-    const double scale = scale_of(ours, setup->m, column, 0);
+    const struct rate_table *ours = both->ours;
+    const double *theirs = both->theirs[column], *m = both->setup->m,
+                 scale = scale_of(ours, m, column, 0);
     const size_t n = ours->n;
     double *mine = malloc(2 * n * sizeof *mine), *other = mine ? mine + n : NULL;
     bool same = mine != NULL;
     for (size_t i = 0; same && i < n; i++)
-        mine[i] = value(ours, setup->m, column, i), other[i] = theirs[i];
+        mine[i] = value(ours, m, column, i), other[i] = theirs[i];
     if (same) list_sort(mine, n), list_sort(other, n);
     for (size_t i = 0; same && i < n; i++)
         same = fabs(other[i] - mine[i]) <= close * (column < 3 ? mine[i] : scale);
@@ -305,13 +235,14 @@ static bool is_reordered(const double *theirs, int column, const struct setup *s
 
 /* Finds causes that the numbers themselves show: a constant factor, a missing term, an order of
  * rows. */
-static void explain_plainly(struct rate_comparison *c, const double *theirs, int column,
-                            const struct setup *setup, const struct rate_table *ours,
-                            double tolerance)
+static void explain_plainly(struct rate_comparison *c, const struct both *both)
 {
+    const struct setup *setup = both->setup;
+    const struct rate_table *ours = both->ours;
     const struct kernel *kernel = &setup->scheme.kernel;
-    const double close = near_enough(c, tolerance);
-    const double scale = scale_of(ours, setup->m, column, 0);
+    const int column = c->column;
+    const double *theirs = both->theirs[column], close = near_enough(c, both->tolerance),
+                 scale = scale_of(ours, setup->m, column, 0);
     double ratio = 0, weight = 0, off[4] = {0};
     for (size_t i = 0; i < ours->n; i++) {
         const double mine = value(ours, setup->m, column, i), size = column < 3 ? mine : scale;
@@ -338,33 +269,31 @@ static void explain_plainly(struct rate_comparison *c, const double *theirs, int
         snprintf(c->cause, RATE_CAUSE, "the sign is the other one");
     else if (off[3] <= close)
         snprintf(c->cause, RATE_CAUSE, "theirs is %.9g times ours everywhere", ratio);
-    else if (is_reordered(theirs, column, setup, ours, close))
+    else if (is_reordered(both, column, close))
         snprintf(c->cause, RATE_CAUSE, "rows: theirs are our values in another order");
 }
 
-static void find_causes(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
-                        const struct setup *setup, const struct rate_table *ours, double tolerance)
+static void find_causes(struct rate_check *check, const struct both *both)
 {
-    for (size_t k = 0; k < sizeof changes / sizeof *changes; k++) {
-        struct setup changed = *setup;
+    for (int k = 0;; k++) {
+        struct setup changed = *both->setup;
         struct rate_table table;
-        changes[k].make(&changed);
-        if (!rate_table_make(&table, &changed, NULL))
-            propose(check, theirs, &table, setup->m, tolerance, changes[k].cause);
+        const char *cause = make_change(&changed, k);
+        if (!cause) break;
+        if (!rate_table_make(&table, &changed, NULL)) propose(check, both, &table, 0, NULL, cause);
         rate_table_free(&table);
     }
-    propose_no_grad_h(check, theirs, setup, ours, tolerance);
-    propose_kernels(check, theirs, setup, tolerance);
+    propose_no_grad_h(check, both);
+    propose_kernels(check, both);
     const char *first = NULL; /* first wrong column; the later ones follow from it */
     for (size_t k = 0; k < check->count; k++) {
         struct rate_comparison *c = &check->columns[k];
-        const int column = c->column;
         if (c->good) continue;
-        if (!c->cause[0]) explain_plainly(c, theirs[column], column, setup, ours, tolerance);
-        c->follows = !c->cause[0] && first && column >= 2;
+        if (!c->cause[0]) explain_plainly(c, both);
+        c->follows = !c->cause[0] && first && c->column >= 2;
         if (c->follows)
             snprintf(c->cause, RATE_CAUSE, "it follows from %s, or there is more than one", first);
-        if (!first && column < 3) first = c->quantity;
+        if (!first && c->column < 3) first = c->quantity;
     }
 }
 
@@ -372,7 +301,7 @@ enum status rate_check_make(struct rate_check *check, const char *path, const st
                             const struct setup *setup, const struct rate_table *ours,
                             double tolerance, struct error *error)
 {
-    const double *columns[RATE_COLUMNS] = {NULL};
+    struct both both = {.setup = setup, .ours = ours, .tolerance = tolerance};
     *check = (struct rate_check){.good = true};
     if (theirs->rows != ours->n)
         return error_set(error, STATUS_BAD_INPUT,
@@ -383,17 +312,17 @@ enum status rate_check_make(struct rate_check *check, const char *path, const st
         const int k = csv_column(theirs, names[column]);
         if (k < 0 || (column < 6 && column - 3 >= ours->dim)) continue;
         struct rate_comparison *c = &check->columns[check->count++];
-        columns[column] = theirs->values[k];
+        both.theirs[column] = theirs->values[k];
         c->column = column;
         c->quantity = names[column];
-        compare(c, columns[column], ours, setup->m, column);
+        compare(c, &both, ours);
         c->good = c->worst <= tolerance;
         check->good &= c->good;
     }
     if (check->count == 0)
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s:1: nothing to compare: allowed: any of h rho P ax ay az du", path);
-    if (!check->good) find_causes(check, columns, setup, ours, tolerance);
+    if (!check->good) find_causes(check, &both);
     return STATUS_OK;
 }
 

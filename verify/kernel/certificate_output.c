@@ -242,11 +242,11 @@ static void fill(struct curves *curves, const struct certificate *c)
         double values[PIECES_NODES];
         struct series_fit fit;
         for (int j = 0; j < PIECES_NODES; j++)
-            values[j] = c->kernel->dw(c->kernel, a + half * (1 + pieces_node(pieces, j)), c->dim);
+            values[j] = c->kernel->dw(c->kernel, a + half * (1 + pieces->node[j]), c->dim);
         pieces_fit(pieces, values, &fit);
         for (int j = PIECES_NODES - 1; j >= 0 && curves->n < CURVE_MAX; j -= stride) {
             double floor;
-            const double x = pieces_node(pieces, j), q = a + half * (1 + x);
+            const double x = pieces->node[j], q = a + half * (1 + x);
             curves->q[curves->n] = q;
             curves->w[curves->n] = unit * c->kernel->w(c->kernel, q, c->dim);
             curves->dw[curves->n] = unit * values[j];

@@ -162,15 +162,24 @@ static void is_read(const struct table *t, const struct snapshot_file *file)
     assert_true(file->precision[0] < 1.2e-16 && file->precision[1] < 1.2e-16);
 }
 
-static inline void reads(const struct table *t, const char *map, struct snapshot_file *file)
+/* What is read of a text; the caller frees it. */
+static inline struct snapshot_file file_of(const char *text, size_t size, const char *map)
+{
+    const struct snapshot_options options = {.map = map};
+    struct snapshot_file file;
+    struct error error = {0};
+    put_file(text, size);
+    if (snapshot_read(path_of("a.txt"), &options, &file, &error))
+        fail_msg("%s\n%s", error.message, text);
+    return file;
+}
+
+static inline struct snapshot_file reads(const struct table *t, const char *map)
 {
     static char text[TEXT_MAX];
-    const struct snapshot_options options = {.map = map};
-    struct error error = {0};
-    put_file(text, text_of(t, text, -1, -1, NULL));
-    if (snapshot_read(path_of("a.txt"), &options, file, &error))
-        fail_msg("%s\n%s", error.message, text);
-    is_read(t, file);
+    struct snapshot_file file = file_of(text, text_of(t, text, -1, -1, NULL), map);
+    is_read(t, &file);
+    return file;
 }
 
 static inline void refuses(const char *text, size_t size, const char *map, const char *says)

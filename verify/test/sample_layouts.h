@@ -282,14 +282,20 @@ static void is_noted(const struct layout *l, const struct item *items,
 
 static struct snapshot_options here = {.here = true};
 
-static inline void reads(const struct layout *l, const struct item *items, const char *what)
+/* What is read of a file of n items; the caller frees it. */
+static inline struct snapshot_file file_of(const struct item *items, size_t n, const char *what)
 {
     struct snapshot_file file;
     struct error error = {0};
     char *path = path_of("a.hdf5");
-    write_items(path, items, l->count);
-    if (snapshot_read(path, &here, &file, &error))
-        fail_msg("%s: %s: %s", l->name, what, error.message);
+    write_items(path, items, n);
+    if (snapshot_read(path, &here, &file, &error)) fail_msg("%s: %s", what, error.message);
+    return file;
+}
+
+static inline void reads(const struct layout *l, const struct item *items, const char *what)
+{
+    struct snapshot_file file = file_of(items, l->count, what);
     is_read(l, items, &file);
     is_noted(l, items, &file);
     snapshot_file_free(&file);

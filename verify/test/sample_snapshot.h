@@ -3,6 +3,7 @@
 #pragma once
 
 #include "judge.h"
+#include "keyed.h"
 #include "own_folder.h"
 
 enum { N = 240 };
@@ -71,10 +72,13 @@ static inline struct judge_request uniform_gas(void)
                                   .kernel = -1};
 }
 
-static inline void judges(const struct judge_request *request, struct judged *judged)
+/* The caller frees it with judge_free. */
+static inline struct judged judges(const struct judge_request *request)
 {
+    struct judged judged;
     struct error error = {0};
-    if (judge_snapshot(put("a.csv"), request, judged, &error)) fail_msg("%s", error.message);
+    if (judge_snapshot(put("a.csv"), request, &judged, &error)) fail_msg("%s", error.message);
+    return judged;
 }
 
 static inline void refuses(const struct judge_request *request, const char *says)

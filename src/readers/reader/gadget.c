@@ -32,11 +32,6 @@ struct binary {
     int parts;
 };
 
-static uint64_t integer(const struct binary *b, const unsigned char *bytes, size_t size)
-{
-    return fortran_unsigned(bytes, size, b->swapped);
-}
-
 static double real(const struct binary *b, const unsigned char *bytes, size_t size)
 {
     return fortran_real(bytes, size, b->swapped);
@@ -100,7 +95,7 @@ static enum status read_header(struct binary *b, struct error *error)
                          "bytes, positions, velocities ...",
                          path, b->count, b->record[0].size, HEADER);
     for (int t = 0; t < TYPES; t++) {
-        b->particles[t] = (size_t)integer(b, h + 4 * t, 4);
+        b->particles[t] = word(h + 4 * t, b->swapped);
         b->mass[t] = real(b, h + 24 + 8 * t, 8);
         if (b->particles[t] > SNAPSHOT_ROWS_MAX || !(b->mass[t] >= 0 && isfinite(b->mass[t])))
             return error_set(error, STATUS_BAD_INPUT,
@@ -112,7 +107,7 @@ static enum status read_header(struct binary *b, struct error *error)
     }
     b->time = real(b, h + 72, 8);
     b->redshift = real(b, h + 80, 8);
-    b->parts = (int)integer(b, h + 124, 4);
+    b->parts = (int)word(h + 124, b->swapped);
     b->box = real(b, h + 128, 8);
     if (b->particles[0] == 0)
         return error_set(error, STATUS_BAD_INPUT, "%.200s: no gas: %zu particles of other types%s",
@@ -142,6 +137,8 @@ static size_t width_of(const struct record *record, size_t count)
 
 enum { POSITIONS, VELOCITIES, MASSES, ENERGIES, DENSITIES, WIDTHS, ACCELERATIONS, BLOCKS };
 static const char *const tags[BLOCKS] = {"POS ", "VEL ", "MASS", "U   ", "RHO ", "HSML", "ACCE"};
+static const enum snapshot_column columns[BLOCKS] = {
+    SNAPSHOT_X, SNAPSHOT_VX, SNAPSHOT_M, SNAPSHOT_U, SNAPSHOT_RHO, SNAPSHOT_H, SNAPSHOT_AX};
 
 struct layout {
     const struct record *block[BLOCKS]; /* NULL: missing */
@@ -281,29 +278,24 @@ static enum status find_blocks(const struct binary *b, struct layout *layout,
                              b->source->path, k ? "velocities" : "positions", b->all, 12 * b->all,
                              24 * b->all, layout->block[k] ? layout->block[k]->size : (size_t)0);
     if (!b->tagged) return infer(b, layout, notes, error);
-    static const int needed[] = {MASSES, DENSITIES};
-    for (int k = 0; k < 2; k++)
-        if (!layout->block[needed[k]] && !(needed[k] == MASSES && !b->massive))
-            return refuse_block(b, tags[needed[k]], error);
-    return STATUS_OK;
+    if (b->massive && !layout->block[MASSES]) return refuse_block(b, tags[MASSES], error);
+    return layout->block[DENSITIES] ? STATUS_OK : refuse_block(b, tags[DENSITIES], error);
 }
 
 /* ---- into columns ---- */
 
-static enum status take_block(const struct binary *b, const struct layout *layout, int block,
-                              enum snapshot_column column, struct snapshot_file *file,
-                              struct error *error)
+static enum status take_block(const struct binary *b, const struct record *record, int block,
+                              struct snapshot_file *file, struct error *error)
 {
-    const struct record *record = layout->block[block];
+    const enum snapshot_column column = columns[block];
     const bool vector = block == POSITIONS || block == VELOCITIES || block == ACCELERATIONS;
     const size_t each = vector ? 3 : 1;
     const size_t rows = block == POSITIONS || block == VELOCITIES ? b->all
                         : block == MASSES                         ? b->massive
                                                                   : b->particles[0];
-    size_t width = record ? width_of(record, each * rows) : 0;
-    if (record && block == ACCELERATIONS && !width) /* for all particles, not only gas */
+    size_t width = width_of(record, each * rows);
+    if (block == ACCELERATIONS && !width) /* for all particles, not only gas */
         width = width_of(record, each * b->all);
-    if (!record) return STATUS_OK;
     if (!width)
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s: block '%s' has %zu bytes; allowed: %zu "
@@ -311,8 +303,8 @@ static enum status take_block(const struct binary *b, const struct layout *layou
                          b->source->path, tags[block], record->size, 4 * each * rows,
                          8 * each * rows);
     for (size_t d = 0; d < each; d++) {
-        if (!snapshot_file_make(file, (enum snapshot_column)(column + d)))
-            return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", b->source->path);
+        if (snapshot_file_make(file, (enum snapshot_column)(column + d), b->source->path, error))
+            return error->status;
         for (size_t i = 0; i < file->n; i++)
             file->column[column + d][i] = real(b, record->bytes + width * (each * i + d), width);
     }
@@ -324,24 +316,14 @@ static enum status take_block(const struct binary *b, const struct layout *layou
 static enum status take_blocks(const struct binary *b, const struct layout *layout,
                                struct snapshot_file *file, struct error *error)
 {
-    static const struct {
-        int block;
-        enum snapshot_column column;
-    } columns[] = {{POSITIONS, SNAPSHOT_X},     {VELOCITIES, SNAPSHOT_VX}, {MASSES, SNAPSHOT_M},
-                   {ENERGIES, SNAPSHOT_U},      {DENSITIES, SNAPSHOT_RHO}, {WIDTHS, SNAPSHOT_H},
-                   {ACCELERATIONS, SNAPSHOT_AX}};
     file->n = file->gas = b->particles[0];
-    for (size_t k = 0; k < sizeof columns / sizeof *columns; k++)
-        if ((columns[k].block != MASSES || b->mass[0] == 0) &&
-            take_block(b, layout, columns[k].block, columns[k].column, file, error))
+    for (int k = 0; k < BLOCKS; k++)
+        if (layout->block[k] && (k != MASSES || b->mass[0] == 0) &&
+            take_block(b, layout->block[k], k, file, error))
             return error->status;
-    if (b->mass[0] > 0) {
-        if (!snapshot_file_make(file, SNAPSHOT_M))
-            return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", b->source->path);
-        for (size_t i = 0; i < file->n; i++) file->column[SNAPSHOT_M][i] = b->mass[0];
-        snapshot_note(&file->notes, "masses", "from the header's table", "%.9g", b->mass[0]);
-    }
-    return STATUS_OK;
+    if (!(b->mass[0] > 0)) return STATUS_OK;
+    snapshot_note(&file->notes, "masses", "from the header's table", "%.9g", b->mass[0]);
+    return snapshot_file_fill(file, SNAPSHOT_M, b->mass[0], b->source->path, error);
 }
 
 static enum status read(const struct snapshot_source *source,

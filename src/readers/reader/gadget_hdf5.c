@@ -47,13 +47,6 @@ static enum status read(const struct snapshot_source *source,
     static const char *const gammas[] = {"Header:Gamma", "Header:gamma", "Parameters:Gamma",
                                          "Config:GAMMA", NULL};
     (void)options;
-    char there[300];
-    if (!hdf5_has(source, "PartType0")) {
-        hdf5_names(source, "/", there, sizeof there);
-        return error_set(error, STATUS_BAD_INPUT, "%.200s: no gas (PartType0); it has: %.200s%s",
-                         source->path, there,
-                         hdf5_has(source, "PartType1") ? " (dark matter only?)" : "");
-    }
     if (hdf5_gas(source, "PartType0", names, sizeof names / sizeof *names, file, error) ||
         hdf5_header(source, file, error))
         return error->status;

@@ -162,8 +162,8 @@ static enum status take_array(struct dump *dump, int kind, struct snapshot_file 
     note_array(dump, tag.bytes);
     for (size_t c = 0; c < sizeof columns / sizeof *columns; c++) {
         if (!is_tag(tag.bytes, columns[c].tag) || kind < FIRST_REAL) continue;
-        if (!snapshot_file_make(file, columns[c].column))
-            return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", dump->source->path);
+        if (snapshot_file_make(file, columns[c].column, dump->source->path, error))
+            return error->status;
         to = file->column[columns[c].column];
         double *precision = &file->precision[columns[c].column >= SNAPSHOT_VX];
         *precision =

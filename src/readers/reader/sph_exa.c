@@ -62,9 +62,8 @@ static enum status read(const struct snapshot_source *source,
             return error_set(error, STATUS_BAD_INPUT,
                              "%.200s: no masses: neither %s/m nor its attribute particleMass",
                              source->path, step);
-        if (!snapshot_file_make(file, SNAPSHOT_M))
-            return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
-        for (size_t i = 0; i < file->n; i++) file->column[SNAPSHOT_M][i] = mass.value;
+        if (snapshot_file_fill(file, SNAPSHOT_M, mass.value, source->path, error))
+            return error->status;
     }
     take_box(source, step, file);
     snapshot_note(&file->notes, "step", step, "the last one of the file");

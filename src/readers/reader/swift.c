@@ -25,12 +25,6 @@ static enum status read(const struct snapshot_source *source,
 {
     char revision[40];
     (void)options;
-    if (!hdf5_has(source, "PartType0")) {
-        char there[300];
-        hdf5_names(source, "/", there, sizeof there);
-        return error_set(error, STATUS_BAD_INPUT, "%.200s: no gas (PartType0); it has: %.200s",
-                         source->path, there);
-    }
     if (hdf5_gas(source, "PartType0", names, sizeof names / sizeof *names, file, error) ||
         hdf5_header(source, file, error))
         return error->status;

@@ -102,23 +102,17 @@ static bool take_numbers(struct vtk *vtk, const struct array *array, double *to)
 static bool take_points(struct vtk *vtk, const struct array *array, int column,
                         struct snapshot_file *file)
 {
-    const bool vector = column == SNAPSHOT_X || column == SNAPSHOT_VX || column == SNAPSHOT_AX;
-    if (column < 0 || array->components != (vector ? 3 : 1)) return take_numbers(vtk, array, NULL);
+    if (column < 0 || array->components != (vtk_is_vector(column) ? 3 : 1))
+        return take_numbers(vtk, array, NULL);
     if (array->tuples != file->n)
         return refuse(vtk, "another number of tuples than of points has ", array->name);
     if (file->column[column]) return refuse(vtk, "there are two arrays for ", array->name);
     double *all = malloc((3 * file->n + 1) * sizeof *all);
-    bool room = all != NULL;
-    for (size_t c = 0; c < array->components && room; c++)
-        room = snapshot_file_make(file, (enum snapshot_column)(column + (int)c));
-    if (!room) error_set(vtk->error, STATUS_ENVIRONMENT, "no memory for %.200s", vtk->source->path);
-    const bool well = room && take_numbers(vtk, array, all);
-    for (size_t i = 0; well && i < file->n; i++)
-        for (size_t c = 0; c < array->components; c++)
-            file->column[column + (int)c][i] = all[i * array->components + c];
+    if (!all) error_set(vtk->error, STATUS_ENVIRONMENT, "no memory for %.200s", vtk->source->path);
+    const bool well = all && take_numbers(vtk, array, all) &&
+                      !vtk_columns(file, column, array->components, all, array->type,
+                                   vtk->source->path, vtk->error);
     free(all);
-    double *precision = &file->precision[column != SNAPSHOT_X];
-    *precision = fmax(*precision, strcmp(array->type, "float") ? 1.2e-16 : 6e-8);
     return well;
 }
 

@@ -280,27 +280,16 @@ static bool take_array(const struct vtk *vtk, const struct tag *tag, struct arra
 static bool take_points(const struct vtk *vtk, const struct array *array, int column,
                         struct snapshot_file *file)
 {
-    const bool vector = column == SNAPSHOT_X || column == SNAPSHOT_VX || column == SNAPSHOT_AX;
-    if (column < 0 || (!vector && array->components > 1) || array->components > 3) return true;
-    double *all = allocate(vtk, (file->n * array->components + 1) * sizeof *all);
-    bool well = all && take_numbers(vtk, array, all, file->n * array->components);
-    for (size_t c = 0; well && c < array->components; c++) {
-        const enum snapshot_column to = (enum snapshot_column)(column + (int)c);
-        if (file->column[to]) {
-            free(all);
+    if (column < 0 || array->components > (vtk_is_vector(column) ? 3 : 1)) return true;
+    for (int to = column; to < column + (int)array->components; to++)
+        if (file->column[to])
             return refuse(vtk, "the array '%s' is a second one for %s; allowed: one", array->name,
                           snapshot_column_names[to]);
-        }
-        well = snapshot_file_make(file, to);
-        if (!well)
-            error_set(vtk->error, STATUS_ENVIRONMENT, "no memory for %.200s", vtk->source->path);
-        for (size_t i = 0; well && i < file->n; i++)
-            file->column[to][i] = all[i * array->components + c];
-    }
+    double *all = allocate(vtk, (file->n * array->components + 1) * sizeof *all);
+    const bool well = all && take_numbers(vtk, array, all, file->n * array->components) &&
+                      !vtk_columns(file, column, array->components, all, array->type,
+                                   vtk->source->path, vtk->error);
     free(all);
-    const double epsilon = !strcmp(array->type, "Float32") ? 6e-8 : 1.2e-16;
-    double *precision = &file->precision[column != SNAPSHOT_X];
-    *precision = fmax(*precision, epsilon);
     return well;
 }
 
@@ -315,34 +304,41 @@ static void take_letters(const double *numbers, size_t n, char *to, size_t room)
 static bool take_field(const struct vtk *vtk, const struct tag *tag, const struct array *array,
                        struct snapshot_file *file)
 {
-    static const char *const known[] = {"TimeValue", "TIME", "time", "gamma",    "ndims",
-                                        "box",       "case", "keys", "boundary", NULL};
+    const struct {
+        const char *name;
+        struct snapshot_value *value; /* NULL: another number */
+        char *text;                   /* NULL: numbers */
+        size_t room;
+    } known[] = {{"TimeValue", &file->time, NULL, 0},
+                 {"TIME", &file->time, NULL, 0},
+                 {"time", &file->time, NULL, 0},
+                 {"gamma", &file->gamma, NULL, 0},
+                 {"ndims", NULL, NULL, 0},
+                 {"box", NULL, NULL, 0},
+                 {"case", NULL, file->case_name, sizeof file->case_name},
+                 {"keys", NULL, file->keys, sizeof file->keys},
+                 {"boundary", NULL, file->boundary, sizeof file->boundary}};
+    enum { KNOWN = sizeof known / sizeof *known };
     double numbers[FIELD_MOST], tuples = 1;
     char word[WORD];
-    int which = 0;
-    while (known[which] && strcmp(known[which], array->name)) which++;
-    if (!known[which] || !vtk_type_of(array->type)) return true;
+    size_t k = 0;
+    while (k < KNOWN && strcmp(known[k].name, array->name)) k++;
+    if (k == KNOWN || !vtk_type_of(array->type)) return true;
     text_real(value_of(tag, "NumberOfTuples", word), &tuples);
     if (!(tuples >= 1 && tuples * (double)array->components <= FIELD_MOST))
         return refuse(vtk, "the field '%s' has %g x %zu numbers; allowed: 1 to %d", array->name,
                       tuples, array->components, FIELD_MOST);
     const size_t n = (size_t)tuples * array->components;
     if (!take_numbers(vtk, array, numbers, n)) return false;
-    const struct snapshot_value value = {true, numbers[0]};
-    switch (which) {
-    case 0:
-    case 1:
-    case 2:
-        file->time = value;
-        break;
-    case 3:
-        file->gamma = value;
+    if (known[k].value == &file->gamma)
         snapshot_note(&file->notes, "gamma", "in the file", "its field gamma");
-        break;
-    case 4:
+    if (known[k].value) {
+        *known[k].value = (struct snapshot_value){true, numbers[0]};
+    } else if (known[k].text) {
+        take_letters(numbers, n, known[k].text, known[k].room);
+    } else if (!strcmp(array->name, "ndims")) {
         if (numbers[0] == 1 || numbers[0] == 2 || numbers[0] == 3) file->dim = (int)numbers[0];
-        break;
-    case 5:
+    } else {
         file->boxed = file->placed = n == 2 || n == 4 || n == 6;
         for (size_t d = 0; file->boxed && d < n / 2; d++) {
             file->corner[d] = numbers[2 * d], file->box[d] = numbers[2 * d + 1] - numbers[2 * d];
@@ -352,15 +348,6 @@ static bool take_field(const struct vtk *vtk, const struct tag *tag, const struc
                               "the upper end",
                               numbers[2 * d], numbers[2 * d + 1]);
         }
-        break;
-    case 6:
-        take_letters(numbers, n, file->case_name, sizeof file->case_name);
-        break;
-    case 7:
-        take_letters(numbers, n, file->keys, sizeof file->keys);
-        break;
-    default:
-        take_letters(numbers, n, file->boundary, sizeof file->boundary);
     }
     return true;
 }

@@ -24,7 +24,7 @@ static void radial_piece(const struct pieces *pieces, double a, double b, double
     double values[PIECES_NODES], slopes[PIECES_NODES];
     struct series_fit fit, slope_fit;
     for (int j = 0; j < PIECES_NODES; j++) {
-        const double r = (a + half * (1 + pieces_node(pieces, j))) * h;
+        const double r = (a + half * (1 + pieces->node[j])) * h;
         values[j] = kernel_value(kernel, r, h, dim);
         slopes[j] = kernel_dr(kernel, r, h, dim);
     }
@@ -32,7 +32,7 @@ static void radial_piece(const struct pieces *pieces, double a, double b, double
     pieces_fit(pieces, slopes, &slope_fit);
     for (int j = 0; j < PIECES_NODES; j += 3) {
         double floor;
-        const double x = pieces_node(pieces, j), q = a + half * (1 + x);
+        const double x = pieces->node[j], q = a + half * (1 + x);
         const double slope = pieces_series_slope(&fit, x, &floor) / (half * h);
         const double error = fabs(slope - slopes[j]);
         const double scale = fabs(unit) * pieces->max_dw;
@@ -67,7 +67,7 @@ static void width_point(const struct pieces *pieces, double a, double b, double 
     double values[PIECES_NODES], floor;
     struct series_fit fit;
     for (int j = 0; j < PIECES_NODES; j++)
-        values[j] = kernel_value(kernel, r, middle + half * pieces_node(pieces, j), dim);
+        values[j] = kernel_value(kernel, r, middle + half * pieces->node[j], dim);
     pieces_fit(pieces, values, &fit);
     const double slope = pieces_series_slope(&fit, (h - middle) / half, &floor) / half;
     const double error = fabs(slope - kernel_dh(kernel, r, h, dim));

@@ -43,9 +43,8 @@ TEST(case_and_keys_of_the_file)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct judge_request request = {
             .case_name = rows[k].name, .kernel = -1, .x0 = {rows[k].x0, 1}};
-        struct judged judged;
         plant(1, 0, rows[k].head);
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         const struct setting_value *value = judged.run.settings.value;
         near_relative(value[SETTING_right].real[2], rows[k].right, 1e-14);
         assert_true(value[SETTING_left].real[1] ==
@@ -72,11 +71,10 @@ TEST(altered_initial_states)
                 {"window=0.5 1.5", false}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct judge_request request = {.kernel = -1};
-        struct judged judged;
         char head[200];
         snprintf(head, sizeof head, "# case = sod\n# keys = %s\n" TIMED, rows[k].keys);
         plant(1, 0, head);
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         assert_true(judged.altered == rows[k].altered);
         judge_free(&judged);
     }
@@ -86,22 +84,18 @@ TEST(altered_initial_states)
 TEST(boundaries)
 {
     static const struct {
-        int dim;
-        const char *said, *asked;
+        const char *said;
         enum boundary want[2];
-        bool window;
-    } rows[] = {
-        {2, "reflecting reflecting", NULL, {BOUNDARY_REFLECTING, BOUNDARY_REFLECTING}, false},
-        {2, "periodic reflecting", NULL, {BOUNDARY_PERIODIC, BOUNDARY_REFLECTING}, false},
-        {2, "", NULL, {BOUNDARY_PERIODIC, BOUNDARY_PERIODIC}, false}};
+    } rows[] = {{"reflecting reflecting", {BOUNDARY_REFLECTING, BOUNDARY_REFLECTING}},
+                {"periodic reflecting", {BOUNDARY_PERIODIC, BOUNDARY_REFLECTING}},
+                {"", {BOUNDARY_PERIODIC, BOUNDARY_PERIODIC}}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        const struct judge_request request = {.boundary = rows[k].asked, .kernel = -1};
-        struct judged judged;
+        const struct judge_request request = {.kernel = -1};
         char head[200];
         snprintf(head, sizeof head, "# case = rest_2d\n# boundary = %s\n# time = 0\n# box = 2 1\n",
                  rows[k].said);
         plant(2, 0, head);
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         for (int d = 0; d < 2; d++)
             assert_int_equal(judged.run.problem.boundary[d], rows[k].want[d]);
         judge_free(&judged);
@@ -214,7 +208,6 @@ TEST(windows)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct judge_request request = {
             .case_name = own_case(1, "", "", WINDOW), .time = {true, 0}, .kernel = -1};
-        struct judged judged;
         char text[80];
         if (rows[k].asked) {
             request.window = true;
@@ -222,7 +215,7 @@ TEST(windows)
         }
         plant(1, rows[k].lo, rows[k].head);
         gas.x[0][1] = rows[k].lo + fmin(2, rows[k].hi - rows[k].lo);
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         const struct prepared *p = &judged.run.problem;
         near_absolute(p->window.lo[0], rows[k].want[0], 2e-6);
         near_absolute(p->window.hi[0], rows[k].want[1], 2e-6);
@@ -260,11 +253,10 @@ TEST(tubes_whose_case_has_ends)
                                         .kernel = -1,
                                         .window = rows[k].asked,
                                         .ends = {1.75, 2.5}};
-        struct judged judged;
         plant(1, 0, "");
         for (int i = 0; i < N; i++)
             gas.x[0][i] = rows[k].first + (3 - rows[k].first) * i / (N - 1), gas.m[i] /= 8;
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         if (!strstr(note(&judged, "box")->evidence, rows[k].box))
             fail_msg("row %zu: %s", k, note(&judged, "box")->evidence);
         near_absolute(judged.run.problem.window.lo[0], rows[k].want[0], 1e-12);
@@ -288,7 +280,6 @@ TEST(sums_of_the_start)
     for (int k = 0; k < 6; k++) {
         const char *name = k < 3 ? "square" : own_case(2, "", starts[k - 3], WINDOW);
         const struct judge_request request = {.time = {true, 0}, .kernel = -1};
-        struct judged judged;
         char head[200];
         double mass = 0;
         snprintf(head, sizeof head,
@@ -297,7 +288,7 @@ TEST(sums_of_the_start)
         plant(2, k < 3 ? 0 : 1, head);
         put("p.csv");
         for (int i = 0; i < N; i++) mass += gas.m[i];
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         const struct conservation *start = &judged.start;
         if (k == 0) first = judged.start;
         if (k < 3)
@@ -322,9 +313,8 @@ TEST(cases_without_a_solution)
         snprintf(path, sizeof path, "%s", path_of("parts.ini"));
         const struct judge_request request = {
             .case_name = path, .kernel = -1, .allow_far = allowed};
-        struct judged judged;
         plant(1, 0, TIMED);
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         assert_true(judged.passes && !judged.far && judged.silent == !allowed);
         assert_true(judged.wrong == 0);
         const char *begin = "nothing of this case is known at t = 0.1, so nothing was compared; ";
@@ -339,11 +329,10 @@ TEST(radius_of_a_line)
 {
     for (int open = 0; open < 2; open++) {
         struct judge_request request = uniform_gas();
-        struct judged judged;
         request.radius = 0.25, request.x0 = (struct snapshot_value){true, 1.125};
         request.boundary = open ? "open" : NULL;
         plant(1, 0, "# box = 2\n");
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         near_absolute(judged.run.problem.window.lo[0], 0.75, 1e-15);
         near_absolute(judged.run.problem.window.hi[0], 1.25, 1e-15);
         judge_free(&judged);
@@ -357,13 +346,12 @@ TEST(windows_of_discs_and_balls)
         const double length = k < 2 ? 1 : k == 2 ? 1 + 1e-4 : 2;
         struct judge_request request = {
             .case_name = "gresho", .time = {true, 0}, .kernel = -1, .radius = k % 2 ? 0.3125 : 0};
-        struct judged judged;
         char head[80], says[80];
         snprintf(head, sizeof head, k < 3 ? "# box = %.17g\n" : "# box = -0.25:1.75 -0.25:1.75\n",
                  length);
         plant(2, 0, head);
         for (int i = 0; i < N; i++) gas.x[0][i] /= 2;
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         if (request.radius > 0) {
             assert_true(judged.run.problem.window.radius == 0.3125);
             noted(&judged, "window", "radius 0.3125", "--window");
@@ -380,10 +368,9 @@ TEST(dimensions_of_flows_along_x)
 {
     for (int dim = 1; dim <= 3; dim++) {
         const struct judge_request request = uniform_gas();
-        struct judged judged;
         char value[40];
         plant(dim, 0, "");
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         assert_int_equal(judged.run.problem.domain.dim, dim);
         for (int d = 0; d < dim; d++)
             near_absolute(judged.run.problem.domain.hi[d], d ? 1 : 2, 1e-15);
@@ -400,11 +387,10 @@ TEST(dimensions_of_flows_along_x)
 TEST(wrapped_particles_are_sorted)
 {
     struct judge_request request = uniform_gas();
-    struct judged judged;
     request.x0 = (struct snapshot_value){true, 0.5};
     request.box = "-0.25:2.25";
     plant(1, 0, "");
-    judges(&request, &judged);
+    struct judged judged = judges(&request);
     noted(&judged, "box", "-0.25 to 2.25 along x", "--box");
     noted(&judged, "x0", "0.5", "--x0");
     const struct snapshot *s = &judged.result.snapshot;
@@ -479,7 +465,6 @@ TEST(open_ends_are_recognised)
             const struct riemann_state *sides = rows[k].sides;
             char left[80], right[80];
             struct judge_request request = uniform_gas();
-            struct judged judged;
             request.left = left, request.right = right, request.time.value = rows[k].time;
             snprintf(left, 80, "%.17g %.17g %.17g", sides[0].rho, sides[0].v, sides[0].P);
             snprintf(right, 80, "%.17g %.17g %.17g", sides[1].rho, sides[1].v, sides[1].P);
@@ -492,7 +477,7 @@ TEST(open_ends_are_recognised)
             const struct riemann_state *gas_there = &sides[side];
             gas.rho[2 * side + 1] *= 1 + rows[k].rho;
             gas.v[0][2 * side + 1] += rows[k].v * sqrt(1.4 * gas_there->P / gas_there->rho);
-            judges(&request, &judged);
+            struct judged judged = judges(&request);
             if (is_noted(&judged, "ends") != rows[k].ended) fail_msg("row %zu, %d", k, side);
             /* the box of a tube with ends extends beyond them */
             assert_int_equal(judged.run.problem.domain.lo[0] < 1, rows[k].ended);
@@ -502,15 +487,14 @@ TEST(open_ends_are_recognised)
         }
     /* a boundary that the user or the file names takes precedence */
     struct judge_request request = uniform_gas();
-    struct judged judged;
     request.right = "0.125 0 0.1", request.boundary = "periodic";
     plant(1, 0, "# box = 2\n# boundary = open\n");
-    judges(&request, &judged);
+    struct judged judged = judges(&request);
     noted(&judged, "ends", "periodic", "--boundary");
     assert_true(judged.run.problem.domain.lo[0] == 0 && judged.run.problem.domain.hi[0] == 2);
     judge_free(&judged);
     request.boundary = NULL;
-    judges(&request, &judged);
+    judged = judges(&request);
     assert_false(is_noted(&judged, "ends"));
     judge_free(&judged);
 }

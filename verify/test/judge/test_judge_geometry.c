@@ -29,7 +29,6 @@ TEST(sources_of_gamma)
         {0, 0, 0, 0, 1.4, "the file has none: the case's"}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct judge_request request = uniform_gas();
-        struct judged judged;
         plant(1, 0, "");
         gas.has_P = rows[k].planted > 0;
         if (rows[k].in_file > 0)
@@ -42,7 +41,7 @@ TEST(sources_of_gamma)
         gas.P[11] = 0;                                 /* a pressure of 0 determines no gamma */
         gas.P[9] *= 1 + rows[k].scatter * 1.25 / 0.25; /* scatter of gamma itself */
         request.gamma = (struct snapshot_value){rows[k].said > 0, rows[k].said};
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         near_relative(judged.run.problem.gamma, rows[k].want, 1e-15);
         const char *evidence = note(&judged, "gamma")->evidence;
         if (strncmp(evidence, rows[k].evidence, strlen(rows[k].evidence)) != 0 ||
@@ -63,14 +62,13 @@ TEST(gamma_out_of_range)
 TEST(sources_of_time)
 {
     struct judge_request request = uniform_gas();
-    struct judged judged;
     plant(1, 0, "# time = 0.125\n");
-    judges(&request, &judged);
+    struct judged judged = judges(&request);
     assert_true(judged.result.time == 0.1 && judged.file.time.value == 0.1);
     assert_string_equal(note(&judged, "time")->evidence, "--time");
     judge_free(&judged);
     request.time.known = false;
-    judges(&request, &judged);
+    judged = judges(&request);
     assert_true(judged.result.time == 0.125 && judged.run.problem.problem);
     assert_string_equal(note(&judged, "time")->evidence, "the file says so");
     judge_free(&judged);
@@ -79,7 +77,7 @@ TEST(sources_of_time)
     request.time = (struct snapshot_value){true, -1e-9};
     refuses(&request, "allowed: 0 or above");
     request.time.value = 0;
-    judges(&request, &judged);
+    judged = judges(&request);
     assert_true(judged.result.time == 0);
     judge_free(&judged);
     snprintf(gas.head, sizeof gas.head, "# time = -1\n");
@@ -140,7 +138,6 @@ TEST(positions_of_tubes)
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct judge_request request = uniform_gas();
-        struct judged judged;
         plant(1, 0, rows[k].head);
         for (int i = 0; i < N; i++) gas.m[i] /= 8; /* the volumes do not fill the line */
         for (int i = 0; i < N; i++)
@@ -148,7 +145,7 @@ TEST(positions_of_tubes)
                           : i == 1 ? rows[k].hi
                                    : rows[k].lo + (rows[k].hi - rows[k].lo) * (i + 0.5) / N;
         if (rows[k].x0 < 9) request.x0 = (struct snapshot_value){true, rows[k].x0};
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         const struct prepared *p = &judged.run.problem;
         const double middle = 0.5 * (rows[k].want_lo + rows[k].want_hi);
         for (int i = 0; i < N && rows[k].periodic; i++)
@@ -170,8 +167,7 @@ TEST(positions_of_tubes)
             if (more) {
                 refuses(&request, "allowed: in its box, 0 to 2");
             } else {
-                struct judged judged;
-                judges(&request, &judged);
+                struct judged judged = judges(&request);
                 assert_true(judged.run.problem.domain.lo[0] == (end ? 1 : -1));
                 judge_free(&judged);
             }
@@ -206,13 +202,12 @@ TEST(lines_as_long_as_the_box)
                 {"sound_wave", -0.3, 1, -0.3}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct judge_request request = {.case_name = rows[k].name, .time = {true, 0}, .kernel = -1};
-        struct judged judged;
         const double volume = rows[k].length / N, corner = rows[k].corner,
                      box = strcmp(rows[k].name, "sod") ? 1 : 2;
         plant(1, 0, "");
         for (int i = 0; i < N; i++) gas.x[0][i] = rows[k].lo + (i + 0.5) * volume;
         for (int i = 0; i < N; i++) gas.m[i] = volume;
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         const struct domain *domain = &judged.run.problem.domain;
         near_absolute(domain->lo[0] - (corner < 9 ? corner : rows[k].lo), 0, 1e-12);
         near_absolute(domain->hi[0] - domain->lo[0] - (corner < 9 ? box : rows[k].length), 0,
@@ -233,14 +228,13 @@ TEST(walls)
             for (int k = 0; k < 6; k++) {
                 static const double at[] = {-0.2, 0, 0.5, 0.5, 1, 1.2}; /* over the extent */
                 const struct judge_request request = uniform_gas();
-                struct judged judged;
                 plant(dim, 0, "# box = -1:3 -1:2 -1:2\n");
                 gas.others = 2;
                 for (int i = N - 2; i < N; i++)
                     for (int d = 0; d < dim; d++)
                         gas.x[d][i] = (d == axis ? at[k] : 0.5) * (d ? 1 : 2);
                 if (k == 3) gas.x[axis][N - 2] = -0.5; /* one lies outside, the other within */
-                judges(&request, &judged);
+                struct judged judged = judges(&request);
                 assert_true(judged.boxed == (k > 0 && k < 5));
                 judge_free(&judged);
             }
@@ -272,9 +266,8 @@ TEST(boxes_of_liquids)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct judge_request request = {
             .case_name = "poiseuille", .time = {true, 0}, .kernel = -1, .box = rows[k].asked};
-        struct judged judged;
         plant(2, 0, rows[k].head);
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         for (int d = 0; d < 2; d++) {
             near_absolute(judged.run.problem.domain.lo[d], rows[k].lo[d], 1e-14);
             near_absolute(judged.run.problem.domain.hi[d], rows[k].hi[d], 1e-14);
@@ -299,7 +292,6 @@ TEST(ends_of_volumes)
         const bool walls = draw % 8 == 7, fills = draw % 4 && !walls;
         const double lo = uniform(1.5, 3);
         struct judge_request request = uniform_gas();
-        struct judged judged;
         double at = lo, first = 0, last = 0;
         plant(1, 0, "");
         for (int k = 0; k < N; k++) {
@@ -312,7 +304,7 @@ TEST(ends_of_volumes)
             last = gas.x[0][i];
         }
         gas.others = walls ? 2 : 0; /* then volumes do not count */
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         const struct prepared *p = &judged.run.problem;
         near_absolute(p->domain.lo[0] - (fills ? lo : first), 0, 1e-13);
         near_absolute(p->domain.hi[0] - (fills ? at : last), 0, 1e-13);
@@ -326,7 +318,6 @@ TEST(completed)
 {
     for (int which = 0; which < 4; which++) {
         struct judge_request request = uniform_gas();
-        struct judged judged;
         plant(1, 0, "# box = 2\n");
         gas.has_u = which != 1, gas.has_P = which != 0;
         for (int i = 0; i < N; i++) {
@@ -335,7 +326,7 @@ TEST(completed)
         }
         if (which == 3) gas.P[7] *= 1 + 1e-3;
         if (which == 2) gas.P[7] *= 1 + 2e-16;
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         for (int i = 0; i < N; i++) {
             near_relative(judged.file.column[SNAPSHOT_P][i], gas.P[i], 1e-15);
             near_relative(judged.file.column[SNAPSHOT_U][i], gas.u[i], 1e-15);

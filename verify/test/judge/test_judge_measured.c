@@ -187,17 +187,11 @@ TEST(random_snapshots)
             const double noise = pow(10, uniform(-2, 0));
             const int kernel = (int)floor(uniform(-1, 4));
             struct judge_request request = {.case_name = cases[k].name, .kernel = kernel};
-            struct run_settings settings;
-            struct run run;
-            struct judged judged;
-            struct error error = {0};
+            const struct run run = keyed_run(cases[k].name, "");
             char name[80] = "kernel not identifiable";
-            if (run_prepare(&settings, cases[k].name, 0, NULL, &error) ||
-                run_resolve(&run, &settings, &error))
-                fail_msg("%s: %s", cases[k].name, error.message);
             draw(k, &run.problem, noise);
             if (kernel >= 0) request.width.ratio = 1 + 0.25 * kernel;
-            judges(&request, &judged);
+            struct judged judged = judges(&request);
             const struct convention *best = &judged.conventions.candidate[0];
             assert_true(judged.conventions.known == (kernel >= 0));
             if (kernel >= 0) {
@@ -235,7 +229,6 @@ TEST(random_snapshots)
 TEST(cold_gas)
 {
     struct judge_request request = uniform_gas();
-    struct judged judged;
     request.left = request.right = "4 3 0.001";
     plant(1, 0, boxes[1]);
     gas.has_P = true;
@@ -243,7 +236,7 @@ TEST(cold_gas)
         gas.rho[i] = 4, gas.v[0][i] = 3, gas.P[i] = uniform(0, 0.5);
         gas.u[i] = gas.P[i] / (0.4 * gas.rho[i]);
     }
-    judges(&request, &judged);
+    struct judged judged = judges(&request);
     is_wrong_by(&judged);
     assert_int_equal(judged.wrong_field, FIELD_INTERNAL_ENERGY);
     judge_free(&judged);
@@ -258,15 +251,11 @@ TEST(widths_of_an_autopsy)
     } flows[] = {{"sound_wave", 1}, {"yee", 2}};
     for (size_t k = 0; k < sizeof flows / sizeof *flows; k++) {
         struct judge_request request = {.case_name = flows[k].name, .width.ratio = 1.5};
-        struct judged judged;
         struct autopsy_level level;
-        struct run_settings settings;
-        struct run run, used;
+        const struct run run = keyed_run(flows[k].name, "");
+        struct run used;
         struct error error = {0};
         double eta = 0;
-        if (run_prepare(&settings, flows[k].name, 0, NULL, &error) ||
-            run_resolve(&run, &settings, &error))
-            fail_msg("%s", error.message);
         const struct domain *box = &run.problem.domain;
         plant(flows[k].dim, 0, "# time = 0\n");
         gas.has_h = true;
@@ -283,7 +272,7 @@ TEST(widths_of_an_autopsy)
             gas.h[i] = uniform(1.9, 2.1) * pow(volume, 1. / gas.dim);
             eta += 1.5 * gas.h[i] / pow(gas.m[i] / gas.rho[i], 1. / gas.dim) / N;
         }
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         assert_true(judged.conventions.known);
         if (judge_autopsy(&judged, &level, &used, &error)) fail_msg("%s", error.message);
         near_relative(settings_real(&used.settings, SETTING_eta), eta, 1e-8);
@@ -293,7 +282,6 @@ TEST(widths_of_an_autopsy)
     for (int key = 0; key < 2; key++) {
         static const char *const keys[] = {"eta=3", "kernel=wendland_c2"};
         const struct judge_request request = {.time = {true, 0}, .width.ratio = 1.5};
-        struct judged judged;
         struct autopsy_level level;
         struct run used;
         struct error error = {0};
@@ -305,7 +293,7 @@ TEST(widths_of_an_autopsy)
             for (int d = 0; d < 2; d++) gas.x[d][i] = uniform(-5, 5);
             gas.h[i] = 1;
         }
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         assert_true(judged.conventions.known);
         if (judge_autopsy(&judged, &level, &used, &error)) fail_msg("%s", error.message);
         if (key == 0) assert_true(settings_real(&used.settings, SETTING_eta) == 3);
@@ -315,12 +303,11 @@ TEST(widths_of_an_autopsy)
         judge_free(&judged);
     }
     const struct judge_request jumps = {.case_name = "sod", .time = {true, 0.1}, .kernel = -1};
-    struct judged judged;
     struct autopsy_level level;
     struct run used;
     struct error error = {0};
     plant(1, 0, boxes[1]);
-    judges(&jumps, &judged);
+    struct judged judged = judges(&jumps);
     assert_int_equal(judge_autopsy(&judged, &level, &used, &error), STATUS_BAD_INPUT);
     assert_true(*error.message);
     judge_free(&judged);

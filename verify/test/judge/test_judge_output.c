@@ -224,7 +224,7 @@ TEST(documents_in_1d)
         struct judge_request later = request;
         later.time.value = 0.1 + 0.1 * k;
         plant(1, 0, "# box = 2\n");
-        judges(&later, &judged[k]);
+        judged[k] = judges(&later);
     }
     json_t *document = judge_json(judged, 2, NULL, false);
     assert_true(json_is_null(at(document, "noise", "transverse_velocity")));

@@ -12,7 +12,6 @@ TEST(transverse_noise)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (int only = 0; only <= dim; only++) { /* the component that is not 0; dim: all */
-            struct judged judged;
             const struct judge_request request = uniform_gas();
             double sum = 0, volume = 0;
             plant(dim, 0, boxes[dim]);
@@ -27,7 +26,7 @@ TEST(transverse_noise)
                 for (int d = 1; d < dim; d++) sum += V * gas.v[d][i] * gas.v[d][i];
                 volume += V;
             }
-            judges(&request, &judged);
+            struct judged judged = judges(&request);
             if (dim == 1)
                 assert_true(isnan(judged.transverse));
             else if (only == 0)
@@ -37,7 +36,6 @@ TEST(transverse_noise)
             judge_free(&judged);
         }
     /* in a vortex the radial component */
-    struct judged judged;
     struct judge_request request = {.case_name = "gresho", .time = {true, 0}, .kernel = -1};
     plant(2, 0, "");
     for (int i = 0; i < N; i++) {
@@ -45,7 +43,7 @@ TEST(transverse_noise)
         const double r = hypot(gas.x[0][i], gas.x[1][i]);
         for (int d = 0; d < 2; d++) gas.v[d][i] = 0.01 * gas.x[d][i] / r;
     }
-    judges(&request, &judged);
+    struct judged judged = judges(&request);
     near_relative(judged.transverse, 0.01, 1e-12);
     judge_free(&judged);
 }
@@ -59,7 +57,6 @@ TEST(spacing_of_a_slab)
                                               .time = {true, 0},
                                               .kernel = -1,
                                               .box = thick < 1 ? NULL : "-0.5:0.5 -0.5:0.5"};
-        struct judged judged;
         plant(3, 0, "");
         if (!request.box)
             snprintf(gas.head, sizeof gas.head,
@@ -70,7 +67,7 @@ TEST(spacing_of_a_slab)
             gas.x[2][i] *= thick;
             if (request.box) gas.m[i] = 0.75 / N;
         }
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         if (request.box) {
             near_relative(judged.slab, 0.75, 1e-12);
             judge_free(&judged);
@@ -98,11 +95,7 @@ TEST(sums_of_any_box)
                                .u = u,
                                .rho = rho,
                                .P = P};
-    struct run_settings settings;
-    struct run run;
-    struct error error = {0};
-    if (run_prepare(&settings, "rest_3d", 0, NULL, &error) || run_resolve(&run, &settings, &error))
-        fail_msg("%s", error.message);
+    struct run run = keyed_run("rest_3d", "");
     for (int draw = 0; draw < 60; draw++) {
         struct prepared *p = &run.problem;
         struct conservation got = {0}, want = {0};
@@ -136,7 +129,6 @@ TEST(sums)
 {
     for (int dim = 1; dim <= 3; dim++)
         for (int shifted = 0; shifted < 2; shifted++) {
-            struct judged judged;
             const struct judge_request request = uniform_gas();
             struct conservation want = {0};
             plant(dim, 0, boxes[dim]);
@@ -171,7 +163,7 @@ TEST(sums)
                 if (gas.x[0][i] > 1.5) gas.x[0][i] -= 2;
             if (shifted) gas.x[0][0] = 0, gas.x[0][1] = 0;
             if (shifted) snprintf(gas.head, sizeof gas.head, "# box = 2 1 1\n");
-            judges(&request, &judged);
+            struct judged judged = judges(&request);
             const struct conservation *got = &judged.sums;
             if (!shifted) near_relative(got->turning_scale, want.turning_scale, 1e-13);
             near_relative(got->mass, want.mass, 1e-13);
@@ -198,12 +190,7 @@ TEST(sums_of_a_liquid)
     const double nowhere[3] = {0};
     struct conservation got = {0};
     struct problem_state there;
-    struct run_settings settings;
-    struct run run;
-    struct error error = {0};
-    if (run_prepare(&settings, "taylor_green", 0, NULL, &error) ||
-        run_resolve(&run, &settings, &error))
-        fail_msg("%s", error.message);
+    const struct run run = keyed_run("taylor_green", "");
     const double gamma = run.problem.gamma;
     problem_sample(&run.problem, (double[3]){0.25, 0.375}, 0, &there);
     judge_sum(&run.problem, &s, nowhere, &got);
@@ -217,14 +204,13 @@ TEST(a_tenth_may_be_wrong)
 {
     for (int wrong = N / 10 - 1; wrong <= N / 10 + 1; wrong++) {
         struct judge_request request = uniform_gas();
-        struct judged judged;
         request.time.value = 0;
         plant(1, 0, boxes[1]);
         for (int i = 0; i < N; i++) {
             gas.m[i] = 2. / N;
             if (i < wrong) gas.u[i] *= uniform(1.2, 2);
         }
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         assert_int_equal(judged.of_start.wrong, wrong);
         assert_true(!judged.of_start.explained && judged.foreign == (wrong > N / 10));
         judge_free(&judged);
@@ -236,13 +222,12 @@ TEST(most_frequent_mass_is_right)
 {
     for (int alike = N / 2 - 1; alike <= N / 2 + 1; alike++) {
         struct judge_request request = uniform_gas();
-        struct judged judged;
         request.time.value = 0;
         plant(1, 0, "");
         for (int i = 0; i < N; i++) gas.x[0][i] *= 1.05; /* the case's masses are unknown */
         for (int i = 0; i < N; i++) gas.m[i] = (i % 2 ? uniform(1, 1.9) : uniform(2.1, 4)) / N;
         for (int i = N - alike; i < N; i++) gas.m[i] = 2. / N;
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         const double worst = judged.of_start.worst[START_MASS];
         if (alike > N / 2 ? !(worst > 0.1) : !isnan(worst)) fail_msg("%d: %g", alike, worst);
         judge_free(&judged);
@@ -254,12 +239,11 @@ TEST(pressures_of_their_own)
 {
     for (int own = N / 2 - 1; own <= N / 2; own++) {
         struct judge_request request = uniform_gas();
-        struct judged judged;
         request.time.value = 0;
         plant(1, 0, boxes[1]);
         gas.has_P = true;
         for (int i = 0; i < N; i++) gas.m[i] = 2. / N, gas.P[i] = i < own ? 1.1 : 1;
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         const double worst = judged.of_start.worst[START_PRESSURE];
         if (own < N / 2)
             near_relative(worst, 0.1, 1e-9);
@@ -276,7 +260,6 @@ TEST(particles_beside_a_jump)
     for (int k = 0; k < 4; k++) {
         const struct judge_request request = {
             .case_name = "sod", .time = {true, 0}, .kernel = -1, .boundary = "periodic"};
-        struct judged judged;
         plant(1, 0, "# box = 0:2\n");
         for (int i = 0; i < N; i++) {
             gas.x[0][i] = i == 77 ? 1 + away[k] * 2 / N : 2 * (i + 0.5) / N;
@@ -284,7 +267,7 @@ TEST(particles_beside_a_jump)
             gas.rho[i] = left ? 1 : 0.125, gas.u[i] = (left ? 1 : 0.1) / (0.4 * gas.rho[i]);
             gas.m[i] = gas.rho[i] * 2 / N;
         }
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         if (judged.of_start.wrong != (size_t)(k == 3))
             fail_msg("%d: %zu: %s", k, judged.of_start.wrong, judged.of_start.message);
         judge_free(&judged);
@@ -303,15 +286,10 @@ TEST(moved_particles)
                 {0.3, 3, false, true}, {0.3, 6, false, false}, {0.3, 0, true, false},
                 {2.5, 0, false, false}};
     double mass = 1; /* of the case, after the first row */
-    struct run_settings settings;
-    struct run run;
-    struct error error = {0};
-    if (run_prepare(&settings, "noh_2d", 0, NULL, &error) || run_resolve(&run, &settings, &error))
-        fail_msg("%s", error.message);
+    const struct run run = keyed_run("noh_2d", "");
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct judge_request request = {
             .case_name = "noh_2d", .time = {true, 0}, .kernel = -1};
-        struct judged judged;
         plant(2, 0, "");
         const struct domain *box = &run.problem.domain;
         const double side = domain_length(box, 0);
@@ -332,7 +310,7 @@ TEST(moved_particles)
             gas.P[i] = (run.problem.gamma - 1) * gas.rho[i] * gas.u[i];
         }
         if (rows[k].pressure) gas.P[77] *= 1.01;
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         mass = judged.start.mass;
         if ((judged.of_start.wrong == 0) != rows[k].good)
             fail_msg("row %zu: %zu wrong: %s", k, judged.of_start.wrong, judged.of_start.message);
@@ -349,7 +327,6 @@ TEST(masses_of_graded_spacings)
     for (size_t a = 0; a < 3; a++)
         for (int k = 0; k < 4; k++) {
             struct judge_request request = uniform_gas();
-            struct judged judged;
             double gap[N + 1], x = 0;
             request.time.value = 0;
             plant(1, 0, boxes[1]);
@@ -365,7 +342,7 @@ TEST(masses_of_graded_spacings)
                                           0.955 * fmin(before, after), 0.945 * fmin(before, after)};
                 gas.m[i] = unit * (i == at[a] ? factors[k] : 0.5 * (before + after));
             }
-            judges(&request, &judged);
+            struct judged judged = judges(&request);
             if (judged.of_start.wrong != (size_t)(k % 2))
                 fail_msg("%zu, %d: %zu: %s", a, k, judged.of_start.wrong, judged.of_start.message);
             judge_free(&judged);
@@ -378,14 +355,13 @@ TEST(most_masses_are_wrong)
 {
     for (int k = 0; k < 3; k++) {
         struct judge_request request = uniform_gas();
-        struct judged judged;
         const int wrong = k == 0 ? N * 2 / 5 : k == 1 ? N * 3 / 5 : N;
         char says[120];
         request.time.value = 0;
         plant(1, 0, boxes[1]);
         for (int i = 0; i < N; i++) gas.x[0][i] = 2 * (i + 0.5) / N;
         for (int i = 0; i < N; i++) gas.m[i] = (i < wrong ? 3. : 2.) / N;
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         assert_int_equal(judged.of_start.wrong, wrong);
         assert_true(judged.of_start.explained && judged.foreign);
         snprintf(says, sizeof says, "(%d of %d) have the wrong mass", wrong, N);
@@ -405,7 +381,6 @@ TEST(masses_of_two_gases)
     for (int first = 0; first < 2; first++) /* the gas of particle 0: thin or dense */
         for (int k = 0; k < 4; k++) {
             struct judge_request request = {.case_name = "square", .time = {true, 0}, .kernel = -1};
-            struct judged judged;
             const double factor = k % 3 == 0 ? 1 : k == 1 ? 1.149 : 1.151;
             int dense = 0;
             plant(2, 0, "# box = 0:1 0:1\n# gamma = 1.6666666666666667\n");
@@ -423,7 +398,7 @@ TEST(masses_of_two_gases)
             }
             for (int i = 0; i < N; i++) gas.m[i] *= whole / (N + (factor - 1) * dense);
             for (int i = 0; i < N && k == 3; i++) gas.m[i] *= i % 5 < 3 ? 1.5 : 1;
-            judges(&request, &judged);
+            struct judged judged = judges(&request);
             if (k == 0) whole = judged.start.mass;
             if (judged.of_start.wrong != (k == 2 ? (size_t)dense : k == 3 ? N * 3 / 5 : 0))
                 fail_msg("%d, %d: %s", first, k, judged.of_start.message);
@@ -445,10 +420,9 @@ TEST(mass_of_the_box)
         for (int k = 0; k < 4; k++) {
             const struct judge_request request = uniform_gas();
             const double most = dim == 1 ? 0.03 : pow(N, -1. / dim), part = k % 2 ? 0.98 : 1.02;
-            struct judged judged;
             plant(dim, 0, boxes[dim]);
             for (int i = 0; i < N; i++) gas.m[i] = 2. / N * (1 + (k < 2 ? part : -part) * most);
-            judges(&request, &judged);
+            struct judged judged = judges(&request);
             assert_true(judged.foreign == (part > 1));
             assert_true(judged.foreign == !!strstr(judged.verdict, "its mass is"));
             judge_free(&judged);
@@ -473,7 +447,6 @@ TEST(limits_for_uniform_gas)
     for (int dim = 1; dim <= 3; dim++)
         for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
             const struct judge_request request = uniform_gas();
-            struct judged judged;
             plant(dim, 0, boxes[dim]);
             for (int i = 0; i < N; i++) {
                 gas.m[i] = 2. / N;
@@ -482,7 +455,7 @@ TEST(limits_for_uniform_gas)
                 if (rows[k].u != 0) gas.rho[i] = 1;
                 gas.v[dim - 1][i] = rows[k].v * sqrt(1.4);
             }
-            judges(&request, &judged);
+            struct judged judged = judges(&request);
             near_relative(judged.wrong / 0.06, rows[k].wrong, 1e-6);
             assert_true(judged.foreign == (rows[k].wrong > 1));
             if (rows[k].rho > 0 || rows[k].v > 0)
@@ -499,13 +472,12 @@ TEST(gas_ahead_of_the_waves)
     for (int k = 0; k < 3; k++) {
         const struct judge_request request = {
             .case_name = "sod", .time = {true, 0.05}, .kernel = -1};
-        struct judged judged;
         const int moving = k == 0 ? 3 : 4;
         int inside = 0, moved = 0;
         double most = 0;
         plant(1, 0, "# box = 2\n");
         for (int i = 0; i < N; i++) gas.x[0][i] = 2 * (i + 0.5) / N;
-        judges(&request, &judged);
+        struct judged judged = judges(&request);
         const struct prepared problem = judged.run.problem;
         judge_free(&judged);
         for (int twice = 0; twice < 2; twice++)
@@ -519,7 +491,7 @@ TEST(gas_ahead_of_the_waves)
                 if (twice && gas.x[0][i] > 1.3 && moved++ < moving)
                     gas.v[0][i] = (k == 2 ? 0.099 : 0.101) * most;
             }
-        judges(&request, &judged);
+        judged = judges(&request);
         near_relative(judged.wrong / 0.06,
                       k == 2 ? moving * 0.099 / inside / 0.2 : moving / (double)inside / 0.03,
                       1e-2);
@@ -534,12 +506,11 @@ TEST(limits_for_a_tube)
     for (int field = 0; field < FIELDS; field++)
         for (int far = 0; far < 2; far++) {
             struct judge_request request = {.case_name = "sod", .time = {true, 0.2}, .kernel = -1};
-            struct judged judged;
             double range[2] = {INFINITY, -INFINITY};
             plant(1, 0, "# box = 2\n");
             for (int i = 2; i < N; i++) gas.x[0][i] = 2 * (i + 0.5) / N;
             gas.has_P = true;
-            judges(&request, &judged);
+            struct judged judged = judges(&request);
             const struct prepared problem = judged.run.problem;
             judge_free(&judged);
             for (int twice = 0; twice < 2; twice++) { /* the first pass finds the range */
@@ -558,7 +529,7 @@ TEST(limits_for_a_tube)
                     if (field == FIELD_PRESSURE) gas.P[3] *= 1 + 1e-9; /* as stored */
                 }
             }
-            judges(&request, &judged);
+            judged = judges(&request);
             near_relative(judged.wrong / 0.06, far ? 0.062 / 0.06 : 0.058 / 0.06, 2e-3);
             assert_true(judged.far == far);
             assert_int_equal(judged.wrong_field, field);

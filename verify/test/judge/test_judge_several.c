@@ -4,6 +4,7 @@
 #include "test.h"
 
 #include "judge.h"
+#include "keyed.h"
 #include "problem_list.h"
 
 enum { MOST = 5 };
@@ -462,7 +463,7 @@ TEST(sources_of_bounds)
     struct judged judged = {.path = "made", .case_dim = 1, .file = {.layout = "made", .dim = 1}};
     struct run_settings *asked = &judged.run.asked;
     struct error error = {0};
-    if (run_prepare(asked, "leblanc", 0, NULL, &error)) fail_msg("%s", error.message);
+    *asked = keyed_case("leblanc", "");
     struct case_file *file = &asked->file;
     struct case_gate *gate = &file->gates[1];
     const size_t levels = file->ladder_count;
@@ -511,8 +512,7 @@ TEST(orders_of_a_case)
     static struct problem flow;
     static struct judged judged[LEVELS];
     struct error error = {0};
-    struct run_settings asked;
-    if (run_prepare(&asked, "leblanc", 0, NULL, &error)) fail_msg("%s", error.message);
+    struct run_settings asked = keyed_case("leblanc", "");
     flow = *problem_of(&asked.settings);
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct case_gate *gate = &asked.file.gates[0];
@@ -586,7 +586,7 @@ TEST(gates_of_a_case)
     struct judged judged = {.path = "made"};
     struct run_settings *asked = &judged.run.asked;
     struct error error = {0};
-    if (run_prepare(asked, "leblanc", 0, NULL, &error)) fail_msg("%s", error.message);
+    *asked = keyed_case("leblanc", "");
     const struct case_gate *gate = &asked->file.gates[0];
     const double t_end = settings_real(&asked->settings, SETTING_t_end);
     assert_true(isinf(gate->known.bound) && gate->field == FIELD_DENSITY);

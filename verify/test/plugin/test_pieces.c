@@ -303,8 +303,8 @@ TEST(series)
         struct series_fit fit;
         double values[PIECES_NODES], floor;
         for (int j = 0; j < PIECES_NODES; j++) {
-            assert_true(fabs(pieces_node(&pieces, j)) < 1);
-            values[j] = 3 * cos(degree * acos(pieces_node(&pieces, j))) + 0.5;
+            assert_true(fabs(pieces.node[j]) < 1);
+            values[j] = 3 * cos(degree * acos(pieces.node[j])) + 0.5;
         }
         pieces_fit(&pieces, values, &fit);
         assert_int_equal(fit.n, degree + 1);

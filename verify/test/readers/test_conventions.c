@@ -4,6 +4,7 @@
 #include "test.h"
 
 #include "conventions.h"
+#include "measure.h"
 #include "own_folder.h"
 #include "snapshot_csv.h"
 
@@ -274,10 +275,10 @@ TEST(stated_conventions_are_used)
                                           "quintic_spline"};
     for (int n = 3; n <= 6; n++) {
         const struct kernel spline = kernel_called(splines[n - 3]);
-        near_relative(conventions_deviation(&spline, 1), sqrt(n / 12.) * 2 / n, 1e-7);
+        near_relative(measure_deviation(&spline, 1), sqrt(n / 12.) * 2 / n, 1e-7);
     }
-    near_relative(conventions_deviation(&cubic, 2), 0.5 / 1.778002, 1e-6);
-    near_relative(conventions_deviation(&cubic, 3), 0.5 / 1.825742, 1e-6);
+    near_relative(measure_deviation(&cubic, 2), 0.5 / 1.778002, 1e-6);
+    near_relative(measure_deviation(&cubic, 3), 0.5 / 1.825742, 1e-6);
 }
 
 /* A sum over more than 4096 neighbours ends the search: smaller ratios are still found. */
@@ -380,7 +381,7 @@ TEST(notes)
     struct snapshot_file file = {.n = SNAPSHOT_ROWS_MAX + (size_t)1, .box = {7, 7, 7}};
     assert_true(snapshot_take_box("2 1", &file) && !file.placed);
     assert_true(file.box[0] == 2 && file.box[1] == 1 && file.box[2] == 7);
-    assert_false(snapshot_file_make(&file, SNAPSHOT_X));
+    assert_int_equal(snapshot_file_make(&file, SNAPSHOT_X, "a", NULL), STATUS_ENVIRONMENT);
     assert_null(file.column[SNAPSHOT_X]);
 }
 
@@ -395,7 +396,7 @@ TEST(particles_near_the_ends_only)
 {
     const struct kernel ball = {.w = flat};
     for (int dim = 1; dim <= 3; dim++)
-        near_relative(conventions_deviation(&ball, dim), sqrt(1. / (dim + 2)), 1e-12);
+        near_relative(measure_deviation(&ball, dim), sqrt(1. / (dim + 2)), 1e-12);
     const struct snapshot_file file = scatter(2, 4, 1.5, 0);
     for (int i = 0; i < 4; i++)
         storage[0][i] = i % 2, storage[1][i] = i / 2, storage[SNAPSHOT_RHO][i] = 1;

@@ -177,12 +177,9 @@ static bool is_dead(const struct layout *l, const struct field *f, double h)
 
 static void allows(const struct item *items, size_t n)
 {
-    struct snapshot_file file;
+    struct snapshot_file file = file_of(items, n, "allowed");
     struct error error = {0};
-    write_items(path_of("a.hdf5"), items, n);
-    if (snapshot_read(path_of("a.hdf5"), &here, &file, &error) ||
-        snapshot_check_gas("a.hdf5", &file, &error))
-        fail_msg("%s", error.message);
+    if (snapshot_check_gas("a.hdf5", &file, &error)) fail_msg("%s", error.message);
     snapshot_file_free(&file);
 }
 
@@ -320,8 +317,6 @@ TEST(texts)
                 {F64, 0, 1, "", 0, 0},           {TEXT, 0, 1, "Q\x1b[2J", 0, 5}};
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         struct item items[ITEMS_MAX];
-        struct snapshot_file file;
-        struct error error = {0};
         const size_t n = items_of(&layouts[1], items);
         for (size_t k = 0; k < n; k++)
             if (layouts[1].fields[k].meaning == KERNEL) {
@@ -329,8 +324,7 @@ TEST(texts)
                 items[k].shape[0] = rows[r].count, items[k].letters = rows[r].letters;
                 strcpy(items[k].text, rows[r].text);
             }
-        write_items(path_of("a.hdf5"), items, n);
-        if (snapshot_read(path_of("a.hdf5"), &here, &file, &error)) fail_msg("%s", error.message);
+        struct snapshot_file file = file_of(items, n, rows[r].text);
         assert_int_equal(strlen(file.kernel), rows[r].length);
         assert_null(strchr(file.kernel, '\x1b'));
         assert_true(!rows[r].length || file.kernel[0] == (rows[r].letters ? 'k' : 'Q'));

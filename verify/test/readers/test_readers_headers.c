@@ -117,14 +117,11 @@ TEST(boxes)
                 {3, {20, (double)INFINITY, 22}, true, {20, 0, 22}}};
     struct item items[ITEMS_MAX];
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        struct snapshot_file file;
-        struct error error = {0};
         items_of(&layouts[0], items);
         struct item *box = item_called(items, "Header/BoxSize");
         box->rank = rows[k].count > 1, box->shape[0] = (hsize_t)rows[k].count;
         memcpy(box->values, rows[k].box, sizeof rows[k].box);
-        write_items(path_of("b.hdf5"), items, layouts[0].count);
-        if (snapshot_read(path_of("b.hdf5"), &here, &file, &error)) fail_msg("%s", error.message);
+        struct snapshot_file file = file_of(items, layouts[0].count, "a box");
         assert_true(file.boxed == rows[k].boxed);
         for (int d = 0; d < 3; d++) assert_true(file.box[d] == rows[k].wanted[d]);
         snapshot_file_free(&file);
@@ -135,12 +132,9 @@ TEST(boxes)
     } wrong[] = {{0, (double)NAN},      {1, -9}, {1, -8},
                  {1, (double)INFINITY}, {4, 7},  {5, (double)NAN}};
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) { /* one wrong end suffices */
-        struct snapshot_file file;
-        struct error error = {0};
         items_of(&layouts[2], items);
         item_called(items, "Step#10/box")->values[wrong[k].at] = wrong[k].value;
-        write_items(path_of("b.hdf5"), items, layouts[2].count);
-        if (snapshot_read(path_of("b.hdf5"), &here, &file, &error)) fail_msg("%s", error.message);
+        struct snapshot_file file = file_of(items, layouts[2].count, "a wrong end");
         assert_false(file.boxed);
         assert_true(file.column[0][0] == 0);
         snapshot_file_free(&file);
@@ -164,13 +158,10 @@ TEST(units)
                 {"Header/UnitVelocity_In_CGS", 1, false},
                 {"Header/Unit", 2, false}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        struct snapshot_file file;
-        struct error error = {0};
         struct item items[ITEMS_MAX];
         const size_t n = items_of(&layouts[0], items);
         add_number(&items[n], rows[k].path, rows[k].unit);
-        write_items(path_of("u.hdf5"), items, n + 1);
-        if (snapshot_read(path_of("u.hdf5"), &here, &file, &error)) fail_msg("%s", error.message);
+        struct snapshot_file file = file_of(items, n + 1, rows[k].path);
         size_t at = 0;
         while (at < file.notes.count && strcmp(file.notes.note[at].what, "units") != 0) at++;
         assert_true((at < file.notes.count) == rows[k].noted);
@@ -189,11 +180,8 @@ TEST(phantom)
         /* the end that is missing, or that lies within the gas; 12: none; 13: all ends are at
          * particles; 14: one is infinitely far */
         for (int end = 0; end < 15; end++) {
-            struct layout l = layouts[3];
-            struct snapshot_file file;
-            struct error error = {0};
             struct item items[ITEMS_MAX];
-            size_t n = items_of(&l, items);
+            size_t n = items_of(&layouts[3], items);
             struct item *h = item_called(items, "particles/h");
             if (dead) h->values[5] = dead == 1 ? 0 : -3;
             for (int k = 0; k < 6; k++) {
@@ -207,8 +195,7 @@ TEST(phantom)
                 if (end == 14 && k == 3) items[n].values[0] = (double)INFINITY;
                 n++;
             }
-            write_items(path_of("p.h5"), items, n);
-            if (snapshot_read(path_of("p.h5"), &here, &file, &error)) fail_msg("%s", error.message);
+            struct snapshot_file file = file_of(items, n, "Phantom");
             assert_int_equal(file.n, dead ? N - 1 : N);
             assert_int_equal(file.gas, dead ? N - 4 : N - 3);
             assert_true(file.boxed == (end == 12 || end == 13) && file.placed == file.boxed);
@@ -227,11 +214,8 @@ TEST(corner_of_the_box)
 {
     for (int numbers = 0; numbers <= 4; numbers++) /* numbers in the corner; 4: without a box */
         for (int columns = 1; columns <= 3; columns += 2) {
-            struct layout l = layouts[0];
             struct item items[ITEMS_MAX];
-            struct snapshot_file file;
-            struct error error = {0};
-            size_t n = items_of(&l, items);
+            size_t n = items_of(&layouts[0], items);
             const bool counts = numbers == 3;
             struct item *x = item_called(items, "PartType0/Coordinates");
             x->shape[1] = (hsize_t)columns;
@@ -246,9 +230,7 @@ TEST(corner_of_the_box)
                 (struct item){"Header/Keys", true, TEXT, 0, {0}, false, {0}, "n=3; eta=4", 0};
             items[n++] =
                 (struct item){"Header/Boundary", true, TEXT, 0, {0}, false, {0}, "open", 0};
-            write_items(path_of("o.hdf5"), items, n);
-            if (snapshot_read(path_of("o.hdf5"), &here, &file, &error))
-                fail_msg("%s", error.message);
+            struct snapshot_file file = file_of(items, n, "a corner");
             assert_true(file.placed == counts);
             for (int d = 0; d < 3; d++) {
                 const double corner = d ? d == 1 ? 40 : 5 : -3;
@@ -274,14 +256,10 @@ TEST(precision)
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
         for (size_t k = 0; k < layouts[0].count; k++) {
             const struct field *f = &layouts[0].fields[k];
-            struct snapshot_file file;
-            struct error error = {0};
             struct item items[ITEMS_MAX];
-            items_of(&layouts[0], items);
+            const size_t n = items_of(&layouts[0], items);
             items[k].stored = rows[r].stored;
-            write_items(path_of("p.hdf5"), items, layouts[0].count);
-            if (snapshot_read(path_of("p.hdf5"), &here, &file, &error))
-                fail_msg("%s", error.message);
+            struct snapshot_file file = file_of(items, n, f->path);
             const bool column = f->meaning == COLUMN, x = column && f->column < SNAPSHOT_VX;
             assert_true(file.precision[0] == (x ? rows[r].precision : DBL_EPSILON / 2));
             assert_true(file.precision[1] == (column && !x ? rows[r].precision : DBL_EPSILON / 2));

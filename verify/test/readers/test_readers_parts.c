@@ -194,29 +194,6 @@ TEST(parts_with_different_corners)
     }
 }
 
-/* Different boxes along each direction, and of the last part alone. */
-TEST(parts_with_different_boxes)
-{
-    for (int d = 0; d < 3; d++)
-        for (int which = 0; which < 3; which++) {
-            struct snapshot_file file;
-            struct error error;
-            char name[32];
-            for (int p = 0; p < 3; p++) {
-                struct item items[ITEMS_MAX];
-                part(p, 3, items);
-                for (size_t i = 0; i < gadget->count && p == which; i++)
-                    if (gadget->fields[i].meaning == BOX) items[i].values[d] += 1;
-                snprintf(name, sizeof name, "b.%d.h5", p);
-                write_part(name, items);
-            }
-            assert_int_equal(read_parts("b.0.h5", &file, &error), STATUS_BAD_INPUT);
-            assert_non_null(
-                strstr(error.message, which == 2 ? "b.2.h5: is no part" : "b.1.h5: is no part"));
-            snapshot_file_free(&file);
-        }
-}
-
 /* The precision is that of the coarsest part. */
 TEST(precision)
 {

@@ -13,13 +13,12 @@ TEST(random_styles)
 {
     for (int draw = 0; draw < 300; draw++) {
         struct table t = table_of(1 + draw % 3, false);
-        struct snapshot_file file;
         random_style(&t);
         if (draw % 2) shuffle(&t);
         for (size_t c = 0; c < t.columns; c++)
             if (t.meaning[c] == TYPE)
                 for (int i = 0; i < 5; i++) t.value[c][i] = 1; /* at least four are gas */
-        reads(&t, NULL, &file);
+        struct snapshot_file file = reads(&t, NULL);
         assert_string_equal(file.layout, "csv");
         assert_string_equal(file.code, "unknown");
         snapshot_file_free(&file);
@@ -32,10 +31,9 @@ TEST(spellings)
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++)
         for (int k = 0; k < 7; k++) {
             struct table t = table_of(3, true);
-            struct snapshot_file file;
             t.columns -= 2; /* without types and entropy */
             snprintf(t.name[c], sizeof t.name[c], "%s", spelt[c][k]);
-            reads(&t, NULL, &file);
+            struct snapshot_file file = reads(&t, NULL);
             snapshot_file_free(&file);
         }
     static const char *const nobody[] = {"xx",   "rhoo",     "rh",      "",    "velocity_w",
@@ -68,15 +66,11 @@ TEST(units)
                                         "# x (pc),rho [g],v [km/s],m,P\n", "x [] rho v () m P\n"};
     for (size_t k = 0; k < 3; k++) {
         char text[400], mark = k == 1 ? ',' : ' ';
-        struct snapshot_file file;
         int n = snprintf(text, sizeof text, "%s", heads[k]);
         for (int i = 0; i < 5; i++)
             n += snprintf(text + n, sizeof text - (size_t)n, "%d%c2%c3%c4%c5\n", i, mark, mark,
                           mark, mark);
-        const struct snapshot_options plain = {0};
-        struct error error = {0};
-        put_file(text, (size_t)n);
-        if (snapshot_read(path_of("a.txt"), &plain, &file, &error)) fail_msg("%s", error.message);
+        struct snapshot_file file = file_of(text, (size_t)n, NULL);
         assert_true(file.n == 5 && file.column[SNAPSHOT_X][4] == 4 &&
                     file.column[SNAPSHOT_RHO][4] == 2 && file.column[SNAPSHOT_VX][4] == 3 &&
                     file.column[SNAPSHOT_M][4] == 4 && file.column[SNAPSHOT_P][4] == 5);
@@ -148,11 +142,10 @@ TEST(values_in_comments)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         for (int dim = 1; dim <= 3; dim++) {
             struct table t = table_of(dim, true);
-            struct snapshot_file file;
             t.columns -= 2;
             snprintf(t.head, sizeof t.head, "%s", rows[k].head);
             if (rows[k].boxed && rows[k].box[2] == 0 && dim > 2) continue;
-            reads(&t, NULL, &file);
+            struct snapshot_file file = reads(&t, NULL);
             assert_true(file.time.known == rows[k].timed && file.time.value == rows[k].time);
             assert_true(file.gamma.known == rows[k].known && file.gamma.value == rows[k].gamma);
             noted(&file, "gamma", rows[k].known ? "in the file" : NULL, "its line '");
@@ -173,9 +166,6 @@ TEST(values_in_comments)
         for (int behind = 0; behind < 2; behind++) {
             static char text[TEXT_MAX], other[TEXT_MAX];
             struct table t = table_of(1, true);
-            struct snapshot_file file;
-            struct error error = {0};
-            const struct snapshot_options plain = {0};
             char head[300];
             t.columns -= 2;
             snprintf(
@@ -191,9 +181,7 @@ TEST(values_in_comments)
                 memcpy(other + at, text + line, size - line);
                 memcpy(text, other, size += at - line);
             }
-            put_file(text, size);
-            if (snapshot_read(path_of("a.txt"), &plain, &file, &error))
-                fail_msg("%s", error.message);
+            struct snapshot_file file = file_of(text, size, NULL);
             is_read(&t, &file);
             assert_string_equal(file.case_name, "my tube.ini");
             assert_string_equal(file.boundary, "open fixed");
@@ -206,7 +194,6 @@ TEST(values_in_comments)
         }
     for (int more = 0; more < 2; more++) { /* a box of 160 characters or more is not read */
         struct table t = table_of(2, true);
-        struct snapshot_file file;
         t.columns -= 2;
         snprintf(t.head, sizeof t.head, "# box = 0:1%*s\n", 156 + more, "0:2");
         if (more) {
@@ -214,7 +201,7 @@ TEST(values_in_comments)
             refuses(text, text_of(&t, text, -1, -1, NULL), NULL, ":1: '# box = 0:1 ");
             continue;
         }
-        reads(&t, NULL, &file);
+        struct snapshot_file file = reads(&t, NULL);
         assert_true(file.boxed && file.box[1] == 2);
         snapshot_file_free(&file);
     }
@@ -273,23 +260,21 @@ TEST(values_in_comments)
                  {"# dt = 0,2 s\n", NULL}};
     for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
         struct table t = table_of(1, true);
-        struct snapshot_file file;
         t.columns -= 2;
         snprintf(t.head, sizeof t.head, "%s", units[k].head);
-        reads(&t, NULL, &file);
+        struct snapshot_file file = reads(&t, NULL);
         noted(&file, "not taken", units[k].line, "allowed: a number, and no unit behind it");
         snapshot_file_free(&file);
     }
     char longest[1300];
     for (int more = 0; more < 2; more++) { /* comments of 1200 characters or more are not read */
         struct table t = table_of(1, true);
-        struct snapshot_file file;
         t.columns -= 2;
         memset(longest, ' ', sizeof longest);
         memcpy(longest, "# time = 0.25", 13);
         longest[1199 + more] = '\0';
         snprintf(t.head, sizeof t.head, "%s\n", longest);
-        reads(&t, NULL, &file);
+        struct snapshot_file file = reads(&t, NULL);
         assert_true(file.time.known == !more);
         snapshot_file_free(&file);
     }
@@ -312,7 +297,6 @@ TEST(files_of_splash)
         {"# created by SPLASH\n", false}};
     for (int draw = 0; draw < 120; draw++) {
         struct table t = table_of(1 + draw % 3, draw % 2);
-        struct snapshot_file file;
         const size_t k = (size_t)draw % (sizeof rows / sizeof *rows);
         random_style(&t);
         t.splash = true, t.saved = false, t.separator = ' ', t.exponent = 'E';
@@ -322,7 +306,7 @@ TEST(files_of_splash)
                 for (int i = 0; i < 5; i++) t.value[c][i] = 1;
         }
         snprintf(t.head, sizeof t.head, "%s", rows[k].head);
-        reads(&t, NULL, &file);
+        struct snapshot_file file = reads(&t, NULL);
         assert_string_equal(file.layout, "splash");
         assert_string_equal(file.code, "unknown, through SPLASH");
         char value[40];

@@ -24,7 +24,7 @@ TEST(user_defined_names)
         char map[80];
         snprintf(other.name[c], sizeof other.name[c], "some thing");
         snprintf(map, sizeof map, "%s=some thing", snapshot_column_names[t.meaning[c]]);
-        reads(&other, map, &file);
+        file = reads(&other, map);
         snapshot_file_free(&file);
     }
     /* the map overrides a column's own name, before or after it */
@@ -41,7 +41,7 @@ TEST(user_defined_names)
                 beside.value[meant][i] = 1.25 * t.value[c][i];
             }
             snprintf(map, sizeof map, "%s=some thing", snapshot_column_names[t.meaning[c]]);
-            reads(&beside, map, &file);
+            file = reads(&beside, map);
             snapshot_file_free(&file);
         }
     struct table swapped = t; /* rho and P exchange names */
@@ -51,7 +51,7 @@ TEST(user_defined_names)
         if (t.meaning[c] == SNAPSHOT_P) P = c;
     }
     strcpy(swapped.name[rho], "P"), strcpy(swapped.name[P], "rho");
-    reads(&swapped, "rho=P,P=rho", &file);
+    file = reads(&swapped, "rho=P,P=rho");
     snapshot_file_free(&file);
     const size_t size = text_of(&t, text, -1, -1, NULL);
     refuses(text, size, "rho=Density", "has no column 'Density'; it has 'x' 'vx'");
@@ -71,7 +71,7 @@ TEST(user_defined_names)
         snprintf(says, sizeof says, "columns 'x' and 'X' both look like x");
         refuses(text, text_of(&twice, text, -1, -1, NULL), NULL, says);
         if (t.meaning[c] != OTHER) continue;
-        reads(&twice, "x=x", &file); /* the map says which one is meant */
+        file = reads(&twice, "x=x"); /* the map says which one is meant */
         snapshot_file_free(&file);
     }
     struct table typed = table_of(1, true);
@@ -146,8 +146,7 @@ TEST(values)
                          row, sign < 0 ? "-1e+100" : "1e+100");
                 refuses(text, text_of(&wrong, text, -1, -1, NULL), NULL, says);
             }
-    struct snapshot_file file;
-    reads(&t, NULL, &file);
+    struct snapshot_file file = reads(&t, NULL);
     assert_true(file.precision[0] == DBL_EPSILON / 2 && file.precision[1] == DBL_EPSILON / 2);
     snapshot_file_free(&file);
 }
@@ -310,15 +309,13 @@ TEST(legacy_vtk)
     refuses(THREE, strlen(THREE), "x=y", "--map is for text; this is vtk, whose names are known");
 }
 
-static void reads_vtk(const char *text, size_t size, struct snapshot_file *file)
+static struct snapshot_file reads_vtk(const char *text, size_t size)
 {
-    static const struct snapshot_options plain;
-    struct error error = {0};
-    put_file(text, size);
-    if (snapshot_read(path_of("a.txt"), &plain, file, &error)) fail_msg("%s", error.message);
+    struct snapshot_file file = file_of(text, size, NULL);
     for (int i = 0; i < 4; i++)
-        assert_true(file->column[SNAPSHOT_X][i] == i && file->column[SNAPSHOT_VX][i] == 3 * i &&
-                    file->column[SNAPSHOT_M][i] == 7 && file->column[SNAPSHOT_RHO][i] == 5 + i);
+        assert_true(file.column[SNAPSHOT_X][i] == i && file.column[SNAPSHOT_VX][i] == 3 * i &&
+                    file.column[SNAPSHOT_M][i] == 7 && file.column[SNAPSHOT_RHO][i] == 5 + i);
+    return file;
 }
 
 /* Sections that say nothing of the particles are skipped, wherever they stand; a FIELD may give the
@@ -345,14 +342,13 @@ TEST(legacy_vtk_sections)
         {"", "", "CELL_DATA 5\nwhatever", false}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         char text[1000];
-        struct snapshot_file file;
         const int n =
             snprintf(text, sizeof text,
                      ASCII "%sDATASET POLYDATA\nPOINTS 4 int\n0 0 0 1 0 0 2 0 0 3 0 0\n%s"
                            "POINT_DATA 4\nVECTORS v int\n0 0 0 3 0 0 6 0 0 9 0 0\nSCALARS rho int\n"
                            "LOOKUP_TABLE a\n5 6 7 8\nFIELD a 1\nm 1 4 int\n7 7 7 7\n%s",
                      rows[k].before, rows[k].between, rows[k].behind);
-        reads_vtk(text, (size_t)n, &file);
+        struct snapshot_file file = reads_vtk(text, (size_t)n);
         assert_true(file.time.known == rows[k].timed &&
                     (!rows[k].timed || file.time.value == 0.25));
         snapshot_file_free(&file);
@@ -373,7 +369,6 @@ TEST(legacy_vtk_types)
                  {"vtktypeint64", 8, -1}, {"unsigned_long", 8, 18446744073709551615.}};
     for (size_t k = 0; k < sizeof types / sizeof *types; k++) {
         char text[1000];
-        struct snapshot_file file;
         size_t n = (size_t)sprintf(text, HEAD "BINARY\nDATASET POLYDATA\nPOINTS 4 char\n");
         for (int i = 0; i < 12; i++) text[n++] = (char)(i % 3 ? 0 : i / 3);
         n += (size_t)sprintf(text + n, "\nPOINT_DATA 4\nVECTORS v char\n");
@@ -384,7 +379,7 @@ TEST(legacy_vtk_types)
         n += (size_t)sprintf(text + n, "du 1 4 %s\n", types[k].name);
         for (size_t i = 0; i < 4 * types[k].width; i++)
             text[n++] = (char)(i < types[k].width ? 255 : (i + 1) % types[k].width ? 0 : 5);
-        reads_vtk(text, n, &file);
+        struct snapshot_file file = reads_vtk(text, n);
         for (int i = 0; i < 4; i++)
             assert_true(file.column[SNAPSHOT_DU][i] == (i ? 5 : types[k].all_set));
         assert_true(file.precision[0] == 1.2e-16 && file.precision[1] == 1.2e-16);

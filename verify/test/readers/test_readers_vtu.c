@@ -162,13 +162,9 @@ TEST(every_form)
 {
     for (int draw = 0; draw < 200; draw++) {
         struct document d = made();
-        struct snapshot_file file;
-        struct error error = {0};
         d.ends = 1 + (int)drawn(6);
         write_out(&d);
-        put_file(d.text, d.length);
-        if (snapshot_read(path_of("a.txt"), &(struct snapshot_options){0}, &file, &error))
-            fail_msg("%s\n%s", error.message, d.text);
+        struct snapshot_file file = file_of(d.text, d.length, NULL);
         assert_int_equal(file.n, ROWS);
         for (int a = 0; a < ARRAYS; a++)
             for (size_t c = 0; c < arrays[a].components; c++)
@@ -199,8 +195,6 @@ static void reads_appended(const char *attributes, const char *type, const void 
                            const double *du)
 {
     char text[2000];
-    struct snapshot_file file;
-    struct error error = {0};
     const char *array = "<DataArray type=\"Float64\" format=\"ascii\" Name=";
     int n = snprintf(text, sizeof text,
                      "<VTKFile %s><Piece NumberOfPoints=\"4\">\n<Points>%s\"p\">0 1 2 3"
@@ -216,9 +210,7 @@ static void reads_appended(const char *attributes, const char *type, const void 
         refuses(text, length + 25, NULL, "the array 'du' is cut off or damaged; its points need 4");
         return;
     }
-    put_file(text, length + 25);
-    if (snapshot_read(path_of("a.txt"), &(struct snapshot_options){0}, &file, &error))
-        fail_msg("%s", error.message);
+    struct snapshot_file file = file_of(text, length + 25, NULL);
     for (int i = 0; i < 4; i++) assert_true(file.column[SNAPSHOT_DU][i] == du[i]);
     snapshot_file_free(&file);
 }
@@ -382,8 +374,6 @@ TEST(long_text)
 {
     for (int more = -1; more < 2; more++) {
         struct document d = made();
-        struct snapshot_file file;
-        struct error error = {0};
         char new[400], want[80];
         int n = sprintf(new, "\"%d\" format=\"ascii\">", 63 + more);
         for (int i = 0; i < 63 + more; i++) n += sprintf(new + n, "%d ", 'a' + i % 26);
@@ -392,9 +382,7 @@ TEST(long_text)
         d.form = TEXT;
         write_out(&d);
         replace(&d, "\"4\" format=\"ascii\">111 112 101 110", new);
-        put_file(d.text, d.length);
-        if (snapshot_read(path_of("a.txt"), &(struct snapshot_options){0}, &file, &error))
-            fail_msg("%s", error.message);
+        struct snapshot_file file = file_of(d.text, d.length, NULL);
         assert_string_equal(file.boundary, want);
         snapshot_file_free(&file);
     }
