@@ -35,7 +35,8 @@ struct line {
     ptrdiff_t range_count;
     ptrdiff_t ghosts_filled;
     ptrdiff_t reach;         /* largest reach of the ranges */
-    double predict_ratio;    /* of the current pass */
+    bool newton;             /* of the current density pass: h by Newton's method, else predicted */
+    double predict_ratio;    /* of the current density pass */
     uint64_t density_passes; /* number so far; see range.done and range.predicted */
     double *scratch;         /* work array, scratch_size for each thread */
     size_t scratch_size;

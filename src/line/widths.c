@@ -63,38 +63,22 @@ static void close_range(struct simulation *simulation, const struct range *range
     state_close(&simulation->particles, range->first, range->len, &simulation->plan, &gas, sums);
 }
 
-static void conclude(const struct line *line, struct range *range, ptrdiff_t result,
-                     struct tally *tally)
+/* Finds the widths of a range that has none yet in this density pass. */
+static void width_pass(struct simulation *simulation, struct range *range, struct tally *tally)
 {
-    if (result == SOLVED) range->done = line->density_passes;
-    if (result == NO_GHOSTS) tally->short_of_ghosts = true;
-    if (result >= 0 && result < tally->without_root) tally->without_root = result;
+    const struct line *line = line_of(simulation);
+    struct density_sums sums;
+    if (range->done != line->density_passes) {
+        const ptrdiff_t result = (line->newton ? solve_range : sum_range)(simulation, range, &sums);
+        if (result == SOLVED) {
+            close_range(simulation, range, &sums);
+            range->done = line->density_passes;
+            if (line->newton && simulation->cost.steps % 8 == 0) reach_tighten(simulation, range);
+        }
+        if (result == NO_GHOSTS) tally->short_of_ghosts = true;
+        if (result >= 0 && result < tally->without_root) tally->without_root = result;
+    }
     if (range->reach > tally->reach) tally->reach = range->reach;
-}
-
-static void newton_pass(struct simulation *simulation, struct range *range, struct tally *tally)
-{
-    const struct line *line = line_of(simulation);
-    struct density_sums sums;
-    ptrdiff_t result = SOLVED;
-    if (range->done != line->density_passes) {
-        result = solve_range(simulation, range, &sums);
-        if (result == SOLVED) close_range(simulation, range, &sums);
-        if (result == SOLVED && simulation->cost.steps % 8 == 0) reach_tighten(simulation, range);
-    }
-    conclude(line, range, result, tally);
-}
-
-static void predicted_pass(struct simulation *simulation, struct range *range, struct tally *tally)
-{
-    const struct line *line = line_of(simulation);
-    struct density_sums sums;
-    ptrdiff_t result = SOLVED;
-    if (range->done != line->density_passes) {
-        result = sum_range(simulation, range, &sums);
-        if (result == SOLVED) close_range(simulation, range, &sums);
-    }
-    conclude(line, range, result, tally);
 }
 
 /* Reports an h that exceeds any possible root. */
@@ -112,17 +96,17 @@ enum status widths_find(struct simulation *simulation, bool newton, double ratio
                         struct error *error)
 {
     struct line *line = line_of(simulation);
-    range_pass *const pass = newton ? newton_pass : predicted_pass;
     ptrdiff_t ghosts = line->ghosts_filled > 8 ? line->ghosts_filled : 8;
     if (line->reach + 2 > ghosts) ghosts = line->reach + 2;
     /* no root exceeds eta times the box; a search may go twice as far */
     const double most = 64 + (2 * simulation->scheme.eta + 2) * (double)simulation->particles.n;
     line->density_passes++;
+    line->newton = newton;
     line->predict_ratio = ratio;
     for (;;) {
         const enum status status = ghosts_of_density(simulation, ghosts, error);
         if (status) return status;
-        const struct tally found = pass_all(simulation, pass);
+        const struct tally found = pass_all(simulation, width_pass);
         if (found.without_root < PTRDIFF_MAX)
             return breakdown_of(simulation, found.without_root,
                                 "smoothing length (no root was found)",

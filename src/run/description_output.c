@@ -2,19 +2,13 @@
 #include "run_output.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 
 #include "result.h"
 
-static bool has_matrix(const struct description_sums *sums)
-{
-    return !isnan(sums->condition_max) || sums->fallen_back > 0;
-}
-
 json_t *description_json(const struct description_sums *sums)
 {
-    if (!has_matrix(sums)) return json_null();
+    if (isnan(sums->condition_max) && sums->fallen_back == 0) return json_null();
     return json_pack("{s:{s:o, s:o}, s:{s:o, s:o}, s:I}", "condition", "max",
                      result_number_or_null(sums->condition_max), "mean",
                      result_number_or_null(sums->condition_mean), "angle", "max",

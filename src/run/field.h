@@ -26,6 +26,34 @@ static inline double domain_length(const struct domain *domain, int direction)
     return domain->hi[direction] - domain->lo[direction];
 }
 
+/* Length, area or volume of the box. */
+static inline double domain_volume(const struct domain *domain)
+{
+    double volume = 1;
+    for (int d = 0; d < domain->dim; d++) volume *= domain_length(domain, d);
+    return volume;
+}
+
+/* Mean spacing of n particles. */
+static inline double domain_spacing(const struct domain *domain, size_t n)
+{
+    return pow(domain_volume(domain) / (double)n, 1. / domain->dim);
+}
+
+static inline double domain_shortest(const struct domain *domain)
+{
+    double shortest = HUGE_VAL;
+    for (int d = 0; d < domain->dim; d++) shortest = fmin(shortest, domain_length(domain, d));
+    return shortest;
+}
+
+/* Position of the periodic image in the box; after rounding it may be the upper end. */
+static inline double domain_wrap(const struct domain *domain, int direction, double x)
+{
+    const double lo = domain->lo[direction], length = domain_length(domain, direction);
+    return lo + (x - lo - length * floor((x - lo) / length));
+}
+
 /* Position relative to the lower corner of the box, as most codes expect it. For x in the box the
  * result is smaller than the box length even after rounding. */
 static inline double domain_offset(const struct domain *domain, int direction, double x)

@@ -68,11 +68,17 @@ static double velocity_measured(const struct prepared *p, const struct snapshot 
     return sqrt(sum / volume);
 }
 
-static double at_rest(const struct prepared *p, double t)
+double functional_zero(const struct prepared *p, double t)
 {
     (void)p, (void)t;
     return 0;
 }
 
+double functional_one(const struct prepared *p, double t)
+{
+    (void)p, (void)t;
+    return 1;
+}
+
 const struct functional functional_velocity_rms = {"velocity_rms", NULL, velocity_measured,
-                                                   at_rest};
+                                                   functional_zero};

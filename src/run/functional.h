@@ -10,6 +10,10 @@ extern const struct functional functional_mean_internal_energy, functional_mean_
 /* For gas that should be at rest: sqrt(sum V (v/c)^2/sum V) over the window. */
 extern const struct functional functional_velocity_rms;
 
+/* Exact values of functionals that are 0, or 1, at any time. */
+double functional_zero(const struct prepared *p, double t);
+double functional_one(const struct prepared *p, double t);
+
 /* Volume-weighted mean of a particle field over the window. */
 double functional_window_mean(const struct prepared *p, const struct snapshot *s,
                               const double *field);

@@ -48,15 +48,11 @@ size_t judged_names_of(const struct case_file *file, const struct run_result *re
 /* The components of the exact field at particle i, one for a scalar. Returns the sound speed. */
 static double exact_at(const struct run_result *result, size_t i, enum field field, double value[3])
 {
-    const struct prepared *p = &result->problem;
-    const struct snapshot *s = &result->snapshot;
     struct problem_state state;
-    double x[3] = {0};
-    for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i];
-    problem_sample(p, x, result->time, &state);
+    problem_sample_particle(&result->problem, &result->snapshot, i, &state);
     for (int d = 0; d < 3; d++) value[d] = field == FIELD_VELOCITY ? state.v[d] : 0;
     if (field != FIELD_VELOCITY) value[0] = problem_field(&state, field);
-    return sqrt(p->gamma * state.P / state.rho);
+    return sqrt(result->problem.gamma * state.P / state.rho);
 }
 
 static bool in_window(const struct run_result *result, size_t i)

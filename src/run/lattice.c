@@ -39,33 +39,16 @@ static const struct crystal fcc = {
     {{0.25, 0.25, 0.25}, {0.75, 0.75, 0.25}, {0.75, 0.25, 0.75}, {0.25, 0.75, 0.75}}};
 static const struct crystal bcc = {3, 0, 2, {1, 1, 1}, {{0.25, 0.25, 0.25}, {0.75, 0.75, 0.75}}};
 
-/* NULL: not a crystal. */
-static const struct crystal *crystal_of(enum lattice kind)
-{
-    switch (kind) {
-    case LATTICE_UNIFORM: /* the other two are displaced from it */
-    case LATTICE_CLUSTERED:
-    case LATTICE_COINCIDENT:
-        return &line;
-    case LATTICE_SQUARE:
-    case LATTICE_CUBIC:
-    case LATTICE_JITTERED:
-        return &square;
-    case LATTICE_HEXAGONAL:
-        return &hexagonal;
-    case LATTICE_FCC:
-        return &fcc;
-    case LATTICE_BCC:
-        return &bcc;
-    default:
-        return NULL;
-    }
-}
+/* NULL: not a crystal. Clustered and coincident particles are displaced from the uniform line. */
+static const struct crystal *const crystals[LATTICES] = {
+    [LATTICE_UNIFORM] = &line,        [LATTICE_CLUSTERED] = &line, [LATTICE_COINCIDENT] = &line,
+    [LATTICE_SQUARE] = &square,       [LATTICE_CUBIC] = &square,   [LATTICE_JITTERED] = &square,
+    [LATTICE_HEXAGONAL] = &hexagonal, [LATTICE_FCC] = &fcc,        [LATTICE_BCC] = &bcc};
 
 enum status lattice_plan_make(struct lattice_plan *plan, const struct domain *box,
                               enum lattice kind, size_t n, struct error *error)
 {
-    const struct crystal *crystal = crystal_of(kind);
+    const struct crystal *crystal = crystals[kind];
     const char *name = settings_lattice_family.members[kind]->name;
     *plan = (struct lattice_plan){.box = *box, .kind = kind, .n = n};
     if (!crystal) return STATUS_OK;
@@ -135,7 +118,7 @@ static double equal_share(const void *context, const double x[3])
 enum status lattice_points(const struct lattice_plan *plan, unsigned long seed, double *const x[3],
                            struct error *error)
 {
-    const struct crystal *crystal = crystal_of(plan->kind);
+    const struct crystal *crystal = crystals[plan->kind];
     const struct relax_region region = {plan->box, equal_share, plan};
     enum status status = STATUS_OK;
     if (crystal)

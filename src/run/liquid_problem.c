@@ -14,6 +14,16 @@ struct problem_state liquid_state(const struct liquid *liquid, double gamma)
         .rho = liquid->rho0, .P = (gamma - 1) * liquid->rho0 * energy, .u = energy};
 }
 
+enum status liquid_check_gravity(struct prepared *p, const struct settings *settings,
+                                 struct error *error)
+{
+    if (settings->value[SETTING_gravity].automatic) p->gravity[1] = -1;
+    if (p->gravity[1] < 0 && p->gravity[0] == 0 && p->gravity[2] == 0) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "gravity=\"%g %g %g\": allowed: downwards, along y, below 0", p->gravity[0],
+                     p->gravity[1], p->gravity[2]);
+}
+
 double liquid_amplitude(const struct prepared *p, const struct snapshot *s, liquid_mode *mode)
 {
     double sum = 0, whole = 0;

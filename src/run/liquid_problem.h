@@ -28,6 +28,10 @@ struct liquid liquid_of(const struct settings *settings);
 /* The state at rest with density rho0. */
 struct problem_state liquid_state(const struct liquid *liquid, double gamma);
 
+/* For problems with a surface: sets automatic gravity, and checks that it is along -y. */
+enum status liquid_check_gravity(struct prepared *p, const struct settings *settings,
+                                 struct error *error);
+
 /* Amplitude of a mode: sum v . mode over sum mode . mode, weighted with volume, over the window. */
 typedef void liquid_mode(const struct prepared *p, const double x[3], double v[3]);
 double liquid_amplitude(const struct prepared *p, const struct snapshot *s, liquid_mode *mode);

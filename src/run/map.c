@@ -54,10 +54,8 @@ static void set_centres(double *x, size_t n, double lo, double length)
 enum status map_create(struct map *map, const struct domain *domain, const struct snapshot *s,
                        size_t most, struct error *error)
 {
-    double volume = 1;
     *map = (struct map){.n = s->n};
-    for (int d = 0; d < domain->dim; d++) volume *= domain_length(domain, d);
-    const double spacing = pow(volume / (double)s->n, 1. / domain->dim);
+    const double spacing = domain_spacing(domain, s->n);
     for (int d = 0; d < 2; d++) map->lo[d] = domain->lo[d], map->hi[d] = domain->hi[d];
     if (domain->dim == 3) {
         const double middle = (domain->lo[2] + domain->hi[2]) / 2;

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "functional.h"
+
 /* Largest displacement, in widths of the layer, for which the mode counts as small. */
 static const double small = 0.1;
 
@@ -177,12 +179,6 @@ static double other_measured(const struct prepared *p, const struct snapshot *s)
     return cabs(of.other) / cabs(of.c);
 }
 
-static double none(const struct prepared *p, double t)
-{
-    (void)p, (void)t;
-    return 0;
-}
-
 static double rate_exact(const struct prepared *p)
 {
     const struct mode_start *start = mode_start_of(p);
@@ -191,8 +187,8 @@ static double rate_exact(const struct prepared *p)
 
 const struct functional mode_amplitude = {"mode_amplitude", NULL, amplitude_measured,
                                           amplitude_exact},
-                        mode_error = {"mode_error", NULL, error_measured, none},
-                        mode_noise = {"mode_noise", NULL, noise_measured, none},
-                        mode_other_parity = {"other_parity", NULL, other_measured, none};
+                        mode_error = {"mode_error", NULL, error_measured, functional_zero},
+                        mode_noise = {"mode_noise", NULL, noise_measured, functional_zero},
+                        mode_other_parity = {"other_parity", NULL, other_measured, functional_zero};
 
 const struct growing mode_growing = {"growth_rate", amplitude_measured, growing_during, rate_exact};

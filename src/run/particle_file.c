@@ -37,6 +37,17 @@ static enum status check_values(const struct particle_file *file, const char *pa
     return STATUS_OK;
 }
 
+static enum status check_inside(const struct particle_file *file, const char *path, int d,
+                                double lo, double hi, struct error *error)
+{
+    for (size_t i = 0; i < file->csv.rows; i++)
+        if (!(file->x[d][i] >= lo && file->x[d][i] <= hi))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s:%zu: %s = %.9g: allowed: inside of the box, %.9g to %.9g",
+                             path, file->csv.line[i], positions[d], file->x[d][i], lo, hi);
+    return STATUS_OK;
+}
+
 static void name_ignored(struct particle_file *file, bool rho_is_read)
 {
     size_t used = 0;
@@ -108,12 +119,7 @@ enum status particle_file_fill(const struct particle_file *file, const char *pat
         setup->v[a] = file->v[a];
         if (setup->boundary[a] == BOUNDARY_OPEN && setup->lo[a] == setup->hi[a])
             surround(file, a, setup);
-        for (size_t i = 0; i < setup->n; i++)
-            if (!(setup->x[a][i] >= setup->lo[a] && setup->x[a][i] <= setup->hi[a]))
-                return error_set(error, STATUS_BAD_INPUT,
-                                 "%.200s:%zu: %s = %.9g: allowed: inside of the box, %.9g to %.9g",
-                                 path, file->csv.line[i], positions[a], setup->x[a][i],
-                                 setup->lo[a], setup->hi[a]);
+        if (check_inside(file, path, a, setup->lo[a], setup->hi[a], error)) return error->status;
     }
     return STATUS_OK;
 }
@@ -130,17 +136,14 @@ static enum status check_positions(const struct particle_file *file, const char 
                          "%.200s:1: particles in %dD, but the case has dimension = %d", path,
                          file->dim, dim);
     for (int d = 0; d < dim; d++) {
-        const double lo = p->domain.lo[d], hi = p->domain.hi[d];
         if (p->boundary[d] == BOUNDARY_FIXED && !file->rho)
             return error_set(error, STATUS_BAD_INPUT,
                              "%.200s:1: no column 'rho': boundary=fixed keeps particles at their "
                              "density",
                              path);
-        for (size_t i = 0; i < file->csv.rows; i++)
-            if (p->boundary[d] != BOUNDARY_OPEN && !(file->x[d][i] >= lo && file->x[d][i] <= hi))
-                return error_set(error, STATUS_BAD_INPUT,
-                                 "%.200s:%zu: %s = %.9g: allowed: inside of the box, %.9g to %.9g",
-                                 path, file->csv.line[i], positions[d], file->x[d][i], lo, hi);
+        if (p->boundary[d] != BOUNDARY_OPEN &&
+            check_inside(file, path, d, p->domain.lo[d], p->domain.hi[d], error))
+            return error->status;
     }
     for (size_t i = 0; file->rho && i < file->csv.rows; i++)
         if (!(file->rho[i] > 0))
@@ -154,15 +157,16 @@ static enum status check_positions(const struct particle_file *file, const char 
 static void guess_densities(const struct particle_file *file, const struct prepared *p,
                             struct initial *initial)
 {
-    double mass = 0, volume = 1;
+    double mass = 0;
     for (size_t i = 0; i < initial->n; i++) mass += initial->m[i];
-    for (int d = 0; d < p->domain.dim; d++) volume *= domain_length(&p->domain, d);
     for (size_t i = 0; i < initial->n; i++) {
         struct problem_state state;
         double x[3] = {0};
         for (int d = 0; d < p->domain.dim; d++) x[d] = initial->x[d][i];
         problem_sample(p, x, 0, &state);
-        initial->rho[i] = state.rho > 0 ? state.rho : file->rho ? file->rho[i] : mass / volume;
+        initial->rho[i] = state.rho > 0 ? state.rho
+                          : file->rho   ? file->rho[i]
+                                        : mass / domain_volume(&p->domain);
     }
 }
 

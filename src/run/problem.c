@@ -16,6 +16,15 @@ enum status problem_check_state(const struct settings *settings, enum setting ke
                      state[0] == 0 ? " (particles cannot fill a vacuum)" : "");
 }
 
+enum status problem_check_square(const struct prepared *p, struct error *error)
+{
+    const double width = domain_length(&p->domain, 0), height = domain_length(&p->domain, 1);
+    if (fabs(width - height) <= 1e-12 * width) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "lo, hi: the layers lie in a square box, and this one has sides of %g and %g",
+                     width, height);
+}
+
 /* Position without the boost, in the box. */
 static void unboosted_position(const struct prepared *p, const double x[3], double t,
                                double position[3])
@@ -23,9 +32,7 @@ static void unboosted_position(const struct prepared *p, const double x[3], doub
     for (int d = 0; d < 3; d++) {
         position[d] = x[d];
         if (p->boost[d] == 0) continue;
-        const double lo = p->domain.lo[d], length = domain_length(&p->domain, d);
-        const double from_lo = x[d] - p->boost[d] * t - lo;
-        position[d] = lo + (from_lo - length * floor(from_lo / length));
+        position[d] = domain_wrap(&p->domain, d, x[d] - p->boost[d] * t);
     }
 }
 
@@ -37,6 +44,14 @@ void problem_sample(const struct prepared *p, const double x[3], double t,
     p->problem->sample(p, position, t, state);
     for (int d = 0; d < p->domain.dim; d++)
         if (p->boost[d] != 0) state->v[d] += p->boost[d];
+}
+
+void problem_sample_particle(const struct prepared *p, const struct snapshot *s, size_t i,
+                             struct problem_state *state)
+{
+    double x[3] = {0};
+    for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i];
+    problem_sample(p, x, s->time, state);
 }
 
 bool problem_knows(const struct problem *problem, enum field field)

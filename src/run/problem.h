@@ -163,6 +163,10 @@ struct problem {
 void problem_sample(const struct prepared *p, const double x[3], double t,
                     struct problem_state *state);
 
+/* The same at the position of particle i and the time of its snapshot. */
+void problem_sample_particle(const struct prepared *p, const struct snapshot *s, size_t i,
+                             struct problem_state *state);
+
 /* True if the errors of the field are known. */
 bool problem_knows(const struct problem *problem, enum field field);
 
@@ -180,6 +184,9 @@ enum status problem_check_time(const struct prepared *p, double t, struct error 
 /* For prepare of a problem: checks that the key, "rho v P", is a valid state of particles. */
 enum status problem_check_state(const struct settings *settings, enum setting key,
                                 struct error *error);
+
+/* For prepare of a problem in 2D: checks that the box is a square. */
+enum status problem_check_square(const struct prepared *p, struct error *error);
 
 /* Position and velocity of particle i without the boost. */
 void problem_position(const struct prepared *p, const struct snapshot *s, size_t i, double x[3]);

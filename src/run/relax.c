@@ -10,7 +10,6 @@
 #include "cache.h"
 #include "grid.h"
 #include "kernel.h"
-#include "regularity.h"
 
 enum { SWEEPS = 60 };
 static const double reach = 2.5;                      /* spacings */
@@ -124,10 +123,8 @@ static void move(struct cloud *cloud, const struct domain *box, double step)
         for (int d = 0; d < cloud->dim; d++) size += cloud->to[d][i] * cloud->to[d][i];
         const double part = spacing * fmin(step, longest / fmax(sqrt(size), 1e-300));
         for (int d = 0; d < cloud->dim; d++) {
-            const double lo = box->lo[d], side = domain_length(box, d);
-            const double from_lo = cloud->x[d][i] + part * cloud->to[d][i] - lo;
-            const double wrapped = from_lo - side * floor(from_lo / side);
-            cloud->x[d][i] = fmin(lo + wrapped, nextafter(box->hi[d], lo));
+            const double to = domain_wrap(box, d, cloud->x[d][i] + part * cloud->to[d][i]);
+            cloud->x[d][i] = fmin(to, nextafter(box->hi[d], box->lo[d]));
         }
     }
 }
@@ -186,10 +183,9 @@ enum status relax_points(const struct relax_region *region, size_t n, double *co
 }
 
 enum status relax_measure(const struct domain *box, size_t n, const double *const x[3],
-                          const double *volume, struct relax_quality *quality, struct error *error)
+                          const double *volume, struct regularity *quality, struct error *error)
 {
     struct kernel kernel;
-    struct regularity found;
     double *width = malloc(n * sizeof *width);
     if (!width) return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", n);
     for (size_t i = 0; i < n; i++) width[i] = judge_eta * root(volume[i], box->dim);
@@ -201,8 +197,7 @@ enum status relax_measure(const struct domain *box, size_t n, const double *cons
                                            .h = width,
                                            .kernel = &kernel};
     enum status status = kernel_select(&kernel, "wendland_c4", 0, error);
-    if (!status) status = regularity_measure(&cloud, &found, error);
-    if (!status) *quality = (struct relax_quality){found.density, found.gradient, found.spread};
+    if (!status) status = regularity_measure(&cloud, quality, error);
     free(width);
     return status;
 }

@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "field.h"
+#include "regularity.h"
 #include "status.h"
 
 /* The region to fill: a periodic box in 2 or 3 dimensions. */
@@ -19,21 +20,15 @@ struct relax_region {
     const void *context;
 };
 
-/* Quality of the points from sums with the kernel wendland_c4 at eta = 3.6: rms of sum V W - 1, and
- * rms of h |sum V grad W| (0 on a lattice); and the standard deviation of nearest-neighbour
- * distances over their mean. Random points have about 0.15, 0.3 and 0.5. */
-struct relax_quality {
-    double density, gradient, spread;
-};
-
 /* Relaxes n points in sweeps, or reads the result from the cache (relax_store_find).
  * STATUS_BAD_INPUT: too few points for a neighbourhood; or no memory. */
 enum status relax_points(const struct relax_region *region, size_t n, double *const x[3],
                          struct error *error);
 
-/* Quality of any n points with the given volumes. */
+/* Regularity of any n points with the given volumes, by the kernel wendland_c4 at eta = 3.6. Random
+ * points have a density of about 0.15, a gradient of 0.3 and a spread of 0.5. */
 enum status relax_measure(const struct domain *box, size_t n, const double *const x[3],
-                          const double *volume, struct relax_quality *quality, struct error *error);
+                          const double *volume, struct regularity *quality, struct error *error);
 
 /* A cache of relaxed points, by content, in the user's cache folder
  * ($XDG_CACHE_HOME/sphproof/glass, else ~/.cache/sphproof/glass; unused if there is no such

@@ -100,7 +100,7 @@ static enum status measure_start(struct run_result *result, const struct initial
     bool good = settings_choice(&result->settings, SETTING_lattice) == LATTICE_GLASS &&
                 !result->settings.file[0];
     for (int d = 0; d < p->domain.dim; d++) good &= p->boundary[d] == BOUNDARY_PERIODIC;
-    result->start = (struct relax_quality){(double)NAN, (double)NAN, (double)NAN};
+    result->start.density = (double)NAN;
     if (!good) return STATUS_OK;
     const double *const x[3] = {initial->x[0], initial->x[1], initial->x[2]};
     double *volume = malloc(initial->n * sizeof *volume);
@@ -262,11 +262,10 @@ static enum status begin_start(struct run *run, struct run_result *result, struc
 static void give_liquid_pressure(struct run_result *result)
 {
     const struct snapshot *s = &result->snapshot;
-    double *P = (double *)s->P, x[3] = {0}; /* points into result->storage */
+    double *P = (double *)s->P; /* points into result->storage */
     struct problem_state state;
     for (size_t i = 0; i < s->n; i++) {
-        for (int d = 0; d < result->problem.domain.dim; d++) x[d] = s->x[d][i];
-        problem_sample(&result->problem, x, 0, &state);
+        problem_sample_particle(&result->problem, s, i, &state);
         P[i] = state.P;
     }
 }

@@ -118,7 +118,7 @@ struct run_result {
     double interpolation[FIELDS]; /* error of a user's table (user_solution_error); NaN: no table */
     struct regularity regularity; /* of the final state, with the scheme's kernel */
     struct estimate estimate;     /* made before the run */
-    struct relax_quality start;   /* of a glass; NaN: the start is not a glass */
+    struct regularity start;      /* of a glass (relax_measure); density NaN: it is no glass */
     size_t crossed;               /* 1D: pairs of initial neighbours that are no longer adjacent */
     double spacing, h;    /* (box/n)^(1/d); volume-weighted mean smoothing length in the window */
     struct budget budget; /* L1 by regions of the problem */

@@ -41,11 +41,9 @@ enum status run_keep(struct run_result *result, const struct snapshot *snapshot,
     const double *from[12];
     const double **to[12];
     size_t arrays = 0;
-    double volume = 1;
     for (int d = 0; d < domain->dim; d++) {
         from[arrays] = seen.x[d], to[arrays++] = &kept->x[d];
         from[arrays] = seen.v[d], to[arrays++] = &kept->v[d];
-        volume *= domain_length(domain, d);
     }
     const double *const scalars[] = {seen.m, seen.rho, seen.u, seen.P, seen.h, seen.volume};
     const double **const targets[] = {&kept->m, &kept->rho, &kept->u,
@@ -61,7 +59,7 @@ enum status run_keep(struct run_result *result, const struct snapshot *snapshot,
     }
     kept->n = seen.n;
     result->crossed = domain->dim == 1 ? count_crossed(snapshot) : 0;
-    result->spacing = pow(volume / (double)seen.n, 1. / domain->dim);
+    result->spacing = domain_spacing(domain, seen.n);
     kept->time = result->time = seen.time;
     return STATUS_OK;
 }

@@ -14,6 +14,7 @@ struct comparison {
     double *where;         /* 0: in the window, 2: outside, NaN: position is not finite */
     double *none;          /* zeros */
     double *part;          /* volume in the window */
+    double *inside;        /* volume of the particles in the window, 0 of the others */
     double *jump;          /* |v - exact v| */
     double *azimuthal[2], *radial[2]; /* measured and exact values */
     double *storage;
@@ -42,19 +43,17 @@ static bool compare(struct comparison *of, const struct run_result *result)
 {
     const struct prepared *p = &result->problem;
     const struct snapshot *s = &result->snapshot;
-    double *next = of->storage = calloc((FIELDS + 8) * s->n, sizeof *next);
+    double *next = of->storage = calloc((FIELDS + 9) * s->n, sizeof *next);
     double **const arrays[] = {&of->where,     &of->none,         &of->part,
                                &of->jump,      &of->azimuthal[0], &of->azimuthal[1],
-                               &of->radial[0], &of->radial[1]};
+                               &of->radial[0], &of->radial[1],    &of->inside};
     if (!next) return false;
     for (int f = 0; f < FIELDS; f++, next += s->n) of->exact[f] = next;
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++, next += s->n) *arrays[k] = next;
     for (size_t i = 0; i < s->n; i++) {
         struct problem_state state;
-        double x[3] = {0}, exact_v[3] = {0};
-        double position[3], v[3], squares = 0;
-        for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i];
-        problem_sample(p, x, result->time, &state);
+        double exact_v[3] = {0}, position[3], v[3], squares = 0;
+        problem_sample_particle(p, s, i, &state);
         problem_position(p, s, i, position);
         bound_energy(result, i, position, &state);
         for (int f = 0; f < FIELDS; f++) of->exact[f][i] = problem_field(&state, (enum field)f);
@@ -64,8 +63,9 @@ static bool compare(struct comparison *of, const struct run_result *result)
             squares += (v[d] - exact_v[d]) * (v[d] - exact_v[d]);
         }
         of->where[i] = window_contains(&p->window, position) ? 0 : 2;
-        for (int d = 0; d < p->domain.dim; d++) of->where[i] += 0 * x[d]; /* NaN if x is */
+        for (int d = 0; d < p->domain.dim; d++) of->where[i] += 0 * s->x[d][i]; /* NaN if x is */
         of->part[i] = problem_window_part(p, s, i);
+        of->inside[i] = of->where[i] > 0 ? 0 : s->volume[i];
         of->jump[i] = sqrt(squares);
         if (!problem_is_circular(p)) continue;
         problem_circular(p, position, v, &of->azimuthal[0][i], &of->radial[0][i]);
@@ -75,36 +75,16 @@ static bool compare(struct comparison *of, const struct run_result *result)
 }
 
 /* Warns if a field is closer to the exact values of another field than to its own. */
-static enum status suspect(struct run_result *result, const double *const *measured,
-                           const struct comparison *of, struct error *error)
+static void suspect(struct run_result *result, const double *const *measured,
+                    const struct comparison *of)
 {
     static const char *const names[] = {"density", "velocity", "pressure", "energy"};
-    const struct snapshot *s = &result->snapshot;
-    double *inside = malloc((2 * FIELDS + 1) * s->n * sizeof *inside); /* particles in the window */
-    if (!inside) return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
-    double *volume = inside + 2 * FIELDS * s->n;
-    const double *value[FIELDS], *exact[FIELDS];
-    size_t n = 0;
-    for (size_t field = 0; field < FIELDS; field++) {
-        value[field] = inside + field * s->n;
-        exact[field] = inside + (FIELDS + field) * s->n;
-    }
-    bool all = true;
-    for (int field = 0; field < FIELDS; field++)
-        all &= problem_knows(result->problem.problem, (enum field)field);
-    for (size_t i = 0; i < s->n && all; i++) {
-        if (of->where[i] > 0) continue;
-        for (size_t field = 0; field < FIELDS; field++) {
-            inside[field * s->n + n] = measured[field][i];
-            inside[(FIELDS + field) * s->n + n] = of->exact[field][i];
-        }
-        volume[n++] = s->volume[i];
-    }
     /* near a point explosion the energy per mass is unbounded */
     const size_t bounded = result->problem.problem->mean_energy ? FIELD_INTERNAL_ENERGY : FIELDS;
-    if (all) suspicion_swapped(bounded, names, n, volume, value, exact, result->suspicion);
-    free(inside);
-    return STATUS_OK;
+    for (int field = 0; field < FIELDS; field++)
+        if (!problem_knows(result->problem.problem, (enum field)field)) return;
+    suspicion_swapped(bounded, names, result->snapshot.n, of->inside, measured,
+                      (const double *const *)of->exact, result->suspicion);
 }
 
 static const struct norms no_norms = {.l1 = (double)NAN,
@@ -157,9 +137,11 @@ static void measure_cloud(struct run_result *result, const double *const *measur
 void run_measure_nothing(struct run_result *result)
 {
     result->azimuthal = result->radial = no_norms;
-    for (int field = 0; field < FIELDS; field++) result->errors[field] = no_norms;
     result->binned_density_l1 = (double)NAN;
-    for (int field = 0; field < FIELDS; field++) result->interpolation[field] = (double)NAN;
+    for (int field = 0; field < FIELDS; field++) {
+        result->errors[field] = no_norms;
+        result->interpolation[field] = (double)NAN;
+    }
 }
 
 /* Splits the L1 norms by the regions of the problem; exact_values[f]: field f at the n
@@ -197,10 +179,10 @@ enum status run_measure_errors(struct run_result *result, struct error *error)
     if (!compare(&of, result))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
     (result->problem.domain.dim == 1 ? measure_line : measure_cloud)(result, measured, &of);
-    const enum status status = suspect(result, measured, &of, error);
+    suspect(result, measured, &of);
     measure_budget(&result->problem, s, (const double *const *)of.exact, &result->budget);
     free(of.storage);
-    return status;
+    return STATUS_OK;
 }
 
 void run_measure_functionals(struct run_result *result)

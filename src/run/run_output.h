@@ -31,12 +31,10 @@ json_t *trace_regularity_json(const struct regularity *regularity);
  * trace_regularity_json}}. New reference. */
 json_t *trace_json(const struct trace *trace, int dim);
 
-/* {"x", "density", "velocity", "pressure", "exact_density", ...: arrays, "exact": {"x", "density",
- * ...}}; see reports/verdict.h. New reference. */
-json_t *profile_json(const struct run_result *result);
-
-/* {"dim", "map": {"x", "y": cell centres, "slice": [from, to] of z (3D), "density", "speed",
- * "error" (|v - exact|, if known): by rows, NaN in a void}, "over": "x" or "R", "quantities":
- * names, "x": of some particles in the window, NAME, "exact_NAME": arrays, "exact": {"x", NAME
+/* In 1D {"x", "density", "velocity", "pressure", "exact_density", ...: arrays, "exact": {"x",
+ * "density", ...}}; see reports/verdict.h. In 2D and 3D {"dim", "map": {"x", "y": cell centres,
+ * "slice": [from, to] of z (3D), "density", "speed", "error" (|v - exact|, if known): by rows, NaN
+ * in a void}, "over": "x" or "R", "quantities": names, "x": of some particles in the window, NAME,
+ * "exact_NAME": arrays, "exact": {"x", NAME
  * ...}}; from "over" on only for problems with such a curve. New reference; NULL: no memory. */
-json_t *cloud_profile_json(const struct run_result *result);
+json_t *profile_json(const struct run_result *result);

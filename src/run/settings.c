@@ -126,10 +126,7 @@ static enum status refuse(struct error *error, const char *where, const struct s
                           const char *text)
 {
     char allowed[300], shown[64];
-    size_t i = 0;
-    for (; text[i] && i + 1 < sizeof shown; i++)
-        shown[i] = text[i] < ' ' || text[i] > '~' ? '?' : text[i];
-    shown[i] = '\0';
+    text_printable(text, shown, sizeof shown);
     setting_allowed(key, allowed, sizeof allowed);
     return error_set(error, STATUS_BAD_INPUT, "%s%s%s=%s: allowed: %s", where ? where : "",
                      where ? ": " : "", key->name, shown, allowed);

@@ -26,8 +26,8 @@ static double mean_spacing(const struct prepared *p, const struct snapshot *s)
 
 void shells_make(struct shells *shells, const struct prepared *p, const struct snapshot *s)
 {
-    double mass[SHELLS_MAX] = {0}, volume[SHELLS_MAX] = {0}, reach = (double)INFINITY;
-    for (int d = 0; d < p->domain.dim; d++) reach = fmin(reach, 0.5 * domain_length(&p->domain, d));
+    double mass[SHELLS_MAX] = {0}, volume[SHELLS_MAX] = {0};
+    const double reach = 0.5 * domain_shortest(&p->domain);
     shells->width = mean_spacing(p, s);
     shells->n = 0;
     if (!(shells->width > 0)) return; /* no particle in the window */

@@ -96,8 +96,7 @@ bool snapshots_keep(struct snapshots *snapshots, struct simulation *simulation, 
     snapshots->reach = fmin(stop, time + steps_aside * rates.furthest);
     if (snapshots_time(snapshots, snapshots->next) > snapshots->reach) return false;
     simulation_serialise(simulation, &serialiser);
-    snapshots->size = buffer.used;
-    buffer = (struct buffer){.bytes = malloc(snapshots->size)};
+    buffer = (struct buffer){.bytes = malloc(buffer.used)};
     if (buffer.bytes) {
         simulation_serialise(simulation, &serialiser);
         snapshots->state = buffer.bytes;

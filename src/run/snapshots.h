@@ -27,7 +27,6 @@ struct snapshots {
     size_t next, count; /* number of the next snapshot; number of intermediate snapshots */
     double reach;       /* snapshots up to this time start from the saved state */
     unsigned char *state;
-    size_t size;
 };
 
 /* STATUS_BAD_INPUT: the interval is invalid for a run to t_end or gives too many files. */

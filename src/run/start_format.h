@@ -36,12 +36,3 @@ enum status start_possible(const struct start_format *format, const struct run *
 /* Writes a result of run_start to a file. STATUS_ENVIRONMENT: it cannot be written. */
 enum status start_write(const struct start_format *format, const struct run_result *result,
                         const char *path, struct error *error);
-
-/* Binary files of GADGET (Springel 2005, user guide section 6): records enclosed by their byte
- * counts, in native byte order; single precision; positions from the lower corner of the box. */
-
-/* named: format 2, in which a record before each block names the block; else format 1.
- * STATUS_BAD_INPUT: too many particles for a record; STATUS_ENVIRONMENT: no memory, or the file
- * cannot be written. */
-enum status gadget_binary_write(const struct run_result *result, const char *path, bool named,
-                                struct error *error);

@@ -30,28 +30,28 @@ static json_t *seen_json(const struct trace *trace)
 
 json_t *trace_json(const struct trace *trace, int dim)
 {
-    json_t *time = json_array(), *mass = json_array(), *momentum = json_array(),
-           *turning = json_array(), *energy = json_array(), *kinetic = json_array(),
-           *potential = json_array();
+    static const char *const names[] = {"time",   "mass",    "momentum", "angular_momentum",
+                                        "energy", "kinetic", "potential"};
+    enum { SERIES = sizeof names / sizeof *names };
     const struct conservation *start = &trace->sums[0];
+    json_t *object = json_object();
+    for (size_t i = 0; i < SERIES; i++) json_object_set_new(object, names[i], json_array());
     for (size_t k = 0; k < trace->count; k++) {
         const struct trace_drift drift =
-            trace_drift(&trace->sums[0], &trace->sums[k], &trace->sums[trace->count - 1]);
-        json_array_append_new(time, result_number(trace->time[k]));
-        json_array_append_new(mass, result_number(drift.mass));
-        json_array_append_new(momentum, result_number(drift.momentum));
-        json_array_append_new(turning, result_number(drift.angular_momentum));
-        json_array_append_new(energy, result_number(drift.energy));
-        const double gained = trace->sums[k].kinetic - start->kinetic;
-        json_array_append_new(kinetic, result_number(gained / fabs(start->energy)));
-        json_array_append_new(
-            potential,
-            result_number((trace->sums[k].energy - start->energy - gained) / fabs(start->energy)));
+            trace_drift(start, &trace->sums[k], &trace->sums[trace->count - 1]);
+        const double gained = trace->sums[k].kinetic - start->kinetic,
+                     potential = trace->sums[k].energy - start->energy - gained,
+                     values[SERIES] = {trace->time[k],
+                                       drift.mass,
+                                       drift.momentum,
+                                       drift.angular_momentum,
+                                       drift.energy,
+                                       gained / fabs(start->energy),
+                                       potential / fabs(start->energy)};
+        for (size_t i = 0; i < SERIES; i++)
+            json_array_append_new(json_object_get(object, names[i]), result_number(values[i]));
     }
-    json_t *trace_of = json_pack("{s:o, s:o, s:o, s:O, s:o, s:o, s:o, s:o}", "time", time, "mass",
-                                 mass, "momentum", momentum, "angular_momentum",
-                                 dim > 1 ? turning : json_null(), "energy", energy, "kinetic",
-                                 kinetic, "potential", potential, "regularity", seen_json(trace));
-    json_decref(turning);
-    return trace_of;
+    if (dim == 1) json_object_set_new(object, "angular_momentum", json_null());
+    json_object_set_new(object, "regularity", seen_json(trace));
+    return object;
 }

@@ -213,14 +213,17 @@ struct spot {
     bool inside, across; /* between the last row and the first */
 };
 
-static struct spot spot_at(const struct user_table *table, const double x[2],
-                           const double period[2])
+static struct spot spot_at(const struct user_table *table, const struct prepared *p,
+                           const double x[2])
 {
     struct spot spot = {.inside = true};
     for (int a = 0; a < 2; a++) {
         if (table->n[a] < 2) continue;
+        const bool periodic =
+            table->over != OVER_R && a < p->domain.dim && p->boundary[a] == BOUNDARY_PERIODIC;
         spot.inside &=
-            locate(table->axis[a], table->n[a], x[a], period[a], &spot.row[a], &spot.part[a]);
+            locate(table->axis[a], table->n[a], x[a], periodic ? domain_length(&p->domain, a) : 0,
+                   &spot.row[a], &spot.part[a]);
         spot.across |= spot.row[a] == table->n[a] - 1;
         spot.next[a] = (spot.row[a] + 1) % table->n[a];
     }
@@ -256,11 +259,9 @@ static void turn(const struct prepared *p, const double x[3], double vr, double 
 static void state_at(const struct user_table *table, const struct prepared *p, const double at[3],
                      const double x[2], struct problem_state *state)
 {
-    double period[2] = {0}, value[COLUMNS];
+    double value[COLUMNS];
     const double nan = (double)NAN;
-    for (int a = 0; a < 2 && a < p->domain.dim && table->over != OVER_R; a++)
-        if (p->boundary[a] == BOUNDARY_PERIODIC) period[a] = domain_length(&p->domain, a);
-    const struct spot spot = spot_at(table, x, period);
+    const struct spot spot = spot_at(table, p, x);
     for (int c = 0; c < COLUMNS; c++)
         value[c] = spot.inside ? value_at(table, (enum column)c, &spot) : nan;
     *state = (struct problem_state){value[RHO], {0}, value[P_], value[U]};
@@ -296,19 +297,18 @@ enum status user_table_check(const struct user_table *table, const struct prepar
         return error_set(error, STATUS_BAD_INPUT, "%.200s: vphi has a meaning in 2D only",
                          table->path);
     for (int corner = 0; corner < 1 << dim; corner++) {
-        double x[3] = {0}, square = 0;
+        double x[3] = {0};
         for (int d = 0; d < dim; d++) {
             x[d] = corner & 1 << d ? p->window.hi[d] : p->window.lo[d];
             if (p->window.radius > 0)
                 x[d] = p->window.centre[d] + (corner & 1 << d ? 1 : -1) * p->window.radius;
-            square += (x[d] - p->window.centre[d]) * (x[d] - p->window.centre[d]);
         }
-        double period[2] = {0}, over[2] = {x[0], x[1]};
-        for (int a = 0; a < 2 && a < dim && table->over != OVER_R; a++)
-            if (p->boundary[a] == BOUNDARY_PERIODIC) period[a] = domain_length(&p->domain, a);
+        double over[2] = {x[0], x[1]};
         if (table->over == OVER_R)
-            over[0] = corner == 0 ? 0 : p->window.radius > 0 ? p->window.radius : sqrt(square);
-        if (spot_at(table, over, period).inside) continue;
+            over[0] = corner == 0            ? 0
+                      : p->window.radius > 0 ? p->window.radius
+                                             : problem_radius(p, x);
+        if (spot_at(table, p, over).inside) continue;
         return error_set(error, STATUS_BAD_INPUT,
                          "%.160s: its rows over %s, from %.6g to %.6g%s, do not cover the window: "
                          "%s = %.6g is in that",

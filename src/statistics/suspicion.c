@@ -5,9 +5,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-static bool suspect(char *why, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-static bool suspect(char *why, const char *format, ...)
+static bool __attribute__((format(printf, 2, 3))) suspect(char *why, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
@@ -46,7 +44,8 @@ bool suspicion_idle_setting(const char *setting, size_t n, const double *before,
 static double distance(size_t n, const double *volume, const double *a, const double *b)
 {
     double sum = 0;
-    for (size_t i = 0; i < n; i++) sum += volume[i] * fabs(a[i] - b[i]);
+    for (size_t i = 0; i < n; i++)
+        if (volume[i] != 0) sum += volume[i] * fabs(a[i] - b[i]);
     return sum;
 }
 
@@ -54,9 +53,11 @@ static double distance(size_t n, const double *volume, const double *a, const do
 static double spread(size_t n, const double *volume, const double *a)
 {
     double whole = 0, mean = 0, sum = 0;
-    for (size_t i = 0; i < n; i++) whole += volume[i], mean += volume[i] * a[i];
+    for (size_t i = 0; i < n; i++)
+        if (volume[i] != 0) whole += volume[i], mean += volume[i] * a[i];
     mean /= whole;
-    for (size_t i = 0; i < n; i++) sum += volume[i] * fabs(a[i] - mean);
+    for (size_t i = 0; i < n; i++)
+        if (volume[i] != 0) sum += volume[i] * fabs(a[i] - mean);
     return sum;
 }
 

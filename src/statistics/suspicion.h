@@ -23,8 +23,8 @@ bool suspicion_idle_setting(const char *setting, size_t n, const double *before,
 /* A field that is closer to another field's exact solution than to its own, at less than half the
  * distance in the volume-weighted L1 norm over the n particles of the window, and that follows it:
  * at less than half of its mean deviation, closer than any constant. value[f], exact[f]: n numbers
- * of field f. Fields whose exact solutions are equal, or closer to each other than the errors,
- * cannot be distinguished and are not suspected: by the triangle inequality they are not that
- * close. */
+ * of field f; those with a volume of 0 do not count. Fields whose exact solutions are equal, or
+ * closer to each other than the errors, cannot be distinguished and are not suspected: by the
+ * triangle inequality they are not that close. */
 bool suspicion_swapped(size_t fields, const char *const *names, size_t n, const double *volume,
                        const double *const *value, const double *const *exact, char *why);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Base64 encoding, for data in pages. Internal to pages. */
+ * Base64 encoding, for data in pages and in XML of VTK. */
 #pragma once
 
 #include "buffer.h"

@@ -129,8 +129,7 @@ const char *text_nearest(const char *word, const char *const *names, size_t n)
     return nearest;
 }
 
-/* Copies word for a message: shortened, with '?' for unprintable characters. */
-static void printable(const char *word, char *copy, size_t size)
+void text_printable(const char *word, char *copy, size_t size)
 {
     size_t i = 0;
     for (; word[i] && i + 1 < size; i++) copy[i] = word[i] < ' ' || word[i] > '~' ? '?' : word[i];
@@ -151,7 +150,7 @@ enum status text_unknown(struct error *error, const char *where, const char *kin
         }
         used += (size_t)wrote;
     }
-    printable(word, shown, sizeof shown);
+    text_printable(word, shown, sizeof shown);
     return error_set(error, STATUS_BAD_INPUT, "%s%sno %s '%s'%s allowed:%s", where ? where : "",
                      where ? ": " : "", kind, shown, nearest ? near : ";", list);
 }

@@ -29,6 +29,9 @@ size_t text_distance(const char *a, const char *b);
 /* The most similar of names, or NULL if none is similar. */
 const char *text_nearest(const char *word, const char *const *names, size_t n);
 
+/* Copies word for a message: shortened, with '?' for unprintable characters. */
+void text_printable(const char *word, char *copy, size_t size);
+
 /* STATUS_BAD_INPUT with "where: no KIND 'word'; did you mean 'near'? allowed: a b c". where may be
  * NULL. */
 enum status text_unknown(struct error *error, const char *where, const char *kind, const char *word,

@@ -609,8 +609,7 @@ static enum status compute(const struct run_external *external, const struct run
     if (profile)
         json_object_set_new(
             *document, "profile",
-            placed(judged.file.dim > 1 ? cloud_profile_json(result) : profile_json(result),
-                   &run->problem.domain, &result->problem.domain));
+            placed(profile_json(result), &run->problem.domain, &result->problem.domain));
     judge_free(&judged);
     return STATUS_OK;
 }

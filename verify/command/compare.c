@@ -171,10 +171,9 @@ static enum status draw(const struct side *side, size_t r, size_t draws, struct 
 
 static json_t *result_json(const struct side *side, const struct run_result *r)
 {
-    const bool line = r->problem.domain.dim == 1;
     return result_object("label=%s n=%zu time=%g errors=%p functionals=%p profile=%p", side->name,
                          r->n, r->time, (void *)run_errors_json(r), (void *)run_functionals_json(r),
-                         (void *)(line ? profile_json(r) : cloud_profile_json(r)));
+                         (void *)profile_json(r));
 }
 
 /* Errors of the fields, or of functionals if no field has an exact solution. */

@@ -210,7 +210,7 @@ static bool moves(const json_t *exact, const char *name)
 static bool scatter_fill(struct scatter *scatter, const struct run_result *result, enum field field)
 {
     static const char *const names[FIELDS] = {"density", "velocity", "pressure", "pressure"};
-    json_t *profile = cloud_profile_json(result);
+    json_t *profile = profile_json(result);
     const json_t *exact = json_object_get(profile, "exact");
     const char *name = names[field];
     size_t n[4];

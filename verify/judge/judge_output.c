@@ -69,8 +69,7 @@ json_t *judge_one_json(const struct judged *judged, bool profiles)
         "undisturbed", r->budget.regions ? result_number(r->budget.still) : json_null(), "foreign",
         judged->foreign, "verdict", judged->verdict, "meant",
         judged->meant[0] ? judged->meant : NULL, "start", start_json(&judged->of_start));
-    if (one && profiles)
-        json_object_set_new(one, "profile", plane ? cloud_profile_json(r) : profile_json(r));
+    if (one && profiles) json_object_set_new(one, "profile", profile_json(r));
     return one;
 }
 

@@ -31,10 +31,7 @@ static enum status compute_run(const struct report_piece *piece, json_t **docume
     if (status != STATUS_OK && status != STATUS_BROKE_DOWN) return status;
     *document = result_new("run");
     run_add_json(&piece->settings, &result, *document);
-    if (status == STATUS_OK)
-        json_object_set_new(*document, "profile",
-                            piece->settings.file.dimension > 1 ? cloud_profile_json(&result)
-                                                               : profile_json(&result));
+    if (status == STATUS_OK) json_object_set_new(*document, "profile", profile_json(&result));
     json_object_set_new(*document, "through_time", trace_json(&trace, run.asked.file.dimension));
     run_free(&result);
     return status;

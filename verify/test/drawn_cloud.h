@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Random particles in a box, and what a problem measures of them, for tests of collapsing and
- * expanding gas. Include after test.h. */
+ * Random particles in a box, and what a problem measures of them. Include after test.h. */
 #pragma once
 
 #include "prepared.h"

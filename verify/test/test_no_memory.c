@@ -99,7 +99,7 @@ static enum status relaxed(struct error *error)
 static enum status relax_measured(struct error *error)
 {
     const struct domain box = {2, {0, 0}, {10, 10}};
-    struct relax_quality quality;
+    struct regularity quality;
     make_positions();
     return relax_measure(&box, N, (const double *const[]){positions[0], positions[1], positions[2]},
                          unit, &quality, error);

@@ -3,6 +3,7 @@
  * change is error. Particles of equal masses. */
 #include <math.h>
 
+#include "functional.h"
 #include "initial.h"
 #include "problem.h"
 #include "vortex.h"
@@ -49,12 +50,6 @@ static double disc_measured(const struct prepared *p, const struct snapshot *s)
     return sum / n;
 }
 
-static double none(const struct prepared *p, double t)
-{
-    (void)p, (void)t;
-    return 0;
-}
-
 /* Highest azimuthal speed: exactly 1, but only on a circle where few particles are. */
 static double peak_measured(const struct prepared *p, const struct snapshot *s)
 {
@@ -69,14 +64,8 @@ static double peak_measured(const struct prepared *p, const struct snapshot *s)
     return peak;
 }
 
-static double peak_exact(const struct prepared *p, double t)
-{
-    (void)p, (void)t;
-    return 1;
-}
-
-static const struct functional disc_error = {"disc_error", NULL, disc_measured, none},
-                               peak = {"peak_velocity", NULL, peak_measured, peak_exact};
+static const struct functional disc_error = {"disc_error", NULL, disc_measured, functional_zero},
+                               peak = {"peak_velocity", NULL, peak_measured, functional_one};
 
 const struct problem problem_gresho = {
     .member = {"gresho", "a vortex with kinks that stands still", "Gresho & Chan 1990"},

@@ -9,26 +9,16 @@
 #include "initial.h"
 #include "liquid_problem.h"
 
-static const struct liquid *column_of(const struct prepared *p)
-{
-    return (const struct liquid *)p->own.bytes;
-}
-
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
-    struct liquid *of = (struct liquid *)p->own.bytes;
-    *of = liquid_of(settings);
-    if (settings->value[SETTING_gravity].automatic) p->gravity[1] = -1;
-    if (p->gravity[1] < 0 && p->gravity[0] == 0 && p->gravity[2] == 0) return STATUS_OK;
-    return error_set(error, STATUS_BAD_INPUT,
-                     "gravity=\"%g %g %g\": allowed: downwards, along y, below 0", p->gravity[0],
-                     p->gravity[1], p->gravity[2]);
+    *(struct liquid *)p->own.bytes = liquid_of(settings);
+    return liquid_check_gravity(p, settings, error);
 }
 
 static void sample(const struct prepared *p, const double x[3], double t,
                    struct problem_state *state)
 {
-    const struct liquid *of = column_of(p);
+    const struct liquid *of = (const struct liquid *)p->own.bytes;
     const double square = of->sound * of->sound;
     (void)t;
     *state = liquid_state(of, p->gamma);

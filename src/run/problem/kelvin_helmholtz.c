@@ -14,11 +14,7 @@
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
     (void)settings;
-    const double width = domain_length(&p->domain, 0), height = domain_length(&p->domain, 1);
-    if (fabs(width - height) <= 1e-12 * width) return STATUS_OK;
-    return error_set(error, STATUS_BAD_INPUT,
-                     "lo, hi: the layers lie in a square box, and this one has sides of %g and %g",
-                     width, height);
+    return problem_check_square(p, error);
 }
 
 /* x in units of the box. */

@@ -14,13 +14,9 @@ static const struct layer usual = {
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
-    const double width = domain_length(&p->domain, 0), height = domain_length(&p->domain, 1);
+    const double height = domain_length(&p->domain, 1);
     struct layer layer = usual;
-    if (fabs(width - height) > 1e-12 * width)
-        return error_set(
-            error, STATUS_BAD_INPUT,
-            "lo, hi: the layers lie in a square box, and this one has sides of %g and %g", width,
-            height);
+    if (problem_check_square(p, error)) return error->status;
     layer.gamma = p->gamma;
     layer.k = 2 * M_PI * settings_real(settings, SETTING_waves);
     layer.pressure_node = settings_choice(settings, SETTING_parity) == PARITY_SINUOUS;

@@ -18,9 +18,7 @@ static const double cold = 1e-6;
 /* Radius of the ball at t = 0: half of the distance to the nearest end of the box. */
 static double radius_of(const struct prepared *p)
 {
-    double nearest = (double)INFINITY;
-    for (int d = 0; d < p->domain.dim; d++) nearest = fmin(nearest, domain_length(&p->domain, d));
-    return 0.25 * nearest;
+    return 0.25 * domain_shortest(&p->domain);
 }
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)

@@ -354,14 +354,8 @@ static double transverse_measured(const struct prepared *p, const struct snapsho
     return volume > 0 ? sqrt(sum / volume) : 0;
 }
 
-static double transverse_exact(const struct prepared *p, double t)
-{
-    (void)p, (void)t;
-    return 0;
-}
-
 static const struct functional transverse_noise = {"transverse_noise", has_width,
-                                                   transverse_measured, transverse_exact};
+                                                   transverse_measured, functional_zero};
 
 /* ---- regions of the error budget ---- */
 

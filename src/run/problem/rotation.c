@@ -13,7 +13,7 @@ static const double spin = 1, middle_pressure = 0.25; /* of a disc of radius 1 *
 /* Radius of the disc at t = 0, the unit of length. */
 static double unit_of(const struct prepared *p)
 {
-    return 0.2 * fmin(domain_length(&p->domain, 0), domain_length(&p->domain, 1));
+    return 0.2 * domain_shortest(&p->domain);
 }
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)

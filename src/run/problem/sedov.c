@@ -62,12 +62,9 @@ static void sample(const struct prepared *p, const double x[3], double t,
 /* (1 - q^2)^2, where q is r over the radius of the hot spot. */
 static double weight_of(const struct prepared *p, const struct initial *initial, size_t i)
 {
-    double x[3] = {0}, volume = 1;
-    for (int d = 0; d < initial->dim; d++) {
-        x[d] = initial->x[d][i];
-        volume *= domain_length(&p->domain, d);
-    }
-    const double spacing = pow(volume / (double)initial->n, 1. / initial->dim);
+    double x[3] = {0};
+    for (int d = 0; d < initial->dim; d++) x[d] = initial->x[d][i];
+    const double spacing = domain_spacing(&p->domain, initial->n);
     const double q = problem_radius(p, x) / (hot_spacings * spacing);
     return q < 1 ? (1 - q * q) * (1 - q * q) : 0;
 }
@@ -81,13 +78,10 @@ static enum status check_space(const struct prepared *p, const struct settings *
 {
     const double smeared = 4, t_end = settings_real(settings, SETTING_t_end);
     const int dim = p->domain.dim;
-    double half = (double)INFINITY, volume = 1;
-    for (int d = 0; d < dim; d++) {
-        half = fmin(half, 0.5 * domain_length(&p->domain, d));
-        volume *= domain_length(&p->domain, d);
-    }
-    const double space = 1.6 * half, shock = t_end > 0 ? sedov_shock(sedov_of(p), t_end) : 0;
-    const double size = pow(volume, 1. / dim), spacing = size / pow((double)initial->n, 1. / dim);
+    const double space = 1.6 * (0.5 * domain_shortest(&p->domain)),
+                 shock = t_end > 0 ? sedov_shock(sedov_of(p), t_end) : 0;
+    const double size = pow(domain_volume(&p->domain), 1. / dim),
+                 spacing = size / pow((double)initial->n, 1. / dim);
     if (shock + smeared * spacing <= space * (1 + 1e-6)) return STATUS_OK;
     /* R grows as t^(2/(d + 2)) */
     const double least = smeared * size / (space - shock),
@@ -117,9 +111,7 @@ static enum status fill(const struct prepared *p, const struct settings *setting
 /* True until the shock gets close to its images. */
 static bool holds(const struct prepared *p, double t)
 {
-    double half = (double)INFINITY;
-    for (int d = 0; d < p->domain.dim; d++) half = fmin(half, 0.5 * domain_length(&p->domain, d));
-    return sedov_shock(sedov_of(p), t) <= 0.9 * half;
+    return sedov_shock(sedov_of(p), t) <= 0.9 * (0.5 * domain_shortest(&p->domain));
 }
 
 static double ahead(const struct prepared *p, const double x[3], double t)

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "functional.h"
 #include "initial.h"
 #include "problem.h"
 
@@ -79,12 +80,6 @@ static double amplitude_measured(const struct prepared *p, const struct snapshot
     return sum / whole;
 }
 
-static double one(const struct prepared *p, double t)
-{
-    (void)p, (void)t;
-    return 1;
-}
-
 /* Kinematic viscosity that gives the same decay; 0 at the start. */
 static double viscosity_measured(const struct prepared *p, const struct snapshot *s)
 {
@@ -92,14 +87,10 @@ static double viscosity_measured(const struct prepared *p, const struct snapshot
     return s->time > 0 ? -log(amplitude_measured(p, s)) / (k * k * s->time) : 0;
 }
 
-static double none(const struct prepared *p, double t)
-{
-    (void)p, (void)t;
-    return 0;
-}
-
-static const struct functional amplitude = {"shear_amplitude", NULL, amplitude_measured, one},
-                               viscosity = {"shear_viscosity", NULL, viscosity_measured, none};
+static const struct functional amplitude = {"shear_amplitude", NULL, amplitude_measured,
+                                            functional_one},
+                               viscosity = {"shear_viscosity", NULL, viscosity_measured,
+                                            functional_zero};
 
 const struct problem problem_shear = {
     .member = {"shear", "layers that slide past each other", "Landau & Lifshitz 1987"},

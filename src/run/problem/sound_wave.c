@@ -89,19 +89,12 @@ static enum status fill_cloud(const struct prepared *p, const struct settings *s
     for (int d = 0; d < p->domain.dim; d++) mass *= domain_length(&p->domain, d);
     for (size_t i = 0; !status && i < initial->n; i++) {
         double x[3] = {0};
-        struct problem_state state;
         for (int d = 0; d < initial->dim; d++) x[d] = initial->x[d][i];
         const double s = along(p, x), shift = wave_position(wave, s * wave->rho0) - s;
-        for (int d = 0; d < initial->dim; d++) {
-            const double lo = p->domain.lo[d], length = domain_length(&p->domain, d);
-            const double from_lo = x[d] + shift * direction_of(p)[d] - lo;
-            x[d] = initial->x[d][i] = lo + (from_lo - length * floor(from_lo / length));
-        }
-        sample(p, x, 0, &state);
-        for (int d = 0; d < initial->dim; d++) initial->v[d][i] = state.v[d];
+        for (int d = 0; d < initial->dim; d++)
+            initial->x[d][i] = domain_wrap(&p->domain, d, x[d] + shift * direction_of(p)[d]);
+        initial_sample(initial, p, i);
         initial->m[i] = mass / (double)initial->n;
-        initial->u[i] = state.u;
-        initial->rho[i] = state.rho;
     }
     return status;
 }
@@ -115,13 +108,9 @@ static enum status fill(const struct prepared *p, const struct settings *setting
     const double lo = p->domain.lo[0], mass = wave->rho0 * (p->domain.hi[0] - lo) / (double)n;
     if (initial_allocate(initial, 1, n, error)) return error->status;
     for (size_t i = 0; i < n; i++) {
-        struct problem_state state;
         initial->m[i] = mass;
         initial->x[0][i] = lo + wave_position(wave, ((double)i + 0.5) * mass);
-        sample(p, (double[3]){initial->x[0][i]}, 0, &state);
-        initial->v[0][i] = state.v[0];
-        initial->u[i] = state.u;
-        initial->rho[i] = state.rho;
+        initial_sample(initial, p, i);
     }
     return STATUS_OK;
 }

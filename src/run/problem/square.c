@@ -69,11 +69,7 @@ static enum status fill_equal_masses(const struct prepared *p, const struct sett
     const struct square *square = square_of(p);
     const enum lattice kind = (enum lattice)settings_choice(settings, SETTING_lattice);
     struct lattice_plan dense, around;
-    double volume = 1, inner = 1;
-    for (int d = 0; d < p->domain.dim; d++) {
-        volume *= domain_length(&p->domain, d);
-        inner *= domain_length(&square->inside, d);
-    }
+    const double volume = domain_volume(&p->domain), inner = domain_volume(&square->inside);
     const double all = square->dense * inner + thin * (volume - inner);
     const double n = settings_real(settings, SETTING_n);
     if (lattice_plan_make(&dense, &square->inside, kind,

@@ -19,15 +19,11 @@ PROBLEM_OWN(wave)
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
     struct wave *of = (struct wave *)p->own.bytes;
-    if (settings->value[SETTING_gravity].automatic) p->gravity[1] = -1;
+    if (liquid_check_gravity(p, settings, error)) return error->status;
     const double depth = domain_length(&p->domain, 1), g = -p->gravity[1];
     const double k =
         2 * M_PI * settings_real(settings, SETTING_waves) / domain_length(&p->domain, 0);
     const double amplitude = settings_real(settings, SETTING_amplitude);
-    if (!(g > 0) || p->gravity[0] != 0 || p->gravity[2] != 0)
-        return error_set(error, STATUS_BAD_INPUT,
-                         "gravity=\"%g %g %g\": allowed: downwards, along y, below 0",
-                         p->gravity[0], p->gravity[1], p->gravity[2]);
     if (!(amplitude > 0))
         return error_set(error, STATUS_BAD_INPUT, "amplitude=0: there is no wave");
     *of = (struct wave){.liquid = liquid_of(settings),

@@ -1,11 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What GADGET's two binary formats share. */
+ * Binary files of GADGET (Springel 2005, user guide section 6): records enclosed by their byte
+ * counts, in native byte order; single precision; positions from the lower corner of the box. The
+ * codes, as usually compiled, read single precision and the blocks up to the energies; densities
+ * and smoothing lengths are for other readers. */
 #pragma once
 
 #include "start_format.h"
 
-/* Defines one of the two formats. The codes, as usually compiled, read single precision and the
- * blocks up to the energies; densities and smoothing lengths are for other readers. */
+/* named: format 2, in which a record before each block names the block; else format 1.
+ * STATUS_BAD_INPUT: too many particles for a record; STATUS_ENVIRONMENT: no memory, or the file
+ * cannot be written. */
+enum status gadget_binary_write(const struct run_result *result, const char *path, bool named,
+                                struct error *error);
+
+/* Defines one of the two formats. */
 #define GADGET_BINARY(name, number, named)                                                         \
     static enum status write(const struct run_result *result, const char *path,                    \
                              struct error *error)                                                  \

@@ -32,18 +32,6 @@ static void write_case(const char *path, const char *name, size_t bytes)
     assert_int_equal(fclose(file), 0);
 }
 
-TEST(built_in)
-{
-    size_t n = 0;
-    for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++, n++) {
-        struct case_file file;
-        struct error error = {0};
-        if (case_load(&file, builtin->name, &error)) fail_msg("%s", error.message);
-        assert_string_equal(file.name, builtin->name);
-    }
-    assert_true(n > 10);
-}
-
 /* A word with a slash, or that ends in .ini, is a path; files are not searched by name. */
 TEST(paths)
 {

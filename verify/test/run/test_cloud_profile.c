@@ -142,7 +142,7 @@ TEST(maps)
         struct error error;
         double values[MANY], z[64 * 64];
         make(dim, false, n);
-        json_t *profile = cloud_profile_json(&result), *made = json_object_get(profile, "map");
+        json_t *profile = profile_json(&result), *made = json_object_get(profile, "map");
         assert_int_equal(map_create(&map, &result.problem.domain, &result.snapshot, 64, &error), 0);
         const size_t cells = map.nx * map.ny;
         assert_int_equal(map.nx, n == FEW ? (dim == 2 ? 3 : 2) : dim == 2 ? 64 : 17);
@@ -180,7 +180,7 @@ TEST(nothing_to_compare_with)
 {
     make(2, false, FEW);
     problem.fieldless = true;
-    json_t *profile = cloud_profile_json(&result), *made = json_object_get(profile, "map");
+    json_t *profile = profile_json(&result), *made = json_object_get(profile, "map");
     assert_true(json_object_size(profile) == 2 && json_object_size(made) == 4);
     assert_true(value_member(profile, "dim") == 2);
     assert_null(json_object_get(made, "error"));
@@ -193,7 +193,7 @@ TEST(particles_and_the_curve)
     for (int k = 0; k < 4; k++) {
         const int dim = 2 + k / 2;
         make(dim, k % 2, FEW);
-        json_t *profile = cloud_profile_json(&result), *exact = json_object_get(profile, "exact");
+        json_t *profile = profile_json(&result), *exact = json_object_get(profile, "exact");
         const char *const *names = around ? over_R : along_x;
         const size_t count = around ? 4 : 3;
         size_t shown = 0;
@@ -253,7 +253,7 @@ TEST(particles_that_are_kept)
     uint64_t drawn = 1;
     size_t shown = 0, nearest = 0;
     make(2, false, MANY);
-    json_t *profile = cloud_profile_json(&result);
+    json_t *profile = profile_json(&result);
     for (size_t i = 0; i < MANY; i++) {
         double at[3];
         drawn = drawn * 6364136223846793005u + 1442695040888963407u;
@@ -269,7 +269,7 @@ TEST(particles_that_are_kept)
 
 static bool has_a_curve(void)
 {
-    json_t *profile = cloud_profile_json(&result);
+    json_t *profile = profile_json(&result);
     const bool curve = json_object_get(profile, "over") != NULL;
     json_decref(profile);
     return curve;

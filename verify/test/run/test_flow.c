@@ -4,43 +4,10 @@
  * that the solutions are exact.) */
 #include "test.h"
 
+#include "drawn_cloud.h"
 #include "kelvin_helmholtz.h"
 #include "lattice.h"
-#include "prepared.h"
 #include "vortex.h"
-
-enum { N = 60 }; /* arrays have one more element, which must not count */
-
-/* Particles at random positions in a box. */
-struct cloud {
-    double x[3][N + 1], v[3][N + 1], m[N + 1], rho[N + 1], volume[N + 1];
-    struct snapshot snapshot;
-};
-
-static void scatter(struct cloud *cloud, const struct prepared *p, double time)
-{
-    for (int i = 0; i <= N; i++) {
-        for (int d = 0; d < 3; d++) {
-            const double lo = p->domain.lo[d],
-                         length = d < p->domain.dim ? domain_length(&p->domain, d) : 1;
-            cloud->x[d][i] = lo + length * fmod(0.37 * i * (1 + 0.31 * d) + 0.1, 1);
-            cloud->v[d][i] = sin(3.3 * i + d);
-        }
-        cloud->m[i] = 1 + 0.2 * cos(2.1 * i);
-        cloud->rho[i] = 1 + 0.3 * sin(1.7 * i);
-        cloud->volume[i] = 1 + 0.4 * sin(4.9 * i);
-    }
-    /* the additional particle turns around the middle, and is the fastest */
-    cloud->v[0][N] = 50 * (p->window.centre[1] - cloud->x[1][N]);
-    cloud->v[1][N] = 50 * (cloud->x[0][N] - p->window.centre[0]);
-    cloud->snapshot = (struct snapshot){.n = N,
-                                        .x = {cloud->x[0], cloud->x[1], cloud->x[2]},
-                                        .v = {cloud->v[0], cloud->v[1], cloud->v[2]},
-                                        .m = cloud->m,
-                                        .rho = cloud->rho,
-                                        .volume = cloud->volume,
-                                        .time = time};
-}
 
 /* Position relative to the middle of the box, and velocity, of particle i without the boost. */
 static void at_rest(const struct cloud *cloud, const struct prepared *p, int i, double x[3],
@@ -57,18 +24,8 @@ static void at_rest(const struct cloud *cloud, const struct prepared *p, int i, 
     }
 }
 
-static double measured(const struct prepared *p, const char *name, const struct snapshot *s)
-{
-    return prepared_functional(p, name)->measure(p, s);
-}
-
-static double exactly(const struct prepared *p, const char *name, double t)
-{
-    return prepared_functional(p, name)->exact(p, t);
-}
-
-static struct problem_state sampled(const struct prepared *p, double x, double y, double z,
-                                    double t)
+static struct problem_state state_at(const struct prepared *p, double x, double y, double z,
+                                     double t)
 {
     struct problem_state state;
     p->problem->sample(p, (double[3]){x, y, z}, t, &state);
@@ -89,7 +46,7 @@ TEST(vortices_turn_round_the_middle)
             const double R = 0.02 * i, x = 0.5 + 0.6 * R, y = 3 + 0.8 * R;
             const double r = hypot(x - 0.5, y - 3);
             const struct vortex_state want = k ? vortex_yee(r, 5, 1.6) : vortex_gresho(r);
-            const struct problem_state have = sampled(&p, x, y, 7, 0.3);
+            const struct problem_state have = state_at(&p, x, y, 7, 0.3);
             assert_true(have.rho == want.rho && have.P == want.P && have.v[2] == 0);
             near_relative(have.u, want.P / (0.6 * want.rho), 1e-14);
             if (i == 0 || want.v == 0) {
@@ -115,6 +72,9 @@ TEST(vortex_is_measured)
     const struct prepared p =
         prepared_of(&s, 2, "kind=gresho|lo=-0.5 1.5|hi=1.5 3.5|boost=0.5 -0.25");
     scatter(&cloud, &p, 0.7);
+    /* the particle after the last turns around the middle, and is the fastest */
+    cloud.v[0][N] = 50 * (p.window.centre[1] - cloud.x[1][N]);
+    cloud.v[1][N] = 50 * (cloud.x[0][N] - p.window.centre[0]);
     double sum = 0, peak = 0;
     int n = 0;
     for (int i = 0; i < N; i++) {
@@ -151,7 +111,7 @@ TEST(layers_fill_a_square)
     for (int i = 0; i < 20; i++) {
         const double x = 0.013 + 0.047 * i, y = 0.02 + 0.05 * i;
         const struct kelvin_helmholtz_state want = kelvin_helmholtz_start(x, y);
-        const struct problem_state have = sampled(&p, -1 + 2 * x, 2 + 2 * y, 7, 0.3);
+        const struct problem_state have = state_at(&p, -1 + 2 * x, 2 + 2 * y, 7, 0.3);
         near_relative(have.rho, want.rho, 1e-13);
         near_relative(have.v[0], want.v[0], 1e-12);
         near_absolute(have.v[1] - want.v[1], 0, 1e-15);
@@ -258,8 +218,8 @@ TEST(layers_slide_past_each_other)
             whole += 0.5 * cloud.volume[i] * sin(phase) * sin(phase);
             const double *middle = p.window.centre;
             const struct problem_state have =
-                sampled(&p, middle[0] + x[0], middle[1] + x[1],
-                        rows[k].dim > 2 ? middle[2] + x[2] : (double)NAN, 0.3);
+                state_at(&p, middle[0] + x[0], middle[1] + x[1],
+                         rows[k].dim > 2 ? middle[2] + x[2] : (double)NAN, 0.3);
             for (int d = 0; d < 3; d++)
                 near_absolute(have.v[d] - 0.5 * sin(phase) * rows[k].flow[d], 0, 1e-14);
             assert_true(have.rho == 1.3 && have.P == 0.7);
@@ -293,7 +253,7 @@ TEST(gas_at_rest)
 {
     struct settings s;
     const struct prepared p = prepared_of(&s, 3, "kind=rest|background=1.3 0 0.7|gamma=1.6");
-    const struct problem_state have = sampled(&p, 0.1, 0.2, 0.3, 0.4);
+    const struct problem_state have = state_at(&p, 0.1, 0.2, 0.3, 0.4);
     assert_true(have.rho == 1.3 && have.P == 0.7);
     assert_true(have.v[0] == 0 && have.v[1] == 0 && have.v[2] == 0);
     near_relative(have.u, 0.7 / (0.6 * 1.3), 1e-14);
@@ -312,7 +272,7 @@ TEST(nothing_is_known_of_a_file)
                      "PARTICLES.csv in [initial], or a shared object that knows the state at t = "
                      "0, reference = ./mine.so in [case]");
     const struct prepared p = prepared_of(&s, 1, "kind=particles|file=a");
-    const struct problem_state have = sampled(&p, 0.1, 0.2, 0.3, 0.4);
+    const struct problem_state have = state_at(&p, 0.1, 0.2, 0.3, 0.4);
     assert_true(isnan(have.rho) && isnan(have.P) && isnan(have.u));
     assert_true(isnan(have.v[0]) && isnan(have.v[1]) && isnan(have.v[2]));
     assert_false(settings_random_start(&s));

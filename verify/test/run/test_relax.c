@@ -111,7 +111,7 @@ TEST(quality_of_a_cloud)
     static double x[3][N], volume[N], h[N];
     struct kernel kernel;
     struct regularity found;
-    struct relax_quality quality;
+    struct regularity quality;
     struct error error = {0};
     for (int i = 0; i < N; i++) {
         for (int d = 0; d < 3; d++)
