@@ -19,7 +19,6 @@
 #include <unistd.h>
 
 #include "clock.h"
-#include "engine.h"
 #include "output.h"
 #include "result.h"
 #include "slurm.h"
@@ -48,7 +47,7 @@ struct share {
 };
 
 struct array {
-    const struct engine_work *work;
+    const struct slurm_work *work;
     char name[32], folder[CACHE_PATH_MAX + 8], state[CACHE_PATH_MAX + 64];
     int count;            /* of shares */
     struct share *shares; /* [1..count] */
@@ -87,7 +86,7 @@ static json_t *load(const struct array *array)
     json_t *state = json_load_file(array->state, 0, NULL);
     const json_int_t tasks = json_integer_value(json_object_get(state, "tasks"));
     const json_t *tries = json_object_get(state, "tries"), *jobs = json_object_get(state, "jobs");
-    if (tasks >= 1 && tasks <= ENGINE_TASKS_MAX && json_array_size(tries) == (size_t)tasks &&
+    if (tasks >= 1 && tasks <= SLURM_TASKS_MAX && json_array_size(tries) == (size_t)tasks &&
         json_array_size(jobs) == (size_t)tasks)
         return state;
     json_decref(state);
@@ -159,13 +158,13 @@ static int tasks_for(double seconds, size_t count, int jobs)
 {
     double tasks = seconds / (least_s * jobs);
     if (tasks > (double)count) tasks = (double)count;
-    if (tasks > ENGINE_TASKS_MAX) tasks = ENGINE_TASKS_MAX;
+    if (tasks > SLURM_TASKS_MAX) tasks = SLURM_TASKS_MAX;
     return tasks >= 1 ? (int)tasks : 1;
 }
 
 static enum status divide(struct array *array, struct error *error)
 {
-    const struct engine_work *work = array->work;
+    const struct slurm_work *work = array->work;
     const struct pool *pool = work->pool;
     size_t lacking = 0;
     for (size_t i = 0; i < pool->count; i++) {
@@ -206,31 +205,18 @@ static char *ranges(const struct array *array, const bool *chosen)
     return fclose(line) ? free(text), NULL : text;
 }
 
-/* Tests whether the file with the state of the study can be written. */
-static enum status probe(const struct array *array, struct error *error)
-{
-    return output_probe(array->state, error);
-}
-
 static enum status submit(struct array *array, const bool *chosen, struct error *error)
 {
     long job = 0;
-    if (probe(array, error)) return error->status;
+    if (output_probe(array->state, error)) return error->status;
     for (int s = 1; s <= array->count; s++) array->shares[s].tries += chosen[s];
     if (save(array, error))
         return error->status; /* saved first, so that every submission is counted */
     char *which = ranges(array, chosen);
-    const struct slurm_share share = {
-        .options = array->work->options,
-        .cache = array->work->cache,
-        .jobs = array->work->jobs,
-        .of = array->count,
-        .name = array->name,
-        .folder = array->folder,
-        .which = which,
-    };
-    const enum status status = which ? slurm_share_submit(&share, &job, error)
-                                     : error_set(error, STATUS_ENVIRONMENT, "no memory for shares");
+    const enum status status = which
+                                   ? slurm_share_submit(array->work, array->count, which,
+                                                        array->name, array->folder, &job, error)
+                                   : error_set(error, STATUS_ENVIRONMENT, "no memory for shares");
     free(which);
     for (int s = 1; s <= array->count; s++) {
         struct share *one = &array->shares[s];
@@ -472,7 +458,7 @@ static enum status finish(struct array *array, struct error *error)
     return STATUS_OK;
 }
 
-static enum status compute(const struct engine_work *work, struct error *error)
+enum status slurm_compute(const struct slurm_work *work, struct error *error)
 {
     struct array array = {.work = work};
     enum status status = name_array(&array, error);
@@ -489,9 +475,3 @@ static enum status compute(const struct engine_work *work, struct error *error)
     free(array.of);
     return status;
 }
-
-const struct engine engine_slurm = {
-    .name = "slurm",
-    .label = "an array of jobs on a cluster",
-    .compute = compute,
-};

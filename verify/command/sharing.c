@@ -6,6 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "text.h"
+
 enum { JOBS_MAX = 1024, SHARES_MAX = 1000000 };
 
 static enum status take_share(struct pool_share *share, const struct options *options,
@@ -21,30 +23,32 @@ static enum status take_share(struct pool_share *share, const struct options *op
     return STATUS_OK;
 }
 
-/* Chooses the engine. An engine on other machines needs the cache to exchange results. */
+/* Chooses who computes. Other machines need the cache to exchange results. */
 static enum status take_engine(struct sharing *sharing, const struct options *options,
                                const char *folder, bool force, struct error *error)
 {
+    static const char *const engines[] = {"local", "slurm"};
     const char *name = options_value(options, "engine");
     double number = 0;
-    sharing->engine = engine_find(name ? name : "local", error);
-    if (!sharing->engine) return error->status;
-    if (options_number(options, "engine-tasks", true, 1, ENGINE_TASKS_MAX, &number, error))
+    sharing->slurm = name && strcmp(name, "slurm") == 0;
+    if (name && !sharing->slurm && strcmp(name, "local") != 0)
+        return text_unknown(error, "--engine", "engine", name, engines, 2);
+    if (options_number(options, "engine-tasks", true, 1, SLURM_TASKS_MAX, &number, error))
         return error->status;
     sharing->tasks = (int)number;
-    if (!sharing->engine->compute)
+    if (!sharing->slurm)
         return sharing->tasks || options_value(options, "engine-options")
                    ? error_set(error, STATUS_BAD_INPUT,
                                "%s: --engine-options and --engine-tasks need --engine slurm",
                                options->command->name)
                    : STATUS_OK;
     if (sharing->pool.share.of || force)
-        return error_set(error, STATUS_BAD_INPUT, "%s: --engine %s and --%s exclude each other",
-                         options->command->name, sharing->engine->name, force ? "force" : "shard");
+        return error_set(error, STATUS_BAD_INPUT, "%s: --engine slurm and --%s exclude each other",
+                         options->command->name, force ? "force" : "shard");
     return folder ? STATUS_OK
                   : error_set(error, STATUS_BAD_INPUT,
-                              "%s: --engine %s needs --cache DIR, which all machines see",
-                              options->command->name, sharing->engine->name);
+                              "%s: --engine slurm needs --cache DIR, which all machines see",
+                              options->command->name);
 }
 
 /* Refuses --only-build with another build, whose results would have other cache keys. */
@@ -103,12 +107,13 @@ enum status sharing_take(struct sharing *sharing, const struct options *options,
     if (folder && sharing->list && access(folder, R_OK)) folder = NULL; /* not created */
     if (folder && cache_open(&sharing->cache, folder, force, error)) return error->status;
     if (folder) sharing->pool.cache = &sharing->cache;
-    sharing->pool.again = !sharing->engine->compute && !sharing->pool.share.of;
+    sharing->pool.again = !sharing->slurm && !sharing->pool.share.of;
     return check_build(sharing, options, error);
 }
 
-/* Prints the computations for --list to standard output. */
-static enum status list(const struct sharing *sharing, const struct pool *pool, struct error *error)
+/* The computations, for --list. */
+static enum status print_list(const struct sharing *sharing, const struct pool *pool,
+                              struct error *error)
 {
     const struct pool_share *share = &sharing->pool.share;
     int *shares = calloc(pool->count + 1, sizeof *shares);
@@ -156,7 +161,7 @@ static enum status say_share(const struct sharing *sharing, const struct pool *p
 static enum status compute_elsewhere(struct sharing *sharing, const struct pool *pool,
                                      const struct options *options, struct error *error)
 {
-    const struct engine_work work = {
+    const struct slurm_work work = {
         .options = options,
         .pool = pool,
         .cache = &sharing->cache,
@@ -164,8 +169,8 @@ static enum status compute_elsewhere(struct sharing *sharing, const struct pool 
         .tasks = sharing->tasks,
         .progress = &sharing->progress,
     };
-    if (!sharing->engine->compute) return STATUS_OK;
-    const enum status status = sharing->engine->compute(&work, error);
+    if (!sharing->slurm) return STATUS_OK;
+    const enum status status = slurm_compute(&work, error);
     progress_end(&sharing->progress);
     progress_begin(&sharing->progress, options->command->name, options->quiet);
     return status;
@@ -175,7 +180,7 @@ enum status sharing_run(struct sharing *sharing, struct pool *pool, const struct
                         bool *whole, struct error *error)
 {
     *whole = false;
-    if (sharing->list) return list(sharing, pool, error);
+    if (sharing->list) return print_list(sharing, pool, error);
     progress_begin(&sharing->progress, options->command->name, options->quiet);
     sharing->pool.progress = show_progress;
     sharing->pool.progress_context = &sharing->progress;

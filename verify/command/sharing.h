@@ -4,9 +4,8 @@
 #pragma once
 
 #include "command.h"
-#include "engine.h"
 #include "pool.h"
-#include "progress.h"
+#include "slurm.h"
 #include "suite.h"
 
 /* Each command lists --jobs itself, because the defaults differ. */
@@ -34,8 +33,8 @@
 
 struct sharing {
     bool list;
-    const struct engine *engine;
-    int tasks;                 /* number of tasks; 0: the engine decides */
+    bool slurm;                /* a cluster computes */
+    int tasks;                 /* number of its tasks; 0: it decides */
     struct pool_settings pool; /* sharing_run sets its progress */
     struct cache cache;        /* used if pool.cache is not NULL */
     struct progress progress;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Calls sbatch, squeue and scancel for arrays of tasks under one name. Slurm's manuals: sbatch(1),
+ * --engine slurm: computes the shares of a study as an array of tasks on a cluster; and the calls of
+ * sbatch, squeue and scancel, for arrays of tasks under one name. Slurm's manuals: sbatch(1),
  * squeue(1), scancel(1). */
 #pragma once
 
@@ -8,9 +9,25 @@
 
 #include "cache.h"
 #include "command.h"
-#include "status.h"
+#include "pool.h"
+#include "progress.h"
 
-enum { SLURM_WORDS_MAX = 64 };
+enum { SLURM_WORDS_MAX = 64, SLURM_TASKS_MAX = 1000 }; /* tasks: Slurm's usual MaxArraySize - 1 */
+
+/* The work of a cluster. Nothing is owned. */
+struct slurm_work {
+    const struct options *options; /* of the command line; a share's command line is made from it */
+    const struct pool *pool;
+    const struct cache *cache;
+    int jobs;  /* processes of a share */
+    int tasks; /* shares; 0: about ten minutes of work each */
+    struct progress *progress;
+};
+
+/* Computes all jobs with a key, in shares, into the cache; the pool runs afterwards, takes the
+ * results from there and computes the rest. STATUS_ENVIRONMENT: some results are missing; the others
+ * are kept. */
+enum status slurm_compute(const struct slurm_work *work, struct error *error);
 
 /* A task of an array, as the controller reports it, until some minutes after its end. */
 struct slurm_task {
@@ -34,16 +51,11 @@ enum status slurm_cancel(const char *name, struct error *error);
 /* Cancels a task that Slurm holds. */
 enum status slurm_cancel_task(const struct slurm_task *task, struct error *error);
 
-struct slurm_share {
-    const struct options *options; /* of this command */
-    const struct cache *cache;
-    int jobs, of;              /* processes of each; number of shares */
-    const char *name, *folder; /* of the array; of the logs */
-    const char *which;         /* numbers of the shares: 1,3-5 */
-};
-
-/* Submits; *job: the number of the array. */
-enum status slurm_share_submit(const struct slurm_share *share, long *job, struct error *error);
+/* Submits some of the `of` shares; which: their numbers, 1,3-5; name: of the array; folder: of the
+ * logs; *job: the number of the array. */
+enum status slurm_share_submit(const struct slurm_work *work, int of, const char *which,
+                               const char *name, const char *folder, long *job,
+                               struct error *error);
 
 /* The file to which the task of a share writes its output. */
 void slurm_share_log(const char *folder, const char *name, long job, int share, char *path,

@@ -48,9 +48,9 @@ static void put_quoted(FILE *line, const char *word)
 }
 
 /* The command line of a share; malloced. */
-static char *line_of(const struct slurm_share *share)
+static char *line_of(const struct slurm_work *work, int of)
 {
-    const struct options *options = share->options;
+    const struct options *options = work->options;
     const struct command_option *list = options->command->options;
     char program[PATH_LENGTH] = "", *text = NULL;
     size_t size;
@@ -60,8 +60,8 @@ static char *line_of(const struct slurm_share *share)
     fputs("exec ", line);
     put_quoted(line, program);
     fprintf(line, " %s --shard $SLURM_ARRAY_TASK_ID/%d --only-build %s --threads %d",
-            options->command->name, share->of, share->cache->build, options->threads);
-    if (takes(options->command, "jobs")) fprintf(line, " --jobs %d", share->jobs);
+            options->command->name, of, work->cache->build, options->threads);
+    if (takes(options->command, "jobs")) fprintf(line, " --jobs %d", work->jobs);
     for (size_t i = 0; list[i].name; i++) {
         if (!options->values[i] || of_the_caller(list[i].name)) continue;
         fprintf(line, list[i].argument ? " --%s=" : " --%s", list[i].name);
@@ -75,17 +75,19 @@ static char *line_of(const struct slurm_share *share)
     return fclose(line) ? free(text), NULL : text;
 }
 
-enum status slurm_share_submit(const struct slurm_share *share, long *job, struct error *error)
+enum status slurm_share_submit(const struct slurm_work *work, int of, const char *which,
+                               const char *array_name, const char *folder, long *job,
+                               struct error *error)
 {
     const char *words[SLURM_WORDS_MAX + 1] = {"sbatch", "--requeue", "--open-mode=append"};
-    char cpus[40], array[16 + strlen(share->which)], name[80], output[PATH_LENGTH + 200];
-    const char *given = options_value(share->options, "engine-options");
-    char *own = strdup(given ? given : ""), *rest = NULL, *wrap = line_of(share);
+    char cpus[40], array[16 + strlen(which)], name[80], output[PATH_LENGTH + 200];
+    const char *given = options_value(work->options, "engine-options");
+    char *own = strdup(given ? given : ""), *rest = NULL, *wrap = line_of(work, of);
     size_t n = 3;
-    snprintf(cpus, sizeof cpus, "--cpus-per-task=%d", share->jobs * share->options->threads);
-    snprintf(name, sizeof name, "--job-name=%s", share->name);
-    snprintf(array, sizeof array, "--array=%s", share->which);
-    snprintf(output, sizeof output, "--output=%s/%s-%%A_%%a.log", share->folder, share->name);
+    snprintf(cpus, sizeof cpus, "--cpus-per-task=%d", work->jobs * work->options->threads);
+    snprintf(name, sizeof name, "--job-name=%s", array_name);
+    snprintf(array, sizeof array, "--array=%s", which);
+    snprintf(output, sizeof output, "--output=%s/%s-%%A_%%a.log", folder, array_name);
     words[n++] = cpus;
     enum status status =
         own && wrap ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory for sbatch");

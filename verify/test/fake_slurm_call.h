@@ -28,7 +28,7 @@ static struct call {
     const char *values[sizeof list / sizeof *list];
     char *arguments[2];
     struct progress progress;
-    struct engine_work work;
+    struct slurm_work work;
     struct error error;
     char said[8000]; /* standard error */
 } call;
@@ -50,7 +50,7 @@ static inline int begin(void **state)
     call.arguments[0] = (char *)"sod";
     call.options.arguments = call.arguments;
     call.options.count = 1;
-    call.work = (struct engine_work){.options = &call.options,
+    call.work = (struct slurm_work){.options = &call.options,
                                      .pool = &call.pool,
                                      .cache = &call.folder.cache,
                                      .jobs = 1,
@@ -83,7 +83,7 @@ static inline enum status compute_all(void)
     dup2(file, STDERR_FILENO);
     progress_begin(&call.progress, "converge", true);
     call.error = (struct error){0};
-    const enum status status = engine_slurm.compute(&call.work, &call.error);
+    const enum status status = slurm_compute(&call.work, &call.error);
     fflush(stderr);
     dup2(usual, STDERR_FILENO);
     const ssize_t length = pread(file, call.said, sizeof call.said - 1, 0);

@@ -287,7 +287,7 @@ TEST(state_file)
         assert_string_equal(slurm.arrays, states[i].arrays);
     }
     /* the least and the greatest number of shares, and one too many */
-    for (int tasks = 1; tasks <= ENGINE_TASKS_MAX + 1; tasks += tasks > 1 ? 1 : 999) {
+    for (int tasks = 1; tasks <= SLURM_TASKS_MAX + 1; tasks += tasks > 1 ? 1 : 999) {
         char of[32];
         FILE *file = open_state();
         fprintf(file, "{\"tasks\": %d", tasks);
@@ -300,7 +300,7 @@ TEST(state_file)
         fclose(file);
         for (size_t k = 0; k < slurm.count; k++) slurm.tasks[k].fate = FORGOTTEN;
         assert_int_equal(compute_all(), STATUS_OK);
-        snprintf(of, sizeof of, "TASK_ID/%d ", tasks > ENGINE_TASKS_MAX ? SHARES : tasks);
+        snprintf(of, sizeof of, "TASK_ID/%d ", tasks > SLURM_TASKS_MAX ? SHARES : tasks);
         assert_non_null(strstr(slurm.wrap, of));
     }
     /* invalid states: the study is divided again */

@@ -8,7 +8,9 @@
 #include <fcntl.h>
 
 #include "sample_jobs.h"
-#include "sharing.h"
+/* the options themselves, because the cluster is replaced */
+#define slurm_compute compute_planted
+#include "../../command/sharing.c"
 
 enum { N = 7, SHARES = 3 };
 
@@ -257,7 +259,7 @@ static struct {
     int jobs;
 } planted;
 
-static enum status compute_planted(const struct engine_work *work, struct error *error)
+enum status compute_planted(const struct slurm_work *work, struct error *error)
 {
     assert_ptr_equal(work->options, &call.options);
     assert_ptr_equal(work->pool, &call.pool);
@@ -270,10 +272,9 @@ static enum status compute_planted(const struct engine_work *work, struct error 
     return planted.status ? error_set(error, planted.status, "no tasks") : STATUS_OK;
 }
 
-/* An engine receives all settings; results that it lacks are computed here unless it fails. */
-TEST(engines)
+/* A cluster receives all settings; results that it lacks are computed here unless it fails. */
+TEST(clusters)
 {
-    static const struct engine engine = {.name = "planted", .compute = compute_planted};
     static const char *const jobs[] = {NULL, "1", "3"};
     for (int k = 0; k < 3; k++)
         for (enum status s = STATUS_OK; s <= STATUS_ENVIRONMENT; s++) {
@@ -282,7 +283,7 @@ TEST(engines)
             set("cache", call.folder.cache_folder), set("jobs", jobs[k]);
             assert_int_equal(
                 sharing_take(&call.sharing, &call.options, 5, NULL, false, &call.error), STATUS_OK);
-            call.sharing.engine = &engine, call.sharing.tasks = 9;
+            call.sharing.slurm = true, call.sharing.tasks = 9;
             planted.status = s, planted.jobs = k == 2 ? 3 : 1;
             fill_planned();
             listen_to(said, usual);
@@ -449,7 +450,7 @@ TEST(valid_options)
     assert_int_equal(sharing_take(&sharing, &call.options, 5, NULL, false, &call.error), STATUS_OK);
     assert_int_equal(sharing.pool.jobs, 5);
     assert_true(!sharing.list && !sharing.pool.cache && !sharing.pool.share.of && !sharing.tasks);
-    assert_string_equal(sharing.engine->name, "local");
+    assert_false(sharing.slurm);
     assert_int_equal(sharing_take(&sharing, &call.options, 0, NULL, false, &call.error), STATUS_OK);
     assert_int_equal(sharing.pool.jobs, 1);
     set("jobs", "3"), set("shard", "2/7"), set("cache", "elsewhere");
@@ -468,7 +469,7 @@ TEST(valid_options)
     assert_int_equal(
         sharing_take(&sharing, &call.options, 5, call.folder.cache_folder, false, &call.error),
         STATUS_OK);
-    assert_string_equal(sharing.engine->name, "slurm");
+    assert_true(sharing.slurm);
     assert_int_equal(sharing.tasks, 9);
     set("engine", NULL), set("engine-tasks", NULL);
     assert_int_equal(
