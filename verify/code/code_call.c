@@ -108,7 +108,7 @@ char **code_words_of(const struct code_external *external, const char *command,
     const char *rest = command;
     size_t n = 0, length;
     bool sound = words != NULL;
-    if (sound && code_shell(&external->of->way)) {
+    if (sound && code_is(&external->of->way, CODE_shell, "yes")) {
         words[n++] = strdup("sh");
         words[n++] = strdup("-c");
         words[n++] = code_fill(command, values->of);
@@ -135,12 +135,13 @@ char *code_words_line(char **words)
 
 /* ---- templates ---- */
 
-/* Malloced; NULL: it cannot be read, or no memory. */
-static char *fill_template(const char *path, const struct code_values *values)
+/* The template that a word names, filled in; malloced. NULL: it cannot be read, or no memory. */
+static char *fill_template(const struct code *code, const char *word, size_t length,
+                           const struct code_values *values)
 {
     struct buffer text = {0};
-    char bytes[4096], *filled = NULL;
-    FILE *file = fopen(path, "r");
+    char path[CODE_PATH], bytes[4096], *filled = NULL;
+    FILE *file = code_beside(code, word, length, path) ? fopen(path, "r") : NULL;
     if (!file) return NULL;
     buffer_add(&text, "");
     for (size_t got; (got = fread(bytes, 1, sizeof bytes, file)) > 0;)
@@ -161,10 +162,10 @@ enum status code_write_templates(const struct code_external *external,
     enum status status = STATUS_OK;
     size_t length;
     for (const char *word; !status && (word = code_next_word(&rest, &length));) {
-        char *text =
-            code_beside(external->code, word, length, path) ? fill_template(path, values) : NULL;
+        char *text = fill_template(external->code, word, length, values);
         template_name(word, length, name);
         snprintf(to, sizeof to, "%s/%s", folder, name);
+        code_beside(external->code, word, length, path);
         status =
             text ? output_text(to, text, error)
                  : error_set(error, STATUS_BAD_INPUT, "%.200s: it cannot be read any more", path);
@@ -199,7 +200,7 @@ static void add_files(const struct code_external *external, const struct code_va
                       const char *words, bool command, json_t *files)
 {
     char line[INI_TEXT_LINE + 1], path[CODE_PATH], name[CODE_PATH];
-    const bool shell = command && code_shell(&external->of->way);
+    const bool shell = command && code_is(&external->of->way, CODE_shell, "yes");
     bool program = command; /* the next word is that */
     size_t length;
     snprintf(line, sizeof line, "%s", words);
@@ -218,13 +219,12 @@ static void add_files(const struct code_external *external, const struct code_va
 static json_t *template_sums(const struct code_external *external, const struct code_values *values)
 {
     const char *rest = external->of->way.value[CODE_parameters];
-    char path[CODE_PATH], sum[SHA256_TEXT];
+    char sum[SHA256_TEXT];
     json_t *list = json_array();
     size_t length;
     for (const char *word; (word = code_next_word(&rest, &length));) {
         struct sha256 of;
-        char *text =
-            code_beside(external->code, word, length, path) ? fill_template(path, values) : NULL;
+        char *text = fill_template(external->code, word, length, values);
         sha256_begin(&of);
         if (text) sha256_add(&of, text, strlen(text));
         sha256_end(&of, sum);
@@ -234,9 +234,8 @@ static json_t *template_sums(const struct code_external *external, const struct 
     return list;
 }
 
-/* Refuses keys of the scheme, which apply to our solver only. */
-static enum status check_keys(const struct code_external *external, const struct run *run,
-                              struct error *error)
+enum status code_check_keys(const struct code_external *external, const struct run *run,
+                            struct error *error)
 {
     for (int key = 0; key < SETTINGS; key++)
         if (run->asked.settings.value[key].source == SOURCE_USER &&
@@ -256,17 +255,18 @@ enum status code_add_key(const struct run_external *base, const struct run *run,
     const struct code_way *way = &external->of->way;
     const char *command = way->value[CODE_command];
     struct code_values values;
-    if (check_keys(external, run, error)) return error->status;
+    if (code_check_keys(external, run, error)) return error->status;
     code_values(&values, external, run, NULL);
     json_t *files = json_object();
     char *filled = code_fill(command, values.of);
     add_files(external, &values, way->value[CODE_depends], false, files);
     add_files(external, &values, command, true, files);
     if (!code_format(way)) add_files(external, &values, way->value[CODE_ic], true, files);
-    json_t *code = json_pack("{s:s*, s:s, s:s, s:s, s:b, s:o, s:o}", "command", filled, "ic",
-                             code_value(way, CODE_ic), "snapshot", way->value[CODE_snapshot],
-                             "elements", code_value(way, CODE_elements), "shell", code_shell(way),
-                             "files", files, "templates", template_sums(external, &values));
+    json_t *code =
+        json_pack("{s:s*, s:s, s:s, s:s, s:b, s:o, s:o}", "command", filled, "ic",
+                  code_value(way, CODE_ic), "snapshot", way->value[CODE_snapshot], "elements",
+                  code_value(way, CODE_elements), "shell", code_is(way, CODE_shell, "yes"), "files",
+                  files, "templates", template_sums(external, &values));
     free(filled);
     if (code && run->asked.layers)
         json_object_set_new(code, "as_3d", json_integer(run->asked.layers));
@@ -285,7 +285,7 @@ void code_program_sum(const struct code_external *external, char sum[SHA256_TEXT
     size_t length;
     const char *word = code_next_word(&rest, &length);
     sum[0] = '\0';
-    if (!word || code_shell(&external->of->way)) return;
+    if (!word || code_is(&external->of->way, CODE_shell, "yes")) return;
     snprintf(name, sizeof name, "%.*s", (int)length, word);
     char *filled = code_fill(name, here);
     if (filled) {

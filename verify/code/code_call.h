@@ -31,6 +31,10 @@ enum status code_write_templates(const struct code_external *external,
                                  const struct code_values *values, const char *folder,
                                  struct error *error);
 
+/* Refuses keys of the scheme, which apply to our solver only. */
+enum status code_check_keys(const struct code_external *external, const struct run *run,
+                            struct error *error);
+
 /* Adds to a cache key the filled texts and checksums of the files that decide what the code
  * computes. */
 enum status code_add_key(const struct run_external *external, const struct run *run, json_t *key,

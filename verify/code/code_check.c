@@ -158,7 +158,7 @@ static const char *missing(const struct code *code, const struct code_way *way, 
 {
     char path[CODE_PATH];
     const char *rest = way->value[key];
-    const char *word = code_shell(way) ? NULL : code_next_word(&rest, length);
+    const char *word = code_is(way, CODE_shell, "yes") ? NULL : code_next_word(&rest, length);
     const bool there =
         !word || memchr(word, '@', *length) || code_find_program(code, word, *length, path);
     return there ? NULL : word;

@@ -131,9 +131,8 @@ const struct code_case *code_case_of(const struct code *code, const char *name,
 const char *code_value(const struct code_way *way, enum code_key key);
 double code_timeout(const struct code_way *way);
 double code_memory(const struct code_way *way); /* bytes; INFINITY: no limit */
-bool code_shell(const struct code_way *way);
-bool code_cells(const struct code_way *way);
-bool code_equal_masses(const struct code_way *way);
+/* True if the key, set or not, has this word as its value: code_is(way, CODE_shell, "yes"). */
+bool code_is(const struct code_way *way, enum code_key key, const char *word);
 /* The format of initial states; NULL: ic is a command. */
 const struct start_format *code_format(const struct code_way *way);
 

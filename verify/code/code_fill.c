@@ -42,19 +42,9 @@ double code_memory(const struct code_way *way)
     return text_real(number, &value) ? bytes * value : 0;
 }
 
-bool code_shell(const struct code_way *way)
+bool code_is(const struct code_way *way, enum code_key key, const char *word)
 {
-    return strcmp(code_value(way, CODE_shell), "yes") == 0;
-}
-
-bool code_equal_masses(const struct code_way *way)
-{
-    return strcmp(code_value(way, CODE_equal_masses), "yes") == 0;
-}
-
-bool code_cells(const struct code_way *way)
-{
-    return strcmp(code_value(way, CODE_elements), "cells") == 0;
+    return strcmp(code_value(way, key), word) == 0;
 }
 
 const struct start_format *code_format(const struct code_way *way)

@@ -27,8 +27,10 @@ struct course {
     struct code_values values;
     char **words;
     char folder[CODE_PATH], ic[2 * CODE_PATH];
-    char *snapshot;            /* the judged file */
-    char *first;               /* first snapshot, possibly of the start; NULL: no other */
+    struct code_matches before, now; /* files of the snapshots' name: before the run and after it */
+    time_t began;                    /* time of the start by the file system's clock */
+    const char *snapshot;            /* of now: the judged file */
+    const char *first;         /* of now: first snapshot, possibly of the start; NULL: no other */
     struct snapshot_file read; /* the initial state as a reader of its file finds it */
     bool readable;             /* the initial state can be read */
     struct code_outcome outcome;
@@ -285,18 +287,24 @@ static void check_start(struct course *course, const struct code_origin *origin)
     snapshot_file_free(&file);
 }
 
-/* Judges the file, or sets course->reason if it contains no result. */
-static enum status judge(struct course *course, const char *path, struct error *error)
+static struct judge_request request_of(const struct course *course)
 {
-    const struct code_origin origin = {.ic = course->readable ? &course->read : NULL,
-                                       .problem = &course->run->problem,
-                                       .t_end =
-                                           settings_real(&course->run->settings, SETTING_t_end),
-                                       .cells = code_cells(&course->external->of->way)};
-    struct judge_request request = {.case_name = course->run->asked.file.asked,
-                                    .asked = &course->run->asked,
-                                    .gamma = {true, course->run->problem.gamma},
-                                    .kernel = -1};
+    return (struct judge_request){.case_name = course->run->asked.file.asked,
+                                  .asked = &course->run->asked,
+                                  .gamma = {true, course->run->problem.gamma},
+                                  .kernel = -1};
+}
+
+/* Judges the snapshot, or sets course->reason if it contains no result. */
+static enum status judge(struct course *course, struct error *error)
+{
+    const struct code_origin origin = {
+        .ic = course->readable ? &course->read : NULL,
+        .problem = &course->run->problem,
+        .t_end = settings_real(&course->run->settings, SETTING_t_end),
+        .cells = code_is(&course->external->of->way, CODE_elements, "cells")};
+    struct judge_request request = request_of(course);
+    const char *path = course->snapshot;
     struct snapshot_file file;
     struct error said = {0};
     char box[160];
@@ -331,16 +339,13 @@ static enum status judge(struct course *course, const char *path, struct error *
 static void add_moment(struct course *course, const char *path)
 {
     const double last = course->trace.time[course->trace.count - 1];
-    struct judge_request request = {.case_name = course->run->asked.file.asked,
-                                    .asked = &course->run->asked,
-                                    .gamma = {true, course->run->problem.gamma},
-                                    .kernel = -1,
-                                    .allow_far = true};
+    struct judge_request request = request_of(course);
     struct snapshot_file file;
     struct judged judged;
     struct error ignored = {0};
     char box[160];
     bool boxed = false;
+    request.allow_far = true;
     if (snapshot_read(path, &request.options, &file, &ignored)) return;
     const bool between =
         file.time.known && file.time.value > last && file.time.value < course->judged.result.time;
@@ -354,12 +359,12 @@ static void add_moment(struct course *course, const char *path)
 }
 
 /* Traces conservation and motion through all snapshots of the run. */
-static void follow(struct course *course, const struct code_matches *now,
-                   const struct code_matches *before, time_t began)
+static void follow(struct course *course)
 {
     struct run_result *result = &course->judged.result;
+    const struct code_matches *now = &course->now;
     for (size_t i = 0; course->trace.count && i < now->n; i++)
-        if (strcmp(now->path[i], course->snapshot) != 0 && code_is_new(now, i, before, began))
+        if (now->path[i] != course->snapshot && code_is_new(now, i, &course->before, course->began))
             add_moment(course, now->path[i]);
     if (course->trace.count) trace_add(&course->trace, result->time, &course->judged.sums);
     const struct trace_drift worst = trace_worst(&course->trace);
@@ -373,32 +378,28 @@ static void follow(struct course *course, const struct code_matches *now,
 
 static enum status execute(struct course *course, struct error *error)
 {
-    struct code_matches before = {0}, now = {0};
-    struct stat start = {0}; /* time of the start by the file system's clock */
+    struct code_matches *before = &course->before, *now = &course->now;
+    struct stat start = {0};
     char *pattern = pattern_of(course);
     enum status status = STATUS_OK;
     if (stat(course->ic, &start))
         status = error_set(error, STATUS_ENVIRONMENT, "%.300s: %s", course->ic, strerror(errno));
-    else if (!pattern || !code_match(pattern, &before))
+    else if (!pattern || !code_match(pattern, before))
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for names of snapshots");
+    course->began = start.st_mtime;
     if (!status) status = call(course, course->words, error);
-    if (!status && !course->reason && !code_match(pattern, &now))
+    if (!status && !course->reason && !code_match(pattern, now))
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for names of snapshots");
     if (!status && !course->reason) {
-        const char *path = code_last(&now, &before, start.st_mtime, &course->reason);
-        const char *first = path ? code_first(&now, &before, start.st_mtime, path) : NULL;
-        if (first) course->first = strdup(first);
-        if (path && (!(course->snapshot = strdup(path)) || (first && !course->first)))
-            status = error_set(error, STATUS_ENVIRONMENT, "no memory for names of snapshots");
-        else if (path)
-            status = judge(course, course->snapshot, error);
-        else
+        course->snapshot = code_last(now, before, course->began, &course->reason);
+        if (course->snapshot) {
+            course->first = code_first(now, before, course->began, course->snapshot);
+            status = judge(course, error);
+        } else {
             tell_missing(course);
+        }
     }
-    if (!status && course->is_judged && !course->reason)
-        follow(course, &now, &before, start.st_mtime);
-    code_matches_free(&before);
-    code_matches_free(&now);
+    if (!status && course->is_judged && !course->reason) follow(course);
     free(pattern);
     return status;
 }
@@ -500,7 +501,7 @@ static void add_judged(const struct judged *judged, json_t *document)
     json_decref(one);
 }
 
-static enum status tell_sound(const struct course *course, json_t *document)
+static void tell_sound(const struct course *course, json_t *document)
 {
     char *log = log_of(course);
     run_add_json(&course->run->asked, &course->judged.result, document);
@@ -511,7 +512,6 @@ static enum status tell_sound(const struct course *course, json_t *document)
                             trace_json(&course->trace, course->judged.file.dim));
     add_code(course, log ? log : "", document);
     free(log);
-    return STATUS_OK;
 }
 
 static enum status tell_failed(const struct course *course, json_t *document, struct error *error)
@@ -539,8 +539,8 @@ static void course_free(struct course *course)
     if (course->is_judged) judge_free(&course->judged);
     snapshot_file_free(&course->read);
     code_words_free(course->words);
-    free(course->snapshot);
-    free(course->first);
+    code_matches_free(&course->before);
+    code_matches_free(&course->now);
     run_free(&course->start);
 }
 
@@ -548,30 +548,27 @@ enum status code_run(const struct run *run, struct judged *judged, json_t **docu
                      struct error *error)
 {
     struct course *course = calloc(1, sizeof *course);
-    json_t *ignored = json_object();
     *document = NULL;
-    if (!course || !ignored) {
-        free(course), json_decref(ignored);
-        return error_set(error, STATUS_ENVIRONMENT, "no memory for a run of another code");
-    }
+    if (!course) return error_set(error, STATUS_ENVIRONMENT, "no memory for a run of another code");
     course->run = run;
     course->external = (const struct code_external *)run->asked.external;
-    enum status status = code_add_key(run->asked.external, run, ignored, error);
+    enum status status = code_check_keys(course->external, run, error);
     if (!status) status = prepare(course, error);
     if (!status && !course->reason) status = execute(course, error);
     if (!status) {
         *document = result_new("run");
-        status =
-            course->reason ? tell_failed(course, *document, error) : tell_sound(course, *document);
+        if (course->reason)
+            status = tell_failed(course, *document, error);
+        else
+            tell_sound(course, *document);
     }
-    if (!status && judged) {
+    if (!status) {
         *judged = course->judged;
         judged->path = run->asked.external->title; /* the file will be removed */
         course->is_judged = false;
     }
     course_free(course);
     free(course);
-    json_decref(ignored);
     return status;
 }
 
@@ -629,7 +626,7 @@ enum status code_plan(const struct code *code, const char *case_name, const char
         .file = of->file, .settings = of->file.settings, .threads = 1, .external = &external->base};
     settings->settings.shared = true; /* the code alone may read a key, as by @SEED@ */
     if (settings_apply(&settings->settings, n, arguments, error) ||
-        (code_equal_masses(&of->way) && run_ask_equal_masses(settings, error)))
+        (code_is(&of->way, CODE_equal_masses, "yes") && run_ask_equal_masses(settings, error)))
         return error->status;
     const char *layers = code_value(&of->way, CODE_as_3d);
     return of->file.dimension == 2 && strcmp(layers, "no") != 0

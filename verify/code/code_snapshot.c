@@ -56,20 +56,20 @@ void code_matches_free(struct code_matches *matches)
 
 /* A file is old if it is unchanged since before the run, or clearly older than the run: clocks of
  * file systems differ slightly. */
-static bool is_old(const struct code_matches *now, size_t i, const struct code_matches *before,
-                   time_t began)
+bool code_is_new(const struct code_matches *now, size_t i, const struct code_matches *before,
+                 time_t began)
 {
     enum { SECONDS = 2 };
     const struct stat *is = &now->was[i];
-    if (is->st_mtime < began - SECONDS) return true;
+    if (is->st_mtime < began - SECONDS) return false;
     for (size_t k = 0; k < before->n; k++) {
         const struct stat *was = &before->was[k];
         if (was->st_ino == is->st_ino && was->st_dev == is->st_dev && was->st_size == is->st_size &&
             was->st_mtim.tv_sec == is->st_mtim.tv_sec &&
             was->st_mtim.tv_nsec == is->st_mtim.tv_nsec)
-            return true;
+            return false;
     }
-    return false;
+    return true;
 }
 
 const char *code_last(const struct code_matches *now, const struct code_matches *before,
@@ -77,7 +77,7 @@ const char *code_last(const struct code_matches *now, const struct code_matches 
 {
     *reason = now->n ? REASON_old_snapshot : REASON_no_snapshot;
     for (size_t i = now->n; i-- > 0;)
-        if (!is_old(now, i, before, began)) {
+        if (code_is_new(now, i, before, began)) {
             *reason = REASON_NONE;
             return now->path[i];
         }
@@ -88,14 +88,8 @@ const char *code_first(const struct code_matches *now, const struct code_matches
                        time_t began, const char *last)
 {
     for (size_t i = 0; i < now->n && strcmp(now->path[i], last) != 0; i++)
-        if (!is_old(now, i, before, began)) return now->path[i];
+        if (code_is_new(now, i, before, began)) return now->path[i];
     return NULL;
-}
-
-bool code_is_new(const struct code_matches *now, size_t i, const struct code_matches *before,
-                 time_t began)
-{
-    return !is_old(now, i, before, began);
 }
 
 /* ---- contents ---- */
