@@ -252,11 +252,7 @@ static enum status take_theirs(const struct options *options, int n, char **argu
                                              .asked = &theirs->settings,
                                              .kernel = -1,
                                              .options = {.map = options_value(options, "map")}};
-    const char *time = options_value(options, "time");
-    theirs->request.time.known = time && text_real(time, &theirs->request.time.value);
-    if (time && !theirs->request.time.known)
-        return error_set(error, STATUS_BAD_INPUT, "autopsy: --time '%.40s': allowed: a number",
-                         time);
+    if (options_real(options, "time", &theirs->request.time, error)) return error->status;
     return run_prepare(&theirs->settings, arguments[0], count, keys, error);
 }
 

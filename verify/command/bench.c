@@ -22,6 +22,7 @@ struct request {
     const struct options *options;
     struct bench_rules rules;
     struct progress progress;
+    struct table_style style;
     int n; /* arguments after the case */
     char **arguments;
     const char *case_name; /* NULL: not named */
@@ -57,17 +58,10 @@ static enum status prepare_case(const struct request *request, struct code *code
                                 struct code_external *external, struct run_settings *settings,
                                 struct error *error)
 {
-    const char *name = request->case_name ? request->case_name : "sod",
-               *path = options_value(request->options, "code"),
-               *work = options_value(request->options, "work");
-    if (work && !path) return error_set(error, STATUS_BAD_INPUT, "bench: --work needs --code FILE");
-    if (path &&
-        (code_load(code, path, error) ||
-         code_prepare(code, name, work, request->n, request->arguments, external, settings, error)))
+    const char *name = request->case_name ? request->case_name : "sod";
+    if (options_case(request->options, name, request->n, request->arguments, code, external,
+                     settings, error))
         return error->status;
-    if (!path && run_prepare(settings, name, request->n, request->arguments, error))
-        return error->status;
-    settings->threads = request->options->threads;
     if (settings->settings.value[SETTING_n].source != SOURCE_USER) return STATUS_OK;
     return error_set(error, STATUS_BAD_INPUT,
                      "bench: the key n and a ladder exclude each other; allowed: --n N1,N2,...");
@@ -97,10 +91,7 @@ static enum status present(struct request *request, struct precision *precision,
         precision_add_json(precision, document);
         status = options_write(request->options, document, error);
     }
-    if (!status && request->options->speak) {
-        const struct table_style style = table_style(request->options->color);
-        precision_print(precision, &style);
-    }
+    if (!status && request->options->speak) precision_print(precision, &request->style);
     if (!status && failed)
         status = error_set(error, STATUS_BROKE_DOWN, "bench: no scheme asked for ran: %s: %s",
                            failed->label, failed->excluded);
@@ -195,10 +186,7 @@ static enum status kernels(struct request *request, struct error *error)
         bench_kernels_add_json(&result, document);
         status = options_write(request->options, document, error);
     }
-    if (!status && request->options->speak) {
-        const struct table_style style = table_style(request->options->color);
-        bench_kernels_print(&result, &style);
-    }
+    if (!status && request->options->speak) bench_kernels_print(&result, &request->style);
     bench_kernels_free(&result);
     return status;
 }
@@ -262,10 +250,8 @@ static enum status leave_out(struct request *request, enum bench_part part, cons
         bench_skips_add_json(&result, false, document);
         status = options_write(request->options, document, error);
     }
-    if (!status && request->options->speak) {
-        const struct table_style style = table_style(request->options->color);
-        (steps ? bench_steps_print : bench_skips_print)(&result, &style);
-    }
+    if (!status && request->options->speak)
+        (steps ? bench_steps_print : bench_skips_print)(&result, &request->style);
     bench_skips_free(&result);
     free(cases);
     return status || passes ? status : STATUS_CHECK_FAILED;
@@ -309,10 +295,7 @@ static enum status scaling(struct request *request, struct error *error)
         bench_scaling_add_json(&result, document);
         status = options_write(request->options, document, error);
     }
-    if (!status && request->options->speak) {
-        const struct table_style style = table_style(request->options->color);
-        bench_scaling_print(&result, &style);
-    }
+    if (!status && request->options->speak) bench_scaling_print(&result, &request->style);
     return status;
 }
 
@@ -331,7 +314,8 @@ enum { MODES = sizeof modes / sizeof *modes };
 
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
-    struct request request = {.options = options, .n = n, .arguments = arguments};
+    struct request request = {
+        .options = options, .style = table_style(options->color), .n = n, .arguments = arguments};
     enum status (*chosen)(struct request *, struct error *) = work_precision;
     for (int m = 0; m < MODES; m++) {
         if (!options_value(options, modes[m].flag)) continue;

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "run.h"
+#include "code_run.h"
 
 /* The word for an argument that consists of options itself. */
 #define COMMAND_OPTIONS "OPTIONS"
@@ -55,6 +55,16 @@ enum status options_number(const struct options *options, const char *name, bool
 enum status options_positive(const struct options *options, const char *name, double *value,
                              struct error *error);
 
+/* The number of an option that is any number; *value is unchanged without the option. */
+enum status options_real(const struct options *options, const char *name,
+                         struct snapshot_value *value, struct error *error);
+
+/* The settings of a case with n keys, of our solver or of the program of --code, which the caller
+ * frees; --work without --code is refused. code, external: unused without --code. */
+enum status options_case(const struct options *options, const char *name, int n, char *const *keys,
+                         struct code *code, struct code_external *external,
+                         struct run_settings *settings, struct error *error);
+
 /* The numbers of particles of --n, at least `least` distinct ones, else the case's own. */
 enum status options_ladder(const struct options *options, const struct run_settings *settings,
                            size_t least, size_t ladder[CASE_LADDER_MAX], size_t *count,
@@ -62,6 +72,11 @@ enum status options_ladder(const struct options *options, const struct run_setti
 
 /* Writes the document to the file of --json, if given, and releases it. NULL: no memory for it. */
 enum status options_write(const struct options *options, json_t *document, struct error *error);
+
+/* Writes a document of this command with these members, whose reference is taken. NULL: no memory
+ * for them. */
+enum status options_write_members(const struct options *options, json_t *members,
+                                  struct error *error);
 
 /* Bad usage of this command: STATUS_BAD_INPUT with the message and the synopsis. */
 enum status command_usage(const struct options *options, struct error *error, const char *format,

@@ -261,19 +261,6 @@ static enum status serialise_out(struct study *study, const struct options *opti
                : study->status;
 }
 
-/* The case, of our solver or of the code that --code describes. */
-static enum status prepare(const struct options *options, int n, char **arguments,
-                           struct code *code, struct code_external *external,
-                           struct run_settings *settings, struct error *error)
-{
-    const char *path = options_value(options, "code"), *work = options_value(options, "work");
-    if (work && !path)
-        return error_set(error, STATUS_BAD_INPUT, "converge: --work needs --code FILE");
-    if (!path) return run_prepare(settings, arguments[0], n - 1, arguments + 1, error);
-    if (code_load(code, path, error)) return error->status;
-    return code_prepare(code, arguments[0], work, n - 1, arguments + 1, external, settings, error);
-}
-
 static enum status converge(const struct options *options, int n, char **arguments,
                             struct code *code, struct error *error)
 {
@@ -281,14 +268,14 @@ static enum status converge(const struct options *options, int n, char **argumen
     struct sharing sharing;
     struct code_external external;
     bool whole = false;
-    if (prepare(options, n, arguments, code, &external, &study.settings, error) ||
+    if (options_case(options, arguments[0], n - 1, arguments + 1, code, &external, &study.settings,
+                     error) ||
         sweep_parse(&study.sweep, options_value(options, "vary"), error) ||
         options_ladder(options, &study.settings, ORDER_LEVELS_MIN, study.ladder, &study.level_count,
                        error) ||
         take_replicates(&study, options, error) ||
         sharing_take(&sharing, options, 1, NULL, false, error))
         return error->status;
-    study.settings.threads = options->threads;
     json_t *document = result_new("converge");
     result_add(document, "case=%s status=%s", study.settings.file.name, "ok");
     struct run_settings of_all = study.settings;

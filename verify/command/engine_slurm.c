@@ -213,10 +213,9 @@ static enum status submit(struct array *array, const bool *chosen, struct error 
     if (save(array, error))
         return error->status; /* saved first, so that every submission is counted */
     char *which = ranges(array, chosen);
-    const enum status status = which
-                                   ? slurm_share_submit(array->work, array->count, which,
-                                                        array->name, array->folder, &job, error)
-                                   : error_set(error, STATUS_ENVIRONMENT, "no memory for shares");
+    const enum status status = which ? slurm_share_submit(array->work, array->count, which,
+                                                          array->name, array->folder, &job, error)
+                                     : error_set(error, STATUS_ENVIRONMENT, "no memory for shares");
     free(which);
     for (int s = 1; s <= array->count; s++) {
         struct share *one = &array->shares[s];

@@ -381,7 +381,6 @@ static enum status write_answer(const struct options *options, const struct requ
                                 const struct point_cloud *pc, const struct answer *answer,
                                 const struct judgements *all, struct error *error)
 {
-    json_t *document = result_new("gradient");
     json_t *content =
         result_object("operator=%s kernel=%s dim=%d points=%p", r->settings.form->member.name,
                       r->kernel.member.name, r->dim, (void *)points_json(r, pc, answer));
@@ -398,9 +397,7 @@ static enum status write_answer(const struct options *options, const struct requ
     if (all->count) json_object_set(content, "judgements", judgements);
     json_decref(judgements);
     if (r->boxed) json_object_set_new(content, "box", box_json(r));
-    if (json_object_update(document, content)) json_decref(document), document = NULL;
-    json_decref(content);
-    return options_write(options, document, error);
+    return options_write_members(options, content, error);
 }
 
 /* ---- the command ---- */

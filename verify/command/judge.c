@@ -19,16 +19,6 @@
 
 /* ---- what is asked ---- */
 
-static enum status take_number(const struct options *options, const char *name,
-                               struct snapshot_value *value, struct error *error)
-{
-    const char *text = options_value(options, name);
-    if (!text) return STATUS_OK;
-    value->known = text_real(text, &value->value);
-    if (value->known) return STATUS_OK;
-    return error_set(error, STATUS_BAD_INPUT, "judge: --%s '%.40s': allowed: a number", name, text);
-}
-
 /* Reads the meaning of h: support radius, multiple of the kernel's standard deviation, or fraction
  * of the support. */
 static enum status take_width(const char *text, struct width_meaning *width, struct error *error)
@@ -93,9 +83,9 @@ static enum status take_request(const struct options *options, int n, struct jud
                                  "--left and --right belong together, and need --gamma");
         request->case_name = "sod";
     }
-    if (take_number(options, "gamma", &request->gamma, error) ||
-        take_number(options, "x0", &request->x0, error) ||
-        take_number(options, "time", &request->time, error) ||
+    if (options_real(options, "gamma", &request->gamma, error) ||
+        options_real(options, "x0", &request->x0, error) ||
+        options_real(options, "time", &request->time, error) ||
         take_window(options_value(options, "window"), request, error) ||
         take_width(options_value(options, "h-is"), &request->width, error))
         return error->status;
@@ -211,15 +201,6 @@ static void print_together(const json_t *document, const struct table_style *sty
 
 /* ---- the command ---- */
 
-/* content: of judge_json. */
-static enum status write_results(const struct options *options, const json_t *content,
-                                 struct error *error)
-{
-    json_t *document = result_new("judge");
-    if (json_object_update(document, (json_t *)content)) json_decref(document), document = NULL;
-    return options_write(options, document, error);
-}
-
 /* document: with profiles. */
 static enum status write_page(const char *path, const json_t *document, struct error *error)
 {
@@ -253,7 +234,7 @@ static enum status tell(const struct options *options, const struct judged *judg
     if (!content) return error_set(error, STATUS_ENVIRONMENT, "no memory for the result");
     for (size_t i = 0; i < count && options->speak; i++) print_one(&judged[i], &style);
     if (options->speak) print_together(content, &style);
-    enum status status = write_results(options, content, error);
+    enum status status = options_write_members(options, json_incref(content), error);
     if (!status && junit) status = write_junit(junit, content, error);
     if (!status && html) {
         json_t *document = judge_json(judged, count, gates, true);

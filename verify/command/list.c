@@ -25,141 +25,118 @@
 
 enum { ALLOWED_MAX = 4096 };
 
-/* A family made at run time, from a registry whose members are not struct member; made once. */
-struct made {
-    struct family family;
-    struct member *items;
-    const struct member **members; /* to the items, once all are there */
-};
+static bool no_memory; /* for a member of a family that is made */
 
-static bool no_memory; /* for at least one family */
-
-static void made_add(struct made *made, const char *name, const char *label, const char *paper)
+/* Adds a member to a family that is made at run time, from a registry whose entries are others. */
+static void add(struct family *family, const char *name, const char *label, const char *paper)
 {
+    const struct member **members = (const struct member **)family->members;
+    struct member *member = malloc(sizeof *member);
     char *copy = strdup(label);
-    if (copy && list_grow(&made->items, made->family.n, sizeof *made->items)) {
-        made->items[made->family.n++] = (struct member){name, copy, paper};
+    if (!member || !copy || !list_grow(&members, family->n, sizeof *members)) {
+        free(member), free(copy);
+        no_memory = true;
         return;
     }
-    free(copy);
-    no_memory = true;
+    *member = (struct member){name, copy, paper};
+    members[family->n++] = member;
+    family->members = members;
 }
 
-static const struct family *made_family(struct made *made)
+static void add_cases(struct family *family)
 {
-    made->members = malloc((made->family.n + 1) * sizeof *made->members);
-    no_memory = no_memory || !made->members;
-    for (size_t i = 0; made->members && i < made->family.n; i++) made->members[i] = &made->items[i];
-    made->family.members = made->members;
-    return &made->family;
-}
-
-static const struct family *cases(void)
-{
-    static struct made made = {.family = {"cases", "built-in cases", NULL, 0}};
     struct case_file file;
     struct error error;
-    if (made.members) return &made.family;
     for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++)
-        made_add(&made, builtin->name,
-                 case_load(&file, builtin->name, &error) ? error.message : file.title, "");
-    return made_family(&made);
+        add(family, builtin->name,
+            case_load(&file, builtin->name, &error) ? error.message : file.title, "");
 }
 
-static const struct family *keys(void)
+static void add_keys(struct family *family)
 {
-    static struct made made = {.family = {"keys", "keys of a run: KEY=VALUE", NULL, 0}};
-    if (made.members) return &made.family;
     for (int i = 0; i < SETTINGS; i++)
-        made_add(&made, setting_keys[i].name, setting_keys[i].meaning, "");
-    return made_family(&made);
+        add(family, setting_keys[i].name, setting_keys[i].meaning, "");
 }
 
-static const struct family *keys_of_codes(void)
+static void add_keys_of_codes(struct family *family)
 {
-    static struct made made = {.family = {"code_keys", "keys of a code file (--code)", NULL, 0}};
     char label[256];
-    if (made.members) return &made.family;
     for (int i = 0; i < CODE_KEYS; i++) {
         const struct code_key_text *key = &code_keys[i];
         snprintf(label, sizeof label, "%s: %s%s%s%s", key->meaning, key->allowed,
                  *key->fallback ? " [" : "", key->fallback, *key->fallback ? "]" : "");
-        made_add(&made, key->name, label, "");
+        add(family, key->name, label, "");
     }
-    return made_family(&made);
+}
+
+static void add_checks(struct family *family)
+{
+    for (size_t i = 0; i < check_registry_count; i++)
+        add(family, check_registry[i]->name, check_registry[i]->property, "");
+}
+
+static void add_mutants(struct family *family)
+{
+    for (size_t i = 0; i < check_registry_count; i++)
+        for (const struct check_mutant *m = check_registry[i]->mutants; m && m->name; m++)
+            add(family, m->name, m->fault, "");
+}
+
+static void add_stress_groups(struct family *family)
+{
+    for (size_t i = 0; i < stress_group_count; i++) {
+        const struct member *member = &stress_groups[i].member;
+        add(family, member->name, member->label, member->paper);
+    }
 }
 
 static const struct family words_of_codes = {
     "code_words", "@WORDS@ of a code file's commands and templates", code_words, CODE_WORDS};
 
-static const struct family *checks(void)
-{
-    static struct made made = {.family = {"checks", "checks of `sphproof verify`", NULL, 0}};
-    if (made.members) return &made.family;
-    for (size_t i = 0; i < check_registry_count; i++)
-        made_add(&made, check_registry[i]->name, check_registry[i]->property, "");
-    return made_family(&made);
-}
-
-static const struct family *mutants(void)
-{
-    static struct made made = {
-        .family = {"mutants", "wrong variants that the checks must reject", NULL, 0}};
-    if (made.members) return &made.family;
-    for (size_t i = 0; i < check_registry_count; i++)
-        for (const struct check_mutant *m = check_registry[i]->mutants; m && m->name; m++)
-            made_add(&made, m->name, m->fault, "");
-    return made_family(&made);
-}
-
-static const struct family *stress(void)
-{
-    static struct made made = {.family = {"stress", "groups of `sphproof stress`", NULL, 0}};
-    if (made.members) return &made.family;
-    for (size_t i = 0; i < stress_group_count; i++) {
-        const struct member *member = &stress_groups[i].member;
-        made_add(&made, member->name, member->label, member->paper);
-    }
-    return made_family(&made);
-}
-
-/* Each entry is a family, or a function that makes one. */
-static const struct {
+/* Each entry is a family, or one that `add` fills once. */
+static struct {
     const struct family *family;
-    const struct family *(*make)(void);
+    void (*add)(struct family *family);
+    struct family made;
 } lists[] = {
-    {.make = cases},
-    {&problem_family, NULL},
-    {&kernel_family, NULL},
-    {&scheme_gradient_family, NULL},
-    {&operator_family, NULL},
-    {&scheme_formulation_family, NULL},
-    {&scheme_volume_element_family, NULL},
-    {&integrator_family, NULL},
-    {&scheme_viscosity_family, NULL},
-    {&scheme_viscosity_form_family, NULL},
-    {&scheme_balsara_family, NULL},
-    {&settings_lattice_family, NULL},
-    {&scheme_energy_family, NULL},
-    {&scheme_pair_width_family, NULL},
-    {&scheme_h_method_family, NULL},
-    {&field_family, NULL},
-    {&field_norm_family, NULL},
-    {&snapshot_reader_family, NULL},
-    {&snapshot_writer_family, NULL},
-    {&start_format_family, NULL},
-    {.make = checks},
-    {.make = mutants},
-    {.make = stress},
-    {.make = keys},
-    {.make = keys_of_codes},
-    {&words_of_codes, NULL},
+    {.add = add_cases, .made = {.name = "cases", .title = "built-in cases"}},
+    {.family = &problem_family},
+    {.family = &kernel_family},
+    {.family = &scheme_gradient_family},
+    {.family = &operator_family},
+    {.family = &scheme_formulation_family},
+    {.family = &scheme_volume_element_family},
+    {.family = &integrator_family},
+    {.family = &scheme_viscosity_family},
+    {.family = &scheme_viscosity_form_family},
+    {.family = &scheme_balsara_family},
+    {.family = &settings_lattice_family},
+    {.family = &scheme_energy_family},
+    {.family = &scheme_pair_width_family},
+    {.family = &scheme_h_method_family},
+    {.family = &field_family},
+    {.family = &field_norm_family},
+    {.family = &snapshot_reader_family},
+    {.family = &snapshot_writer_family},
+    {.family = &start_format_family},
+    {.add = add_checks, .made = {.name = "checks", .title = "checks of `sphproof verify`"}},
+    {.add = add_mutants,
+     .made = {.name = "mutants", .title = "wrong variants that the checks must reject"}},
+    {.add = add_stress_groups, .made = {.name = "stress", .title = "groups of `sphproof stress`"}},
+    {.add = add_keys, .made = {.name = "keys", .title = "keys of a run: KEY=VALUE"}},
+    {.add = add_keys_of_codes,
+     .made = {.name = "code_keys", .title = "keys of a code file (--code)"}},
+    {.family = &words_of_codes},
 };
 enum { LISTS = sizeof lists / sizeof *lists };
 
-static const struct family *list_at(size_t i)
+static void make_families(void)
 {
-    return lists[i].family ? lists[i].family : lists[i].make();
+    for (size_t i = 0; i < LISTS; i++) {
+        if (lists[i].family) continue;
+        lists[i].add(&lists[i].made);
+        lists[i].family = &lists[i].made;
+    }
 }
 
 static void print_family(const struct family *family, const struct table_style *style)
@@ -229,7 +206,7 @@ static enum status choose(const char *word, const struct family **chosen, struct
 {
     const char *names[LISTS];
     for (size_t i = 0; i < LISTS; i++) {
-        const struct family *family = list_at(i);
+        const struct family *family = lists[i].family;
         names[i] = family->name;
         if (strcmp(word, family->name) == 0) *chosen = family;
     }
@@ -243,7 +220,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     const bool markdown = options_value(options, "markdown"),
                places = options_value(options, "where");
     if (n > 1) return command_usage(options, error, "one family at a time");
-    for (size_t i = 0; i < LISTS; i++) list_at(i);
+    make_families();
     if (no_memory) return error_set(error, STATUS_ENVIRONMENT, "list: no memory");
     if (n == 1 && choose(arguments[0], &chosen, error)) return error->status;
     const bool only_keys = chosen && strcmp(chosen->name, "keys") == 0;
@@ -252,7 +229,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (places && n) return command_usage(options, error, "--where stands alone");
     json_t *families = json_object(), *installed = places ? where(options->speak) : NULL;
     for (size_t i = 0; i < LISTS && !places; i++) {
-        const struct family *family = list_at(i);
+        const struct family *family = lists[i].family;
         if (chosen && chosen != family) continue;
         if (options->speak && !only_keys) print_family(family, &style);
         json_object_set_new(families, family->name, family_json(family));

@@ -52,6 +52,33 @@ enum status options_positive(const struct options *options, const char *name, do
                      options->command->name, name, text);
 }
 
+enum status options_real(const struct options *options, const char *name,
+                         struct snapshot_value *value, struct error *error)
+{
+    const char *text = options_value(options, name);
+    if (!text) return STATUS_OK;
+    value->known = text_real(text, &value->value);
+    if (value->known) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT, "%s: --%s '%.40s': allowed: a number",
+                     options->command->name, name, text);
+}
+
+enum status options_case(const struct options *options, const char *name, int n, char *const *keys,
+                         struct code *code, struct code_external *external,
+                         struct run_settings *settings, struct error *error)
+{
+    const char *path = options_value(options, "code"), *work = options_value(options, "work");
+    if (work && !path)
+        return error_set(error, STATUS_BAD_INPUT, "%s: --work needs --code FILE",
+                         options->command->name);
+    if (path ? code_load(code, path, error) ||
+                   code_prepare(code, name, work, n, keys, external, settings, error)
+             : run_prepare(settings, name, n, keys, error))
+        return error->status;
+    settings->threads = options->threads;
+    return STATUS_OK;
+}
+
 enum status options_ladder(const struct options *options, const struct run_settings *settings,
                            size_t least, size_t ladder[CASE_LADDER_MAX], size_t *count,
                            struct error *error)
@@ -80,6 +107,15 @@ enum status options_write(const struct options *options, json_t *document, struc
                           : error_set(error, STATUS_ENVIRONMENT, "no memory for the result");
     json_decref(document);
     return status;
+}
+
+enum status options_write_members(const struct options *options, json_t *members,
+                                  struct error *error)
+{
+    json_t *document = result_new(options->command->name);
+    if (json_object_update(document, members)) json_decref(document), document = NULL;
+    json_decref(members);
+    return options_write(options, document, error);
 }
 
 enum status options_kernel(const struct options *options, int *index, struct error *error)

@@ -386,19 +386,15 @@ static enum status write_json(const struct options *options, const struct reques
                               const struct rate_table *t, const struct rate_check *check,
                               struct error *error)
 {
-    json_t *document = result_new("rates");
     const double *const sums[3] = {&t->sum_force[0], &t->sum_force[1], &t->sum_force[2]};
     json_t *content = json_pack("{s:i, s:o, s:o, s:{s:o, s:o}}", "dim", t->dim, "settings",
                                 used_settings(r), "particles", particles_json(r, t), "sums",
                                 "force", vector(t->dim, sums, 0), "power", result_number(t->power));
     json_object_set_new(content, "matrix", description_json(&t->matrix));
-    if (check->count) {
+    if (check->count)
         result_add(content, "comparison=%p status=%s", (void *)comparison_json(check),
                    check->good ? "pass" : "fail");
-    }
-    if (json_object_update(document, content)) json_decref(document), document = NULL;
-    json_decref(content);
-    return options_write(options, document, error);
+    return options_write_members(options, content, error);
 }
 
 /* ---- the command ---- */

@@ -84,32 +84,24 @@ static json_t *samples_json(const struct riemann_solution *s, const struct sampl
     return samples;
 }
 
-static json_t *document_make(const struct riemann_solution *s, const struct sampling *sampling)
+static json_t *state_json(const struct riemann_state *state)
 {
-    json_t *document = result_new("riemann");
-    json_t *content = json_pack(
-        "{s:o, s:[o,o,o], s:[o,o,o], s:o, s:o, s:o, s:o, s:b, s:s, s:s, s:{s:o, s:o, s:o, s:o, "
-        "s:o}, "
-        "s:o, s:o, s:o}",
-        "gamma", result_number_or_null(s->gamma), "left", result_number_or_null(s->left.rho),
-        result_number_or_null(s->left.v), result_number_or_null(s->left.P), "right",
-        result_number_or_null(s->right.rho), result_number_or_null(s->right.v),
-        result_number_or_null(s->right.P), "p_star", result_number_or_null(s->p_star), "v_star",
-        result_number_or_null(s->v_star), "rho_star_left", result_number_or_null(s->rho_star_left),
-        "rho_star_right", result_number_or_null(s->rho_star_right), "underflow", (int)s->underflow,
-        "left_wave", riemann_wave_name(s->left_wave), "right_wave",
-        riemann_wave_name(s->right_wave), "speeds", "left_head",
-        result_number_or_null(s->left_head), "left_tail", result_number_or_null(s->left_tail),
-        "contact", result_number_or_null(s->contact), "right_tail",
-        result_number_or_null(s->right_tail), "right_head", result_number_or_null(s->right_head),
-        "time", result_number_or_null(sampling->time), "x0", result_number_or_null(sampling->x0),
-        "samples", samples_json(s, sampling));
-    if (!document || !content || json_object_update(document, content)) {
-        json_decref(document);
-        document = NULL;
-    }
-    json_decref(content);
-    return document;
+    return json_pack("[o, o, o]", result_number_or_null(state->rho),
+                     result_number_or_null(state->v), result_number_or_null(state->P));
+}
+
+static json_t *solution_json(const struct riemann_solution *s, const struct sampling *sampling)
+{
+    json_t *speeds =
+        result_object("left_head=%g? left_tail=%g? contact=%g? right_tail=%g? right_head=%g?",
+                      s->left_head, s->left_tail, s->contact, s->right_tail, s->right_head);
+    return result_object(
+        "gamma=%g left=%p right=%p p_star=%g? v_star=%g? rho_star_left=%g? rho_star_right=%g? "
+        "underflow=%d? left_wave=%s right_wave=%s speeds=%p time=%g x0=%g samples=%p",
+        s->gamma, (void *)state_json(&s->left), (void *)state_json(&s->right), s->p_star, s->v_star,
+        s->rho_star_left, s->rho_star_right, s->underflow, riemann_wave_name(s->left_wave),
+        riemann_wave_name(s->right_wave), (void *)speeds, sampling->time, sampling->x0,
+        (void *)samples_json(s, sampling));
 }
 
 static void print_state(const char *name, double rho, double v, double P)
@@ -184,7 +176,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
                          gamma, left.rho, left.v, left.P, right.rho, right.v, right.P);
     if (options->speak) print_solution(&solution, &sampling);
     if (!options->json) return STATUS_OK;
-    return options_write(options, document_make(&solution, &sampling), error);
+    return options_write_members(options, solution_json(&solution, &sampling), error);
 }
 
 static const struct command_option own_options[] = {

@@ -6,7 +6,6 @@
 #include "command.h"
 #include "pool.h"
 #include "slurm.h"
-#include "suite.h"
 
 /* Each command lists --jobs itself, because the defaults differ. */
 #define SHARING_OPTIONS                                                                            \
@@ -51,12 +50,3 @@ enum status sharing_take(struct sharing *sharing, const struct options *options,
  */
 enum status sharing_run(struct sharing *sharing, struct pool *pool, const struct options *options,
                         bool *whole, struct error *error);
-
-/* True if --jobs or one of SHARING_OPTIONS is given. */
-bool verify_shares_wanted(const struct options *options);
-
-/* As suite_run for the chosen checks, each in a process of its own. *whole, false before: there is
- * a suite, unlike with --shard or --list. STATUS_BAD_INPUT: options exclude each other;
- * STATUS_ENVIRONMENT, STATUS_BROKE_DOWN: a check gave no result. */
-enum status verify_shares_run(struct suite *suite, const struct suite_choice *choice,
-                              const struct options *options, bool *whole, struct error *error);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * --engine slurm: computes the shares of a study as an array of tasks on a cluster; and the calls of
- * sbatch, squeue and scancel, for arrays of tasks under one name. Slurm's manuals: sbatch(1),
+ * --engine slurm: computes the shares of a study as an array of tasks on a cluster; and the calls
+ * of sbatch, squeue and scancel, for arrays of tasks under one name. Slurm's manuals: sbatch(1),
  * squeue(1), scancel(1). */
 #pragma once
 
@@ -25,8 +25,8 @@ struct slurm_work {
 };
 
 /* Computes all jobs with a key, in shares, into the cache; the pool runs afterwards, takes the
- * results from there and computes the rest. STATUS_ENVIRONMENT: some results are missing; the others
- * are kept. */
+ * results from there and computes the rest. STATUS_ENVIRONMENT: some results are missing; the
+ * others are kept. */
 enum status slurm_compute(const struct slurm_work *work, struct error *error);
 
 /* A task of an array, as the controller reports it, until some minutes after its end. */
