@@ -124,15 +124,34 @@ static void command_of(const struct stress_cell *cell, char command[STRESS_COMMA
     }
 }
 
+static const char largest_step[] =
+    "largest stable c dt/dx, found by noise runs, of the one predicted";
+
+static const struct {
+    enum status (*compute)(const struct stress_cell *cell, json_t **document, struct error *error);
+    bool theory;        /* runs must confirm a prediction */
+    const char *number; /* what the number of a cell measures */
+} kinds[] = {
+    [STRESS_RUN] = {stress_run, false, "L1 error of density over its mean"},
+    [STRESS_DRIFT] = {stress_run, false, "drift of energy"},
+    [STRESS_LIMIT] = {stress_linear, true,
+                      "greatest stable width eta, found by noise runs, of the one predicted"},
+    [STRESS_STEP] = {stress_linear, true, largest_step},
+    [STRESS_PAIRING] = {stress_linear, false,
+                        "neighbours from which pairs have less energy, predicted"},
+    [STRESS_CLOUD] = {stress_cloud, false, "share of particles in pairs"},
+    [STRESS_LATTICE] = {stress_cloud, true,
+                        "growth rate of noise in c/dx, measured, of the fastest wave's by theory; "
+                        "stable: neither grows. Green: theory and run agree, also where noise "
+                        "grows"},
+    [STRESS_CLOUD_STEP] = {stress_cloud, true, largest_step},
+    [STRESS_AMPLIFY] = {stress_amplify, false, "growth of a difference in the last digits"},
+};
+
 static enum status compute(const void *context, json_t **document, struct error *error)
 {
     const struct stress_cell *cell = context;
-    const enum stress_kind kind = cell->group->kind;
-    if (kind == STRESS_AMPLIFY) return stress_amplify(cell, document, error);
-    if (kind == STRESS_CLOUD || kind == STRESS_LATTICE || kind == STRESS_CLOUD_STEP)
-        return stress_cloud(cell, document, error);
-    const bool run = kind == STRESS_RUN || kind == STRESS_DRIFT;
-    return run ? stress_run(cell, document, error) : stress_linear(cell, document, error);
+    return kinds[cell->group->kind].compute(cell, document, error);
 }
 
 /* --- the pool --------------------------------------------------------------------------------- */
@@ -214,9 +233,7 @@ static json_t *cell_json(const struct stress_cell *cell, const struct pool_job *
         json_object_update(entry, outcome);
         json_decref(outcome);
     }
-    if (cell->group->kind == STRESS_LIMIT || cell->group->kind == STRESS_STEP ||
-        cell->group->kind == STRESS_AMPLIFY || cell->group->kind == STRESS_LATTICE ||
-        cell->group->kind == STRESS_CLOUD_STEP)
+    if (kinds[cell->group->kind].theory || cell->group->kind == STRESS_AMPLIFY)
         snprintf(command, sizeof command, "sphproof stress %s", cell->group->member.name);
     if (cell->group->kind == STRESS_PAIRING)
         snprintf(command, sizeof command, "sphproof kernel %s --dim %s", cell->row.label,
@@ -242,32 +259,6 @@ static json_t *column_labels(const struct stress_group *group, bool nightly)
     return list;
 }
 
-/* What the number of a cell measures. */
-static const char *number_of(enum stress_kind kind)
-{
-    switch (kind) {
-    case STRESS_RUN:
-        return "L1 error of density over its mean";
-    case STRESS_DRIFT:
-        return "drift of energy";
-    case STRESS_LIMIT:
-        return "greatest stable width eta, found by noise runs, of the one predicted";
-    case STRESS_STEP:
-    case STRESS_CLOUD_STEP:
-        return "largest stable c dt/dx, found by noise runs, of the one predicted";
-    case STRESS_PAIRING:
-        return "neighbours from which pairs have less energy, predicted";
-    case STRESS_CLOUD:
-        return "share of particles in pairs";
-    case STRESS_LATTICE:
-        return "growth rate of noise in c/dx, measured, of the fastest wave's by theory; stable: "
-               "neither grows. Green: theory and run agree, also where noise grows";
-    case STRESS_AMPLIFY:
-        return "growth of a difference in the last digits";
-    }
-    return "";
-}
-
 static json_t *group_json(const struct stress_group *group, bool nightly)
 {
     json_t *reproduce =
@@ -275,7 +266,7 @@ static json_t *group_json(const struct stress_group *group, bool nightly)
     json_t *stable = group->kind == STRESS_LATTICE ? json_real(stress_cloud_slowest) : json_null();
     return result_object("number=%s stable_below=%p name=%s title=%s row_title=%s column_title=%s "
                          "rows=%p columns=%p bound=%g reproduce=%p",
-                         number_of(group->kind), (void *)stable, group->member.name,
+                         kinds[group->kind].number, (void *)stable, group->member.name,
                          group->member.label, group->row_title ? group->row_title : "scheme",
                          group->column_title, (void *)row_labels(group, nightly),
                          (void *)column_labels(group, nightly), group->bound, (void *)reproduce);
@@ -294,8 +285,7 @@ static bool is_wrong(const struct stress_cell *cell, const json_t *entry)
     const char *outcome = outcome_of(entry),
                *reason = json_string_value(json_object_get(entry, "reason"));
     const enum stress_kind kind = cell->group->kind;
-    const bool theory = kind == STRESS_LIMIT || kind == STRESS_STEP || kind == STRESS_LATTICE ||
-                        kind == STRESS_CLOUD_STEP;
+    const bool theory = kinds[kind].theory;
     const bool amplified = kind == STRESS_AMPLIFY && is_scheme(cell, 0) && !cell->group->known;
     const bool lost = cell->group->survives && strcmp(outcome, "broke_down") == 0;
     return lost || strncmp(reason, "silent NaN", 10) == 0 || strncmp(reason, "crash", 5) == 0 ||

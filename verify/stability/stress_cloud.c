@@ -72,8 +72,7 @@ static double paired(const struct run_result *result)
 static json_t *judge(const struct stress_cell *cell, const struct run_result *result,
                      const struct stress_watch *watch)
 {
-    const double momentum_bound = 1e-9, energy_bound = 0.05;
-    char reason[768] = "";
+    char reason[STRESS_REASON] = "";
     json_t *unsound = stress_unsound(result, watch, (double)NAN);
     if (unsound) return unsound;
     const double pairs = paired(result);
@@ -82,12 +81,7 @@ static json_t *judge(const struct stress_cell *cell, const struct run_result *re
         used += snprintf(reason + used, sizeof reason - (size_t)used,
                          "%.2g of the particles are nearer to another one than half a spacing; ",
                          pairs);
-    if (!(result->energy <= energy_bound))
-        used += snprintf(reason + used, sizeof reason - (size_t)used, "energy error %.2g; ",
-                         result->energy);
-    if (!(result->momentum <= momentum_bound))
-        used += snprintf(reason + used, sizeof reason - (size_t)used, "momentum error %.2g; ",
-                         result->momentum);
+    used = stress_conserved(result, reason, used);
     if (used) reason[used - 2] = '\0';
     return stress_outcome((double)NAN, pairs, used ? "inaccurate" : "ok", reason);
 }

@@ -31,6 +31,11 @@ typedef json_t *stress_judge_run(const struct stress_cell *cell, const struct ru
 json_t *stress_unsound(const struct run_result *result, const struct stress_watch *watch,
                        double measured);
 
+/* Appends to the first `used` characters of a reason what the run has not conserved, each with ";
+ * "; returns the length. */
+enum { STRESS_REASON = 768 };
+int stress_conserved(const struct run_result *result, char reason[STRESS_REASON], int used);
+
 /* Runs a cell; refused settings are an outcome. */
 enum status stress_execute(const struct stress_cell *cell, stress_judge_run *judge,
                            json_t **document, struct error *error);

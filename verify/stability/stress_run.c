@@ -3,6 +3,28 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+
+#include "result.h"
+
+json_t *stress_outcome(double predicted, double measured, const char *outcome, const char *reason)
+{
+    return result_object("predicted=%g? measured=%g? outcome=%s reason=%s", predicted, measured,
+                         outcome, reason);
+}
+
+const char *stress_outcome_breakdown(const char *message)
+{
+    static const char *const kinds[][2] = {{"internal energy", "negative energy"},
+                                           {"smoothing length", "h without root"},
+                                           {"time step", "time step collapse"},
+                                           {"pair interactions", "too much work"},
+                                           {"position", "NaN"},
+                                           {"crashed", "crash"}};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        if (strstr(message, kinds[i][0])) return kinds[i][1];
+    return "broke down";
+}
 
 static bool watch_steps(void *context, double time, uint64_t steps)
 {
@@ -45,6 +67,18 @@ json_t *stress_unsound(const struct run_result *result, const struct stress_watc
     return stress_outcome((double)NAN, measured, collapse ? "broke_down" : "inaccurate", reason);
 }
 
+int stress_conserved(const struct run_result *result, char reason[STRESS_REASON], int used)
+{
+    const double momentum_bound = 1e-9, energy_bound = 0.05;
+    if (!(result->energy <= energy_bound))
+        used += snprintf(reason + used, STRESS_REASON - (size_t)used, "energy error %.2g; ",
+                         result->energy);
+    if (!(result->momentum <= momentum_bound))
+        used += snprintf(reason + used, STRESS_REASON - (size_t)used, "momentum error %.2g; ",
+                         result->momentum);
+    return used;
+}
+
 /* Mean of the exact density over the window. */
 static double mean_density(const struct run_result *result)
 {
@@ -63,25 +97,19 @@ static double mean_density(const struct run_result *result)
 static json_t *judge_run(const struct stress_cell *cell, const struct run_result *result,
                          const struct stress_watch *watch)
 {
-    char reason[768] = "";
+    char reason[STRESS_REASON] = "";
     const bool drift = cell->group->kind == STRESS_DRIFT;
     const double error = result->errors[FIELD_DENSITY].l1 / mean_density(result);
     const double measured = drift ? result->energy : error;
     const size_t crossed = result->crossed;
     json_t *unsound = stress_unsound(result, watch, measured);
     if (unsound) return unsound;
-    const double momentum_bound = 1e-9, energy_bound = drift ? cell->group->bound : 0.05;
     int used = 0;
     if (!(measured <= cell->group->bound))
         used += snprintf(reason + used, sizeof reason - (size_t)used, "%s %.2g above %.2g; ",
                          drift ? "energy error" : "density error", measured, cell->group->bound);
-    if (!(result->energy <= energy_bound) && !drift)
-        used += snprintf(reason + used, sizeof reason - (size_t)used, "energy error %.2g; ",
-                         result->energy);
     /* in gas that comes to rest the scale of momentum vanishes */
-    if (!(result->momentum <= momentum_bound) && !drift)
-        used += snprintf(reason + used, sizeof reason - (size_t)used, "momentum error %.2g; ",
-                         result->momentum);
+    if (!drift) used = stress_conserved(result, reason, used);
     const bool good = used == 0;
     if (crossed)
         used += snprintf(reason + used, sizeof reason - (size_t)used,
