@@ -59,7 +59,8 @@ static const char *const seed_keys[] = {
 /* In 2D and 3D: the textbook scheme. */
 static const char *const textbook_keys[] = {"kernel=cubic_spline", "eta=2.4", "gradient=standard",
                                             "viscosity=constant"};
-#define LENGTH(list) (sizeof(list) / sizeof *(list))
+static const char *const graded_keys[] = {"grade=0.5"};
+#define KEYS(list) sizeof(list) / sizeof *(list), list
 
 /* --- one point -------------------------------------------------------------------------------- */
 
@@ -225,8 +226,6 @@ static void shorten(const char *label, char brief[SWEEP_LABEL])
     }
 }
 
-static const char *const graded_key = "grade=0.5";
-
 /* True if graded masses add a curve: for jumps between gases, unless the sweep varies the
  * grading. */
 static bool want_graded(const struct run_settings *settings, const struct sweep *sweep)
@@ -236,6 +235,29 @@ static bool want_graded(const struct run_settings *settings, const struct sweep 
     for (size_t k = 0; k < sweep->key_count; k++)
         if (sweep->keys[k].key == SETTING_grade) return false;
     return !problem_foreign(keys, SETTING_grade) && settings_real(keys, SETTING_grade) == 1;
+}
+
+/* Curves besides those of the sweep and of another code. */
+enum addition { GRADED, TEXTBOOK, SEED, SEED_PLAIN };
+static const struct {
+    enum precision_reference reference;
+    const char *label, *brief;
+    size_t key_count;
+    const char *const *keys;
+} additions[] = {
+    [GRADED] = {REFERENCE_GRADED, "graded masses grade=0.5", "graded masses", KEYS(graded_keys)},
+    [TEXTBOOK] = {REFERENCE_SEED, "textbook SPH", "textbook SPH", KEYS(textbook_keys)},
+    [SEED] = {REFERENCE_SEED, "seed method", "seed method", KEYS(seed_keys)},
+    [SEED_PLAIN] = {REFERENCE_SEED_PLAIN, "seed method, plain C", "seed method, plain C",
+                    KEYS(seed_keys)},
+};
+
+/* The addition that is scheme i, after those of the sweep and of another code. */
+static enum addition addition_of(const struct precision *precision, size_t i)
+{
+    const size_t last = precision->scheme_count - 1;
+    if (precision->dim > 1) return TEXTBOOK;
+    return i == last ? SEED_PLAIN : i == last - 1 ? SEED : GRADED;
 }
 
 /* Sets the scheme's keys. */
@@ -253,41 +275,22 @@ static enum status prepare(const struct precision *precision, const struct sweep
     settings->external = NULL;
     if (i < sweep->count) {
         sweep_label(sweep, i, scheme->label);
+        if (!scheme->label[0]) strcpy(scheme->label, "as given");
         shorten(scheme->label, scheme->brief);
-        if (!scheme->label[0]) {
-            strcpy(scheme->label, "as given");
-            strcpy(scheme->brief, "as given");
-        }
-        if (sweep_apply(sweep, i, settings, error)) return error->status;
-        return STATUS_OK;
+        return sweep_apply(sweep, i, settings, error);
     }
+    const enum addition added = addition_of(precision, i);
     settings->settings.shared = true;
-    if (i == sweep->count + (external != NULL) && want_graded(precision->settings, sweep)) {
-        scheme->reference = REFERENCE_GRADED;
-        snprintf(scheme->label, sizeof scheme->label, "graded masses %s", graded_key);
-        strcpy(scheme->brief, "graded masses");
-        if (settings_apply(&settings->settings, 1, (char *const *)&graded_key, error))
-            return error->status;
-    } else if (precision->settings->file.dimension > 1) {
-        scheme->reference = REFERENCE_SEED;
-        strcpy(scheme->label, "textbook SPH");
-        strcpy(scheme->brief, scheme->label);
-        if (settings_apply(&settings->settings, LENGTH(textbook_keys), (char *const *)textbook_keys,
-                           error))
-            return error->status;
-    } else {
-        scheme->reference =
-            i + 2 == precision->scheme_count ? REFERENCE_SEED : REFERENCE_SEED_PLAIN;
-        const bool plain = scheme->reference == REFERENCE_SEED_PLAIN;
-        if (plain) settings->solver = precision_plain;
-        strcpy(scheme->label, plain ? "seed method, plain C" : "seed method");
-        strcpy(scheme->brief, scheme->label);
-        if (settings_apply(&settings->settings, LENGTH(seed_keys), (char *const *)seed_keys,
-                           error) ||
-            settings_set(&settings->settings, SETTING_grade, "1", SOURCE_CASE, NULL, error) ||
-            settings_set(&settings->settings, SETTING_mass_ratio, "1", SOURCE_CASE, NULL, error))
-            return error->status;
-    }
+    scheme->reference = additions[added].reference;
+    strcpy(scheme->label, additions[added].label);
+    strcpy(scheme->brief, additions[added].brief);
+    if (added == SEED_PLAIN) settings->solver = precision_plain;
+    if (settings_apply(&settings->settings, (int)additions[added].key_count,
+                       (char *const *)additions[added].keys, error) ||
+        (added >= SEED &&
+         (settings_set(&settings->settings, SETTING_grade, "1", SOURCE_CASE, NULL, error) ||
+          settings_set(&settings->settings, SETTING_mass_ratio, "1", SOURCE_CASE, NULL, error))))
+        return error->status;
     return STATUS_OK;
 }
 

@@ -243,14 +243,6 @@ static void find_gates(const struct calibrate *calibrate, struct calibrate_case 
         add_gate(calibrate, one, OF_KEPT, k, trace_figures[k], "");
 }
 
-/* Finds what fails a report regardless of gates. */
-static void find_trouble(struct calibrate_case *one)
-{
-    const struct study_result *first = &one->studies[0].results[0];
-    if (first->suspicion[0])
-        snprintf(one->trouble, sizeof one->trouble, "suspicious: %.140s", first->suspicion);
-}
-
 static enum status judge_case(const struct calibrate *calibrate, struct calibrate_case *one,
                               const struct pool *pool, struct error *error)
 {
@@ -265,7 +257,8 @@ static enum status judge_case(const struct calibrate *calibrate, struct calibrat
                              one->of->file.asked, s + 1, study->results[0].message);
     }
     find_gates(calibrate, one);
-    find_trouble(one);
+    const char *suspicion = one->studies[0].results[0].suspicion;
+    if (*suspicion) snprintf(one->trouble, sizeof one->trouble, "suspicious: %.140s", suspicion);
     return STATUS_OK;
 }
 

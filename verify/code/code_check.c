@@ -115,40 +115,34 @@ void code_check_value(const struct code *code, struct ini_text *at, enum code_ke
     struct code_way way = {.line[CODE_memory] = 1, .line[CODE_timeout] = 1};
     snprintf(way.value[key], sizeof way.value[key], "%s", value);
     const char *allowed = code_keys[key].allowed;
+    bool good = true;
     switch (key) {
     case CODE_title:
     case CODE_command:
     case CODE_snapshot:
-        if (!*value)
-            ini_text_fail_value(at, code_keys[key].name, value, allowed);
-        else
-            words_known(at, value, NULL, 0);
-        return;
+        good = *value;
+        if (good) words_known(at, value, NULL, 0);
+        break;
     case CODE_ic:
         check_ic(at, value);
-        return;
+        break;
     case CODE_parameters:
     case CODE_depends:
         check_files(code, at, key, value);
-        return;
+        break;
     case CODE_timeout:
-        if (!(code_timeout(&way) > 0)) ini_text_fail_value(at, "timeout", value, allowed);
-        return;
+        good = code_timeout(&way) > 0;
+        break;
     case CODE_memory:
-        if (!(code_memory(&way) > 0)) ini_text_fail_value(at, "memory", value, allowed);
-        return;
+        good = code_memory(&way) > 0;
+        break;
     case CODE_as_3d:
-        if (strcmp(value, "no") != 0 && !slab_layers(value))
-            ini_text_fail_value(at, "as_3d", value, allowed);
-        return;
-    case CODE_elements:
-    case CODE_equal_masses:
-    case CODE_shell:
-        if (!one_of(allowed, value)) ini_text_fail_value(at, code_keys[key].name, value, allowed);
-        return;
+        good = strcmp(value, "no") == 0 || slab_layers(value);
+        break;
     default:
-        return;
+        good = one_of(allowed, value);
     }
+    if (!good) ini_text_fail_value(at, code_keys[key].name, value, allowed);
 }
 
 /* The first word of a command if there is no such program; NULL: it exists, or the shell finds

@@ -122,15 +122,6 @@ static enum status write_code(const struct calibrate *calibrate, const char *out
     return status;
 }
 
-static enum status compute(struct calibrate *calibrate, const struct code *code, size_t runs, int n,
-                           char **names, const struct options *options, struct sharing *sharing,
-                           struct pool *pool, bool *whole, struct error *error)
-{
-    enum status status = calibrate_plan(calibrate, code, runs, (size_t)n, names, pool, error);
-    if (!status) status = sharing_run(sharing, pool, options, whole, error);
-    return *whole ? calibrate_judge(calibrate, pool, error) : status;
-}
-
 static enum status calibrate_code(const struct options *options, const struct code *code, int n,
                                   char **names, struct error *error)
 {
@@ -141,10 +132,11 @@ static enum status calibrate_code(const struct options *options, const struct co
     size_t runs = 0;
     bool whole = false;
     if (take_runs(options, &runs, error) || take_out(options, code, out, error) ||
-        sharing_take(&sharing, options, 1, NULL, false, error))
+        sharing_take(&sharing, options, 1, NULL, error))
         return error->status;
-    enum status status =
-        compute(&calibrate, code, runs, n, names, options, &sharing, &pool, &whole, error);
+    enum status status = calibrate_plan(&calibrate, code, runs, (size_t)n, names, &pool, error);
+    if (!status) status = sharing_run(&sharing, &pool, options, &whole, error);
+    if (whole) status = calibrate_judge(&calibrate, &pool, error);
     const bool sound = whole && (status == STATUS_OK || status == STATUS_CHECK_FAILED);
     struct error trouble = {0};
     if (sound && write_code(&calibrate, out, &trouble)) *error = trouble, status = trouble.status;

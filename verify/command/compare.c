@@ -255,8 +255,8 @@ static bool seen(const struct comparison *c, size_t r)
     return false;
 }
 
-static enum status serialise_out(struct comparison *c, const struct options *options,
-                                 struct error *error)
+static enum status draw_all(struct comparison *c, const struct options *options,
+                            struct error *error)
 {
     struct progress progress;
     enum status status = STATUS_OK;
@@ -460,7 +460,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (!status && text && c->sides[0].is_snapshot && c->sides[1].is_snapshot)
         status = error_set(error, STATUS_BAD_INPUT,
                            "compare: --draws is for runs: of two snapshots there is one draw each");
-    if (!status) status = serialise_out(c, options, error);
+    if (!status) status = draw_all(c, options, error);
     if (!status) {
         conclude(c);
         status = tell(options, c, error);

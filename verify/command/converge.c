@@ -242,9 +242,9 @@ static enum status take_replicates(struct study *study, const struct options *op
 }
 
 /* Runs and judges the study and fills the document. *whole: see sharing_run. */
-static enum status serialise_out(struct study *study, const struct options *options,
-                                 struct sharing *sharing, json_t *document, bool *whole,
-                                 struct error *error)
+static enum status compute(struct study *study, const struct options *options,
+                           struct sharing *sharing, json_t *document, bool *whole,
+                           struct error *error)
 {
     struct pool pool = {0};
     enum status status = study_plan(study, &pool, error);
@@ -273,8 +273,7 @@ static enum status converge(const struct options *options, int n, char **argumen
         sweep_parse(&study.sweep, options_value(options, "vary"), error) ||
         options_ladder(options, &study.settings, ORDER_LEVELS_MIN, study.ladder, &study.level_count,
                        error) ||
-        take_replicates(&study, options, error) ||
-        sharing_take(&sharing, options, 1, NULL, false, error))
+        take_replicates(&study, options, error) || sharing_take(&sharing, options, 1, NULL, error))
         return error->status;
     json_t *document = result_new("converge");
     result_add(document, "case=%s status=%s", study.settings.file.name, "ok");
@@ -285,7 +284,7 @@ static enum status converge(const struct options *options, int n, char **argumen
     if (!run_resolve(&as_given, &of_all, &trouble))
         json_object_set_new(document, "settings", settings_json(&as_given.settings));
     if (study.settings.external) external.base.describe(&external.base, document);
-    enum status status = serialise_out(&study, options, &sharing, document, &whole, error);
+    enum status status = compute(&study, options, &sharing, document, &whole, error);
     const bool sound = status == STATUS_OK || status == STATUS_CHECK_FAILED;
     const bool told = whole && (sound || status == STATUS_BROKE_DOWN);
     if (options->speak && told) print_all(&study, options);

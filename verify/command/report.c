@@ -174,8 +174,7 @@ static enum status tell(const struct options *options, const json_t *results,
     return strcmp(verdict, "pass") == 0 ? STATUS_OK : STATUS_CHECK_FAILED;
 }
 
-static enum status serialise_out(const struct options *options, struct report *report,
-                                 struct error *error)
+static enum status make(const struct options *options, struct report *report, struct error *error)
 {
     struct paths paths;
     struct sharing sharing;
@@ -183,7 +182,7 @@ static enum status serialise_out(const struct options *options, struct report *r
     bool whole;
     const int cores = (int)sysconf(_SC_NPROCESSORS_ONLN);
     if (take_paths(options, &paths, error) ||
-        sharing_take(&sharing, options, cores, paths.cache, options_value(options, "force"), error))
+        sharing_take(&sharing, options, cores, paths.cache, error))
         return error->status;
     if (!sharing.list && (output_folder(paths.plots, error) || output_probe(paths.history, error)))
         return error->status;
@@ -272,7 +271,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
         status = report_create(options_value(options, "nightly"), NULL, 0, &report, error);
     else if (!(status = take_codes(options, &codes, error)))
         status = report_create(false, codes->of, codes->count, &report, error);
-    if (!status) status = serialise_out(options, report, error);
+    if (!status) status = make(options, report, error);
     report_destroy(report);
     codes_free(codes);
     return status;

@@ -12,6 +12,7 @@
 #include "value.h"
 
 enum { PLOT_POINTS_EXACT = 1001 };
+static const char *const labels[FIELDS] = {"density", "velocity", "pressure", "internal energy"};
 
 /* One field over x: particles in the window on top of the exact solution. */
 struct profile {
@@ -78,8 +79,6 @@ static enum status draw_profiles(const struct run_settings *settings,
                                  const struct run_result *result, const char *path,
                                  struct movie *movie, struct error *error)
 {
-    static const char *const labels[FIELDS] = {"density", "velocity", "pressure",
-                                               "internal energy"};
     struct profile profiles[FIELDS] = {0};
     struct plot_panel panels[FIELDS + 1] = {0};
     struct plot_series off = {.label = NULL};
@@ -162,12 +161,11 @@ static void map_values(const struct run_result *result, int panel, enum field fi
 
 static void map_titles(const struct run_result *result, enum field field, char titles[MAPS][96])
 {
-    static const char *const names[FIELDS] = {"density", "velocity", "pressure", "internal energy"};
     const int dim = result->problem.domain.dim;
     const bool vector = field == FIELD_VELOCITY;
     snprintf(titles[0], sizeof titles[0], "density [%s]", field_unit(FIELD_DENSITY, dim));
     snprintf(titles[1], sizeof titles[1], "speed |v| [%s]", field_unit(FIELD_VELOCITY, dim));
-    snprintf(titles[2], sizeof titles[2], "error of %s: %s [%s]", names[field],
+    snprintf(titles[2], sizeof titles[2], "error of %s: %s [%s]", labels[field],
              vector ? "|v - exact|" : "SPH - exact", field_unit(field, dim));
 }
 

@@ -25,10 +25,11 @@ static enum status take_share(struct pool_share *share, const struct options *op
 
 /* Chooses who computes. Other machines need the cache to exchange results. */
 static enum status take_engine(struct sharing *sharing, const struct options *options,
-                               const char *folder, bool force, struct error *error)
+                               const char *folder, struct error *error)
 {
     static const char *const engines[] = {"local", "slurm"};
     const char *name = options_value(options, "engine");
+    const bool force = options_value(options, "force");
     double number = 0;
     sharing->slurm = name && strcmp(name, "slurm") == 0;
     if (name && !sharing->slurm && strcmp(name, "local") != 0)
@@ -81,8 +82,9 @@ static enum status refuse_files(const struct sharing *sharing, const struct opti
 }
 
 enum status sharing_take(struct sharing *sharing, const struct options *options, int jobs,
-                         const char *folder, bool force, struct error *error)
+                         const char *folder, struct error *error)
 {
+    const bool force = options_value(options, "force");
     double number = jobs;
     *sharing = (struct sharing){.list = options_value(options, "list") != NULL};
     if (options_number(options, "jobs", true, 1, JOBS_MAX, &number, error)) return error->status;
@@ -103,7 +105,7 @@ enum status sharing_take(struct sharing *sharing, const struct options *options,
             error, STATUS_BAD_INPUT,
             "%s: --only-build needs --cache DIR: it is results there that have a build",
             options->command->name);
-    if (take_engine(sharing, options, folder, force, error)) return error->status;
+    if (take_engine(sharing, options, folder, error)) return error->status;
     if (folder && sharing->list && access(folder, R_OK)) folder = NULL; /* not created */
     if (folder && cache_open(&sharing->cache, folder, force, error)) return error->status;
     if (folder) sharing->pool.cache = &sharing->cache;

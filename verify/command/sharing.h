@@ -39,11 +39,12 @@ struct sharing {
     struct progress progress;
 };
 
-/* Reads the options. jobs: default of --jobs; folder: of the cache, NULL: that of --cache.
+/* Reads the options. jobs: default of --jobs; folder: of the cache, NULL: that of --cache. Without
+ * --engine slurm and --shard, --force computes again what the cache has.
  * STATUS_BAD_INPUT: an option is wrong, or --shard is used without a cache. sharing must not move
  * in memory afterwards. */
 enum status sharing_take(struct sharing *sharing, const struct options *options, int jobs,
-                         const char *folder, bool force, struct error *error);
+                         const char *folder, struct error *error);
 
 /* Runs the pool with a line of progress and prints remarks. With --shard prints what the share has
  * computed; with --list only lists the computations. *whole: all results are there to be judged.

@@ -85,8 +85,8 @@ static void print_all(const json_t *document, size_t wrong, const struct options
            wrong ? style.bad : style.good, wrong ? "NOT WELL" : "all as it should be", style.end);
 }
 
-static enum status serialise_out(struct stress *stress, struct pool *pool, struct sharing *sharing,
-                                 const struct options *options, struct error *error)
+static enum status compute(struct stress *stress, struct pool *pool, struct sharing *sharing,
+                           const struct options *options, struct error *error)
 {
     bool whole;
     enum status status = sharing_run(sharing, pool, options, &whole, error);
@@ -107,11 +107,11 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (nightly && options_value(options, "quick"))
         return error_set(error, STATUS_BAD_INPUT,
                          "stress: --quick and --nightly exclude each other");
-    if (sharing_take(&sharing, options, options->threads, NULL, false, error)) return error->status;
+    if (sharing_take(&sharing, options, options->threads, NULL, error)) return error->status;
     enum status status = stress_plan(&stress, nightly, (size_t)n, arguments, &pool, error);
     if (!status) {
         gsl_set_error_handler_off();
-        status = serialise_out(&stress, &pool, &sharing, options, error);
+        status = compute(&stress, &pool, &sharing, options, error);
         stress_free(&stress);
     }
     pool_free(&pool);

@@ -396,7 +396,7 @@ TEST(numbers_of_particles_of_draws)
         for (size_t r = 0; r < c.asked; r++)
             c.sides[0].cpu_s[r] = c.sides[1].cpu_s[r] = (double)NAN;
         reported_count = reported_ends = 0;
-        if (serialise_out(&c, &options, &error)) fail_msg("%s", error.message);
+        if (draw_all(&c, &options, &error)) fail_msg("%s", error.message);
         assert_true(reported_count == (int)(2 * rows[k].asked) && reported_ends == 1 &&
                     reported == 1);
         assert_int_equal(c.draws, rows[k].draws);
@@ -436,7 +436,7 @@ TEST(snapshots)
     assert_int_equal(run_execute(&c.sides[0].first, &result, &error), STATUS_OK);
     assert_int_equal(run_write_snapshot(&result, path, &error), STATUS_OK);
     c.asked = 3;
-    if (serialise_out(&c, &options, &error)) fail_msg("%s", error.message);
+    if (draw_all(&c, &options, &error)) fail_msg("%s", error.message);
     assert_int_equal(c.draws, 3);
     const struct side *side = &c.sides[1];
     assert_int_equal(side->count, FIELDS);
@@ -449,7 +449,7 @@ TEST(snapshots)
     for (int s = 0; s < 2; s++) json_decref(c.sides[s].result);
     take(&c, path, path);
     c.asked = 3;
-    assert_int_equal(serialise_out(&c, &options, &error), STATUS_OK);
+    assert_int_equal(draw_all(&c, &options, &error), STATUS_OK);
     assert_int_equal(c.draws, 1);
     for (int s = 0; s < 2; s++) json_decref(c.sides[s].result);
     run_free(&result);

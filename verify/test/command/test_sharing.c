@@ -15,7 +15,7 @@
 enum { N = 7, SHARES = 3 };
 
 static const struct command_option list[] = {
-    {"jobs", "J", ""}, SHARING_OPTIONS, {NULL, NULL, NULL}};
+    {"jobs", "J", ""}, {"force", NULL, ""}, SHARING_OPTIONS, {NULL, NULL, NULL}};
 static const struct command command = {.name = "converge", .synopsis = "CASE", .options = list};
 
 /* How a computation shall end. */
@@ -112,8 +112,7 @@ static enum status run_share(const char *shard)
     set("cache", call.folder.cache_folder);
     set("shard", shard);
     call.error = (struct error){0};
-    assert_int_equal(sharing_take(&call.sharing, &call.options, 1, NULL, false, &call.error),
-                     STATUS_OK);
+    assert_int_equal(sharing_take(&call.sharing, &call.options, 1, NULL, &call.error), STATUS_OK);
     fill_planned();
     listen_to(said, usual);
     const enum status status =
@@ -281,8 +280,8 @@ TEST(clusters)
             int said[2], usual[2];
             end(NULL), begin(NULL);
             set("cache", call.folder.cache_folder), set("jobs", jobs[k]);
-            assert_int_equal(
-                sharing_take(&call.sharing, &call.options, 5, NULL, false, &call.error), STATUS_OK);
+            assert_int_equal(sharing_take(&call.sharing, &call.options, 5, NULL, &call.error),
+                             STATUS_OK);
             call.sharing.slurm = true, call.sharing.tasks = 9;
             planted.status = s, planted.jobs = k == 2 ? 3 : 1;
             fill_planned();
@@ -326,8 +325,8 @@ TEST(list_of_computations)
             char expected[1000] = "";
             set("shard", shards[k]);
             set("cache", there ? call.folder.cache_folder : k ? "nowhere" : NULL);
-            assert_int_equal(
-                sharing_take(&call.sharing, &call.options, 1, NULL, false, &call.error), STATUS_OK);
+            assert_int_equal(sharing_take(&call.sharing, &call.options, 1, NULL, &call.error),
+                             STATUS_OK);
             assert_true(call.sharing.list);
             fill_planned();
             listen_to(said, usual);
@@ -355,71 +354,62 @@ TEST(invalid_options)
 {
     static const struct {
         const char *names[3], *values[3];
-        bool force;
         const char *message; /* NULL: valid */
     } rows[] = {
-        {{"jobs"}, {"1"}, false, NULL},
-        {{"jobs"}, {"1024"}, false, NULL},
-        {{"jobs"}, {"0"}, false, "converge: --jobs '0': allowed: an integer from 1 to 1024"},
-        {{"jobs"}, {"1025"}, false, "--jobs '1025'"},
-        {{"jobs"}, {"2.5"}, false, "--jobs '2.5'"},
-        {{"jobs"}, {"x"}, false, "--jobs 'x'"},
-        {{"jobs"}, {""}, false, "--jobs ''"},
-        {{"shard", "cache"}, {"1/1", "c"}, false, NULL},
-        {{"shard", "cache"}, {"3/3", "c"}, false, NULL},
-        {{"shard", "cache"}, {"1/1000000", "c"}, false, NULL},
+        {{"jobs"}, {"1"}, NULL},
+        {{"jobs"}, {"1024"}, NULL},
+        {{"jobs"}, {"0"}, "converge: --jobs '0': allowed: an integer from 1 to 1024"},
+        {{"jobs"}, {"1025"}, "--jobs '1025'"},
+        {{"jobs"}, {"2.5"}, "--jobs '2.5'"},
+        {{"jobs"}, {"x"}, "--jobs 'x'"},
+        {{"jobs"}, {""}, "--jobs ''"},
+        {{"shard", "cache"}, {"1/1", "c"}, NULL},
+        {{"shard", "cache"}, {"3/3", "c"}, NULL},
+        {{"shard", "cache"}, {"1/1000000", "c"}, NULL},
         {{"shard", "cache"},
          {"1/1000001", "c"},
-         false,
          "converge: --shard '1/1000001': allowed: I/N with 1 <= I <= N <= 1000000, as 3/8"},
-        {{"shard", "cache"}, {"0/3", "c"}, false, "--shard '0/3'"},
-        {{"shard", "cache"}, {"-1/3", "c"}, false, "--shard '-1/3'"},
-        {{"shard", "cache"}, {"4/3", "c"}, false, "--shard '4/3'"},
-        {{"shard", "cache"}, {"1/3x", "c"}, false, "--shard '1/3x'"},
-        {{"shard", "cache"}, {"1", "c"}, false, "--shard '1'"},
-        {{"shard", "cache"}, {"", "c"}, false, "--shard ''"},
-        {{"shard", "cache"}, {"1/0", "c"}, false, "--shard '1/0'"},
-        {{"shard"}, {"1/3"}, false, "converge: --shard needs --cache DIR: there the shares meet"},
-        {{"shard", "cache"},
-         {"1/3", "c"},
-         true,
+        {{"shard", "cache"}, {"0/3", "c"}, "--shard '0/3'"},
+        {{"shard", "cache"}, {"-1/3", "c"}, "--shard '-1/3'"},
+        {{"shard", "cache"}, {"4/3", "c"}, "--shard '4/3'"},
+        {{"shard", "cache"}, {"1/3x", "c"}, "--shard '1/3x'"},
+        {{"shard", "cache"}, {"1", "c"}, "--shard '1'"},
+        {{"shard", "cache"}, {"", "c"}, "--shard ''"},
+        {{"shard", "cache"}, {"1/0", "c"}, "--shard '1/0'"},
+        {{"shard"}, {"1/3"}, "converge: --shard needs --cache DIR: there the shares meet"},
+        {{"shard", "cache", "force"},
+         {"1/3", "c", ""},
          "converge: --shard and --force exclude each other: begin with an empty cache"},
-        {{"cache"}, {"c"}, true, NULL},
-        {{"engine"}, {"local"}, false, NULL},
-        {{"engine"}, {"slum"}, false, "slurm"},
+        {{"cache", "force"}, {"c", ""}, NULL},
+        {{"engine"}, {"local"}, NULL},
+        {{"engine"}, {"slum"}, "slurm"},
         {{"engine"},
          {"slurm"},
-         false,
          "converge: --engine slurm needs --cache DIR, which all machines see"},
-        {{"engine", "cache"}, {"slurm", "c"}, false, NULL},
-        {{"engine", "cache"},
-         {"slurm", "c"},
-         true,
+        {{"engine", "cache"}, {"slurm", "c"}, NULL},
+        {{"engine", "cache", "force"},
+         {"slurm", "c", ""},
          "converge: --engine slurm and --force exclude each other"},
         {{"engine", "cache", "shard"},
          {"slurm", "c", "1/2"},
-         false,
          "converge: --engine slurm and --shard exclude each other"},
-        {{"engine", "cache", "engine-tasks"}, {"slurm", "c", "1"}, false, NULL},
-        {{"engine", "cache", "engine-tasks"}, {"slurm", "c", "1000"}, false, NULL},
+        {{"engine", "cache", "engine-tasks"}, {"slurm", "c", "1"}, NULL},
+        {{"engine", "cache", "engine-tasks"}, {"slurm", "c", "1000"}, NULL},
         {{"engine", "cache", "engine-tasks"},
          {"slurm", "c", "1001"},
-         false,
          "converge: --engine-tasks '1001': allowed: an integer from 1 to 1000"},
-        {{"engine", "cache", "engine-tasks"}, {"slurm", "c", "0"}, false, "--engine-tasks '0'"},
-        {{"engine", "cache", "engine-tasks"}, {"slurm", "c", "x"}, false, "--engine-tasks 'x'"},
-        {{"engine", "cache", "engine-options"}, {"slurm", "c", "-p x"}, false, NULL},
+        {{"engine", "cache", "engine-tasks"}, {"slurm", "c", "0"}, "--engine-tasks '0'"},
+        {{"engine", "cache", "engine-tasks"}, {"slurm", "c", "x"}, "--engine-tasks 'x'"},
+        {{"engine", "cache", "engine-options"}, {"slurm", "c", "-p x"}, NULL},
         {{"engine-tasks"},
          {"3"},
-         false,
          "converge: --engine-options and --engine-tasks need --engine slurm"},
         {{"engine-options"},
          {"-p x"},
-         false,
          "converge: --engine-options and --engine-tasks need --engine slurm"},
-        {{"engine-options", "engine"}, {"-p x", "local"}, false, "need --engine slurm"},
-        {{"only-build", "cache"}, {"0123", "c"}, false, ", not 0123: another program, C library"},
-        {{"only-build"}, {"0123"}, false, "converge: --only-build needs --cache DIR"},
+        {{"engine-options", "engine"}, {"-p x", "local"}, "need --engine slurm"},
+        {{"only-build", "cache"}, {"0123", "c"}, ", not 0123: another program, C library"},
+        {{"only-build"}, {"0123"}, "converge: --only-build needs --cache DIR"},
     };
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         struct sharing sharing;
@@ -429,8 +419,7 @@ TEST(invalid_options)
                 strcmp(rows[r].values[i], "c") ? rows[r].values[i] : call.folder.cache_folder);
         const bool build = rows[r].names[1] && strcmp(rows[r].names[0], "only-build") == 0;
         call.error = (struct error){0};
-        const enum status status =
-            sharing_take(&sharing, &call.options, 5, NULL, rows[r].force, &call.error);
+        const enum status status = sharing_take(&sharing, &call.options, 5, NULL, &call.error);
         if (!rows[r].message) {
             assert_int_equal(status, STATUS_OK);
             continue;
@@ -447,18 +436,18 @@ TEST(valid_options)
 {
     struct sharing sharing;
     end(NULL), begin(NULL);
-    assert_int_equal(sharing_take(&sharing, &call.options, 5, NULL, false, &call.error), STATUS_OK);
+    assert_int_equal(sharing_take(&sharing, &call.options, 5, NULL, &call.error), STATUS_OK);
     assert_int_equal(sharing.pool.jobs, 5);
     assert_true(!sharing.list && !sharing.pool.cache && !sharing.pool.share.of && !sharing.tasks);
     assert_false(sharing.slurm);
-    assert_int_equal(sharing_take(&sharing, &call.options, 0, NULL, false, &call.error), STATUS_OK);
+    assert_int_equal(sharing_take(&sharing, &call.options, 0, NULL, &call.error), STATUS_OK);
     assert_int_equal(sharing.pool.jobs, 1);
     set("jobs", "3"), set("shard", "2/7"), set("cache", "elsewhere");
     char build[CACHE_BUILD_MAX];
     cache_build(build);
     set("only-build", build);
     assert_int_equal(
-        sharing_take(&sharing, &call.options, 5, call.folder.cache_folder, false, &call.error),
+        sharing_take(&sharing, &call.options, 5, call.folder.cache_folder, &call.error),
         STATUS_OK); /* the command's own folder takes precedence over --cache */
     assert_int_equal(sharing.pool.jobs, 3);
     assert_true(sharing.pool.share.number == 2 && sharing.pool.share.of == 7);
@@ -467,14 +456,12 @@ TEST(valid_options)
     assert_int_equal(access("elsewhere", F_OK), -1);
     set("shard", NULL), set("engine", "slurm"), set("engine-tasks", "9");
     assert_int_equal(
-        sharing_take(&sharing, &call.options, 5, call.folder.cache_folder, false, &call.error),
-        STATUS_OK);
+        sharing_take(&sharing, &call.options, 5, call.folder.cache_folder, &call.error), STATUS_OK);
     assert_true(sharing.slurm);
     assert_int_equal(sharing.tasks, 9);
-    set("engine", NULL), set("engine-tasks", NULL);
+    set("engine", NULL), set("engine-tasks", NULL), set("force", "");
     assert_int_equal(
-        sharing_take(&sharing, &call.options, 5, call.folder.cache_folder, true, &call.error),
-        STATUS_OK);
+        sharing_take(&sharing, &call.options, 5, call.folder.cache_folder, &call.error), STATUS_OK);
     assert_true(sharing.cache.force);
 }
 

@@ -300,13 +300,10 @@ TEST(gas_falls)
 
 TEST(impossible_setups_are_refused)
 {
-    static const char *const foreign[] = {"n=100", NULL}, *const unknown[] = {"kernle=ia", NULL};
+    static const char *const unknown[] = {"kernle=ia", NULL};
     const struct sphproof_rates rates = {0};
     struct sphproof_error error;
     struct sphproof_setup setup = setup_of_a_wave();
-    setup.keys = foreign;
-    assert_int_equal(sphproof_rates_evaluate(&setup, &rates, &error), SPHPROOF_BAD_INPUT);
-    assert_non_null(strstr(error.message, "n is no key of a scheme"));
     setup.keys = unknown;
     assert_int_equal(sphproof_rates_evaluate(&setup, &rates, &error), SPHPROOF_BAD_INPUT);
     setup = setup_of_a_wave(), setup.dim = 2;
