@@ -184,8 +184,15 @@ static void finish(struct worker *worker, struct pool *pool)
 
 static const struct pool_job *sorted_jobs;
 
-/* A total order that does not depend on the order in which jobs were added. */
 static int heavy_first(const void *a, const void *b)
+{
+    const size_t i = *(const size_t *)a, j = *(const size_t *)b;
+    const double x = sorted_jobs[i].weight, y = sorted_jobs[j].weight;
+    return x != y ? (x < y) - (x > y) : (i > j) - (i < j);
+}
+
+/* A total order that does not depend on the order in which jobs were added. */
+static int heavy_first_by_key(const void *a, const void *b)
 {
     const struct pool_job *x = &sorted_jobs[*(const size_t *)a],
                           *y = &sorted_jobs[*(const size_t *)b];
@@ -199,7 +206,7 @@ enum status pool_divide(const struct pool *pool, int of, int *shares, struct err
     double *load = calloc((size_t)of, sizeof *load);
     for (size_t i = 0; order && i < pool->count; i++) order[i] = i;
     sorted_jobs = pool->jobs;
-    if (order && load) qsort(order, pool->count, sizeof *order, heavy_first);
+    if (order && load) qsort(order, pool->count, sizeof *order, heavy_first_by_key);
     for (size_t k = 0; order && load && k < pool->count; k++) {
         const struct pool_job *job = &pool->jobs[order[k]];
         int share = 0;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Compares what `sphproof converge` prints of studies with random figures and verdicts with
- * data/drawn/converge.txt, byte for byte. verify/test/keep renews that file. */
+ * Compares what `sphproof converge` prints of studies with random figures and verdicts, and their
+ * JSON documents with seven digits, with data/drawn/converge.txt, byte for byte. verify/test/keep
+ * renews that file. */
 #include "test.h"
 
 #include "drawn_document.h"
@@ -76,6 +77,13 @@ TEST(printed_studies)
         printed_end(&printed, text, sizeof text);
         snprintf(name, sizeof name, "study-%zu", k);
         digests_compare(&kept, name, text);
+        json_t *document = json_object();
+        study_add_json(&study, document);
+        char *json = json_dumps(document, JSON_INDENT(1) | JSON_REAL_PRECISION(7));
+        snprintf(name, sizeof name, "document-%zu", k);
+        digests_compare(&kept, name, json);
+        free(json);
+        json_decref(document);
         study_free(&study);
     }
     digests_close(&kept);

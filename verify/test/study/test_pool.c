@@ -185,8 +185,7 @@ TEST(many_jobs)
 
 /* ---- how they are run ---- */
 
-/* Heavy jobs run first, and equal ones in the order of their keys, with no more at once than
- * requested. */
+/* Heavy jobs run first, and equal ones in their order, with no more at once than requested. */
 TEST(order_of_jobs)
 {
     enum { N = 9 };
