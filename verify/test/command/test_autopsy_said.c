@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Tests what `sphproof autopsy` prints of given figures, and which ladders it refuses. (The
- * transcripts test whole calls.) */
+ * Tests what `sphproof autopsy` prints of given figures. (The transcripts test whole
+ * calls.) */
 #include "test.h"
 
 #include "printed.h"
@@ -90,36 +90,4 @@ TEST(powers_of_terms)
                  ((double)k - 0.5) / (2. * AUTOPSY_TERMS));
         assert_int_equal(strstr(text, line) != NULL, k != 1);
     }
-}
-
-TEST(printed_ladders)
-{
-    static const char *values[4];
-    static const struct options options = {.command = &command_autopsy, .values = values};
-    struct run_settings settings;
-    size_t ladder[CASE_LADDER_MAX], count;
-    struct error error = {0};
-    char with_n[] = "n=24^2", *words[] = {with_n};
-    char four[] = "16^2,20^2,24^2,32^2", three[] = "16^2,20^2,24^2";
-    assert_int_equal(run_prepare(&settings, "yee", 0, NULL, &error), STATUS_OK);
-    assert_int_equal(options_ladder(&options, &settings, ORDER_LEVELS_MIN, ladder, &count, &error),
-                     STATUS_OK);
-    assert_int_equal(count, settings.file.ladder_count);
-    assert_memory_equal(ladder, settings.file.ladder, count * sizeof *ladder);
-    values[0] = four;
-    assert_int_equal(options_ladder(&options, &settings, ORDER_LEVELS_MIN, ladder, &count, &error),
-                     STATUS_OK);
-    assert_true(count == 4 && ladder[0] == 256 && ladder[3] == 1024);
-    values[0] = three;
-    assert_int_equal(options_ladder(&options, &settings, ORDER_LEVELS_MIN, ladder, &count, &error),
-                     STATUS_BAD_INPUT);
-    values[0] = NULL;
-    settings.file.ladder_count = 0;
-    assert_int_equal(options_ladder(&options, &settings, ORDER_LEVELS_MIN, ladder, &count, &error),
-                     STATUS_BAD_INPUT);
-    assert_non_null(strstr(error.message, "has no ladder"));
-    assert_int_equal(run_prepare(&settings, "yee", 1, words, &error), STATUS_OK);
-    assert_int_equal(options_ladder(&options, &settings, ORDER_LEVELS_MIN, ladder, &count, &error),
-                     STATUS_BAD_INPUT);
-    assert_non_null(strstr(error.message, "exclude each other"));
 }
