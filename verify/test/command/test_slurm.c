@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Tests the parsing of Slurm's answers, recorded from Slurm 22.05 (two nodes on one host). Scripts
- * in a folder of their own stand for sbatch, squeue and scancel. (test_engine_slurm_calls.c tests
- * what the engine does with answers, and without.) */
+ * in a folder of their own stand for sbatch, squeue and scancel. (test_slurm_calls.c tests what the
+ * engine does with answers, and without.) */
 #include "test.h"
 
 #include <sys/stat.h>

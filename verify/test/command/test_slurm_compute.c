@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Tests what the engine slurm submits and how it handles tasks that end badly, on the simulated
- * cluster of fake_slurm.h. (test_engine_slurm_calls.c: interrupts and repeated calls.) */
+ * cluster of fake_slurm.h. (test_slurm_calls.c: interrupts and repeated calls.) */
 #define _GNU_SOURCE /* nftw */
 #include "test.h"
 
