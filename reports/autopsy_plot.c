@@ -21,6 +21,7 @@ struct drawing {
     size_t n;                        /* number of levels */
     double x[LEVELS], whole[LEVELS]; /* particles per side, L1 of the velocity */
     double share[PARTS][LEVELS], own[PARTS][LEVELS], low[PARTS][LEVELS], high[PARTS][LEVELS];
+    double order[PARTS]; /* NaN: none */
     char labels[PARTS][64], title[TEXT], sentence[2][TEXT];
     struct plot_series lines[PARTS + 1], bars[PARTS];
     struct plot_panel panels[2];
@@ -33,6 +34,7 @@ static bool read_levels(struct drawing *d, const json_t *document)
 {
     const json_t *levels = json_object_get(document, "levels"), *level, *entry;
     size_t l, i;
+    for (size_t p = 0; p < PARTS; p++) d->order[p] = (double)NAN;
     json_array_foreach(levels, l, level) {
         if (d->n == LEVELS) break;
         const double n = value_member(level, "n"), spacing = value_member(level, "spacing");
@@ -43,7 +45,9 @@ static bool read_levels(struct drawing *d, const json_t *document)
     }
     json_array_foreach(json_object_get(document, "shares"), i, entry) {
         for (size_t p = 0; p < PARTS; p++) {
+            const double order = value_member(entry, "order");
             if (strcmp(parts[p].name, value_text(entry, "part")) != 0) continue;
+            if (isfinite(order)) d->order[p] = order;
             for (l = 0; l < d->n; l++)
                 if (value_member(entry, "n") == value_member(json_array_get(levels, l), "n")) {
                     d->share[p][l] = value_member(entry, "share");
@@ -58,20 +62,14 @@ static bool read_levels(struct drawing *d, const json_t *document)
 #define LEAST 3e-3
 
 /* Makes the labels of the key, such as "disorder, order 1.10"; a negligible part has no order. */
-static void name_parts(struct drawing *d, const json_t *document)
+static void name_parts(struct drawing *d)
 {
-    size_t i;
-    const json_t *entry;
     for (size_t p = 0; p < PARTS; p++)
-        snprintf(d->labels[p], sizeof d->labels[p], "%s", parts[p].label);
-    json_array_foreach(json_object_get(document, "shares"), i, entry) {
-        const double order = value_member(entry, "order");
-        for (size_t p = 0; p < PARTS; p++)
-            if (strcmp(parts[p].name, value_text(entry, "part")) == 0 && isfinite(order) &&
-                d->share[p][0] > LEAST && d->share[p][d->n - 1] > LEAST)
-                snprintf(d->labels[p], sizeof d->labels[p], "%s, order %.2f", parts[p].label,
-                         order);
-    }
+        if (isfinite(d->order[p]) && d->share[p][0] > LEAST && d->share[p][d->n - 1] > LEAST)
+            snprintf(d->labels[p], sizeof d->labels[p], "%s, order %.2f", parts[p].label,
+                     d->order[p]);
+        else
+            snprintf(d->labels[p], sizeof d->labels[p], "%s", parts[p].label);
 }
 
 /* Splits the sentence into two lines, one above each panel. */
@@ -167,7 +165,7 @@ static bool draw(struct drawing *d, const json_t *document, const char *name)
 {
     enum { WIDTH = 760, HEIGHT = 560 };
     if (!read_levels(d, document)) return false;
-    name_parts(d, document);
+    name_parts(d);
     split_sentence(d, value_text(document, "sentence"));
     lay_out(d);
     snprintf(d->title, TEXT, "%s: what the error of the velocity is made of",

@@ -87,10 +87,31 @@ void case_state_cell(struct buffer *to, const char *case_name)
     html_format(to, "<td><a href=\"#case-%s\">%-s</a></td>", case_name, case_name);
 }
 
+double case_state_level_error(const json_t *study, const char *name, size_t i)
+{
+    const json_t *level = json_array_get(json_object_get(study, "levels"), i);
+    const json_t *scalar = value_named(json_object_get(study, "functionals"), name);
+    const double error = value_inner(json_object_get(level, "errors"), name, "l1");
+    if (isfinite(error) || !scalar) return error;
+    return fabs(value_real(json_array_get(json_object_get(scalar, "values"), i)) -
+                value_member(scalar, "exact"));
+}
+
+const json_t *case_state_finest(const json_t *study)
+{
+    const json_t *levels = json_object_get(study, "levels");
+    return json_array_get(levels, json_array_size(levels) - 1);
+}
+
+const char *case_state_measured(const json_t *document)
+{
+    const char *name = json_string_value(html_member(document, "measured/0"));
+    return name ? name : "density";
+}
+
 double case_state_error(const json_t *run, const char **name)
 {
-    const char *measured = json_string_value(json_array_get(json_object_get(run, "measured"), 0));
-    *name = measured ? measured : "density";
+    *name = case_state_measured(run);
     const double error = value_inner(json_object_get(run, "errors"), *name, "l1");
     if (isfinite(error)) return error;
     const json_t *scalar = value_named(json_object_get(run, "functionals"), *name);

@@ -23,6 +23,14 @@ const char *case_state(const json_t *results, const char *case_name);
 /* Writes a cell with the name of the case and a link to it. */
 void case_state_cell(struct buffer *to, const char *case_name);
 
+/* The error of a study at level i by the name of a field (L1) or of a scalar (distance from its
+ * exact value), and its finest level (NULL: none). */
+double case_state_level_error(const json_t *study, const char *name, size_t i);
+const json_t *case_state_finest(const json_t *study);
+
+/* The quantity by which a run or a study is judged. */
+const char *case_state_measured(const json_t *document);
+
 /* The error by which a run is judged: L1 of a field, or the distance of a scalar from its exact
  * value. *name: its name. */
 double case_state_error(const json_t *run, const char **name);

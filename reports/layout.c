@@ -35,18 +35,12 @@ static void include_all(struct layout_axis *axis, const double *values, size_t n
     for (size_t i = 0; values && i < n; i++) include(axis, values[i]);
 }
 
-double layout_edge(const double *centres, size_t n, size_t i, int side)
-{
-    if (n < 2) return centres[0] + 0.5 * side;
-    const size_t inner = i == 0 ? 1 : i + 1 == n ? n - 2 : side < 0 ? i - 1 : i + 1;
-    return centres[i] + side * fabs(centres[inner] - centres[i]) / 2;
-}
-
+/* Includes the cells of a heat map, up to half a cell beyond the first and the last centre. */
 static void include_cells(struct layout_axis *axis, const double *centres, size_t n)
 {
     if (!n) return;
-    include(axis, layout_edge(centres, n, 0, -1));
-    include(axis, layout_edge(centres, n, n - 1, +1));
+    include(axis, centres[0] - (n > 1 ? centres[1] - centres[0] : 1) / 2);
+    include(axis, centres[n - 1] + (n > 1 ? centres[n - 1] - centres[n - 2] : 1) / 2);
 }
 
 /* Smallest relative difference visible in a plot, or in a script whose limits have ten digits. */

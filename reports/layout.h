@@ -27,10 +27,6 @@ struct layout {
 /* At most LAYOUT_PANELS panels. */
 void layout_make(struct layout *layout, const struct plot *plot);
 
-/* Edge of cell i of n with these centres: side -1 the lower, +1 the upper one. It is half way to
- * the next centre; a single cell is 1 wide. */
-double layout_edge(const double *centres, size_t n, size_t i, int side);
-
 /* Positions of the labels at the ends of the curves: pixels[k] for series k, moved apart if they
  * would overlap; NaN for a series without a label. */
 void layout_ends(const struct layout_panel *at, const struct plot_panel *panel, double *pixels);

@@ -30,7 +30,7 @@ static void read_columns(struct buffer *to, struct page_columns *columns, const 
 {
     page_columns_read(to, columns, from, names, ENERGY);
     const double *rho = columns->of[DENSITY], *P = columns->of[PRESSURE];
-    double *u = rho && P && columns->n ? page_allocate(to, columns->n, sizeof *u) : NULL;
+    double *u = columns->n ? page_allocate(to, columns->n, sizeof *u) : NULL;
     for (size_t i = 0; u && i < columns->n; i++) u[i] = P[i] / ((gamma - 1) * rho[i]);
     columns->of[ENERGY] = u;
 }
@@ -164,7 +164,7 @@ static double contact_of(const struct curves *curves)
     const double *rho = exact->of[DENSITY], *P = exact->of[PRESSURE], *x = exact->of[X];
     double low, high, most = 0, at = (double)NAN;
     range(rho, exact->n, &low, &high);
-    for (size_t i = 0; rho && P && i + 1 < exact->n; i++) {
+    for (size_t i = 0; i + 1 < exact->n; i++) {
         const double jump = fabs(rho[i + 1] - rho[i]);
         if (jump < 0.01 * (high - low) || jump <= most || fabs(P[i + 1] - P[i]) > 1e-6 * fabs(P[i]))
             continue;
@@ -180,7 +180,7 @@ static double pressure_blip(const struct curves *curves, size_t k, double contac
     double most = (double)NAN;
     const struct page_columns *value = &curves->value[k];
     const double *P = value->of[PRESSURE], *error = curves->residual[k].of[PRESSURE];
-    for (size_t i = 0; P && error && i < value->n; i++)
+    for (size_t i = 0; i < value->n; i++)
         if (fabs(value->of[X][i] - contact) <= 4 * h)
             most = fmax(isnan(most) ? 0 : most, fabs(error[i] / (P[i] - error[i])));
     return most;

@@ -109,6 +109,15 @@ static void failing_figures(struct buffer *to, const json_t *figures, const stru
             span->failed - shown - 1);
 }
 
+/* Writes the command that computes checks again; more: its last word. */
+static void again(struct buffer *to, const json_t *verify, const char *more)
+{
+    struct buffer command = {0};
+    buffer_format(&command, "%s %s", value_text_or(verify, "reproduce", "sphproof verify"), more);
+    html_command(to, "see it again:", buffer_text(&command, to));
+    buffer_free(&command);
+}
+
 void page_checks(struct page_writer *writer, const json_t *results)
 {
     struct buffer *to = &writer->to;
@@ -122,7 +131,6 @@ void page_checks(struct page_writer *writer, const json_t *results)
     for (size_t i = 0; i < n;) {
         const json_t *leader = json_array_get(figures, i);
         const char *group = value_text(leader, "group");
-        struct buffer command = {0};
         html_format(to, "<h3>%-s</h3>\n", group);
         html_table(to, "checks", "check|#hold|nearest to its bound|#value|#bound|#floor|#of bound");
         while (i < n && !strcmp(value_text(json_array_get(figures, i), "group"),
@@ -133,10 +141,7 @@ void page_checks(struct page_writer *writer, const json_t *results)
             i = span.end;
         }
         html_table_end(to);
-        buffer_format(&command, "%s %s", value_text_or(verify, "reproduce", "sphproof verify"),
-                      group);
-        html_command(to, "see it again:", buffer_text(&command, to));
-        buffer_free(&command);
+        again(to, verify, group);
     }
     buffer_add(to, "</section>\n");
 }
@@ -185,9 +190,6 @@ void page_detection(struct page_writer *writer, const json_t *results)
     }
     html_table_end(to);
     buffer_add(to, "</details>");
-    struct buffer command = {0};
-    buffer_format(&command, "%s --mutants", value_text_or(verify, "reproduce", "sphproof verify"));
-    html_command(to, "see it again:", buffer_text(&command, to));
-    buffer_free(&command);
+    again(to, verify, "--mutants");
     buffer_add(to, "</section>\n");
 }

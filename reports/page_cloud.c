@@ -80,7 +80,7 @@ static void plot_map(struct page_writer *writer, const char *case_name, const ch
 static struct plot_heat heat_of(const struct map *map, int k)
 {
     return (struct plot_heat){
-        .nx = map->nx, .ny = map->ny, .x = map->x, .y = map->y, .z = map->z[k], .image = true};
+        .nx = map->nx, .ny = map->ny, .x = map->x, .y = map->y, .z = map->z[k]};
 }
 
 static bool has_voids(const struct map *map, int k)

@@ -39,13 +39,6 @@ static void again(struct buffer *to, const char *command)
     buffer_add(to, "</details>");
 }
 
-static double finest_n(const json_t *study)
-{
-    const json_t *levels = json_object_get(study, "levels");
-    const size_t count = json_array_size(levels);
-    return value_member(count ? json_array_get(levels, count - 1) : NULL, "n");
-}
-
 /* Writes the error at the finest level, the order with its interval, the gate and the command. */
 static void cell(struct buffer *to, const json_t *study, const json_t *run)
 {
@@ -62,8 +55,9 @@ static void cell(struct buffer *to, const json_t *study, const json_t *run)
     } else if (order) {
         page_study_name(to, order);
         html_format(to, " %f at n&#160;=&#160;%.0f<br/>order %.2f [%.2f,&#160;%.2f]",
-                    page_study_finest(study), finest_n(study), value_member(order, "order"),
-                    value_member(order, "low"), value_member(order, "high"));
+                    page_study_finest(study), value_member(case_state_finest(study), "n"),
+                    value_member(order, "order"), value_member(order, "low"),
+                    value_member(order, "high"));
     } else {
         const double error = case_state_error(run, &what);
         html_format(to, "%-s %f", what, error);

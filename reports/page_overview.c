@@ -49,13 +49,10 @@ static void row(struct buffer *to, const json_t *results, const json_t *first,
     const json_t *studies = json_object_get(results, "studies");
     const json_t *runs = json_object_get(results, "runs");
     const char *name = value_text(first, "case");
-    const json_t *levels = json_object_get(first, "levels");
     const json_t *run = case_state_find(runs, name, labels[0]);
-    case_cells(to, name, value_member(json_array_get(levels, json_array_size(levels) - 1), "n"));
+    case_cells(to, name, value_member(case_state_finest(first), "n"));
     for (size_t k = 0; k < count; k++) {
-        const json_t *study = case_state_find(studies, name, labels[k]);
-        levels = json_object_get(study, "levels");
-        const json_t *finest = json_array_get(levels, json_array_size(levels) - 1);
+        const json_t *finest = case_state_finest(case_state_find(studies, name, labels[k]));
         html_cell_number(to, value_inner(json_object_get(finest, "errors"), "density", "l1"));
     }
     end_row(to, results, name, page_study_order(first, "density", "l1"), run);

@@ -83,7 +83,6 @@ static void plot_map(struct page_writer *writer, const json_t *document, size_t 
                                    .y = y,
                                    .z = z,
                                    .label = "share asleep",
-                                   .image = true,
                                    .low = 0,
                                    .high = 1};
     const struct plot_panel panel = {.x_label = "x, in boxes",

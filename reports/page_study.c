@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "case_state.h"
 #include "html.h"
 #include "value.h"
 
@@ -75,25 +76,13 @@ void page_study_name(struct buffer *to, const json_t *order)
     html_format(to, is_scalar(order) ? "the error of %-s" : "L1(%-s)", value_text(order, "field"));
 }
 
-static double error_of(const json_t *document, const char *name, size_t i)
-{
-    const json_t *level = json_array_get(json_object_get(document, "levels"), i), *entry;
-    const double error = value_inner(json_object_get(level, "errors"), name, "l1");
-    size_t k;
-    if (isfinite(error)) return error;
-    json_array_foreach(json_object_get(document, "functionals"), k, entry)
-        if (!strcmp(value_text(entry, "name"), name))
-            return fabs(value_real(json_array_get(json_object_get(entry, "values"), i)) -
-                        value_member(entry, "exact"));
-    return error;
-}
-
 double page_study_finest(const json_t *document)
 {
     const char *names[PLOTTED];
     const size_t levels = json_array_size(json_object_get(document, "levels"));
-    return levels && read_names(document, names) ? error_of(document, names[0], levels - 1)
-                                                 : (double)NAN;
+    return levels && read_names(document, names)
+               ? case_state_level_error(document, names[0], levels - 1)
+               : (double)NAN;
 }
 
 static void fit(struct study *study, int quantity)
@@ -127,7 +116,8 @@ static void read_study(struct study *study, const json_t *document)
     json_array_foreach(json_object_get(document, "levels"), i, level) {
         if (study->levels == LEVELS) break;
         for (int q = 0; q < study->plotted; q++)
-            study->of[q].error[study->levels] = error_of(document, study->names[q], i);
+            study->of[q].error[study->levels] =
+                case_state_level_error(document, study->names[q], i);
         study->n[study->levels++] = value_member(level, "n");
     }
     for (int q = 0; q < study->plotted; q++) fit(study, q);
@@ -234,7 +224,7 @@ static void error_cell(struct buffer *to, const struct study *study, double n)
     const char *name = study->names[0];
     const double spread = value_inner(json_object_get(level, "spread"), name, "l1");
     buffer_add(to, "<td class=\"n\">");
-    html_number(to, error_of(study->document, name, i));
+    html_number(to, case_state_level_error(study->document, name, i));
     if (spread > 0.03) buffer_format(to, " ± %.0f %%", 100 * spread);
     buffer_add(to, "</td>");
 }

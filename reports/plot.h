@@ -56,7 +56,6 @@ struct plot_heat {
     size_t nx, ny;
     const double *x, *y, *z;
     const char *label; /* of the colour scale, with unit */
-    bool image;        /* equal cells: drawn as an image, saved as a bare matrix */
     bool diverging;    /* the middle of the colours is 0, with the same range for both signs */
     double low, high;  /* of the colour scale; equal: from the data */
 };

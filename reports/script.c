@@ -28,7 +28,7 @@ static void number(struct buffer *to, double value)
 }
 
 /* Writes one line per row of cells, from bottom to top. */
-static void image_data(struct buffer *to, const struct plot_heat *heat)
+static void heat_data(struct buffer *to, const struct plot_heat *heat)
 {
     buffer_format(to, "# %zu rows of %zu cells\n", heat->ny, heat->nx);
     for (size_t j = 0; j < heat->ny; j++) {
@@ -40,31 +40,6 @@ static void image_data(struct buffer *to, const struct plot_heat *heat)
                 buffer_add(to, " NaN");
         }
         buffer_add(to, "\n");
-    }
-    buffer_add(to, "\n\n");
-}
-
-static void heat_data(struct buffer *to, const struct plot_heat *heat)
-{
-    if (heat->image) {
-        image_data(to, heat);
-        return;
-    }
-    buffer_add(to, "# x y x_low x_high y_low y_high value\n");
-    for (size_t j = 0; j < heat->ny; j++) {
-        for (size_t i = 0; i < heat->nx; i++) {
-            double z = heat->z[j * heat->nx + i];
-            if (!isfinite(z)) continue;
-            const double row[] = {heat->x[i],
-                                  heat->y[j],
-                                  layout_edge(heat->x, heat->nx, i, -1),
-                                  layout_edge(heat->x, heat->nx, i, +1),
-                                  layout_edge(heat->y, heat->ny, j, -1),
-                                  layout_edge(heat->y, heat->ny, j, +1),
-                                  z};
-            for (size_t k = 0; k < sizeof row / sizeof *row; k++) number(to, row[k]);
-            buffer_add(to, "\n");
-        }
     }
     buffer_add(to, "\n\n");
 }
@@ -252,7 +227,7 @@ static const char *const blue_to_red =
 
 static const char *const next_curve = ", \\\n  ";
 
-static void image(struct buffer *to, const struct plot_heat *heat, const char *data, size_t index)
+static void heat(struct buffer *to, const struct plot_heat *heat, const char *data, size_t index)
 {
     const double dx =
         heat->nx > 1 ? (heat->x[heat->nx - 1] - heat->x[0]) / ((double)heat->nx - 1) : 1;
@@ -262,18 +237,6 @@ static void image(struct buffer *to, const struct plot_heat *heat, const char *d
                   "%s index %zu matrix using (%.10g + %.10g*$1):(%.10g + %.10g*$2):3 with image "
                   "notitle",
                   data, index, heat->x[0], dx, heat->y[0], dy);
-}
-
-static void heat(struct buffer *to, const struct plot_heat *heat, const char *data, size_t index)
-{
-    if (heat->image) {
-        image(to, heat, data, index);
-        return;
-    }
-    buffer_format(to,
-                  "%s index %zu using 1:2:3:4:5:6:7 with boxxyerror notitle fillstyle solid "
-                  "noborder linecolor palette",
-                  data, index);
 }
 
 static void curve(struct buffer *to, const struct plot_series *series, const char *data,

@@ -277,7 +277,6 @@ static enum status draw_maps(const struct run_settings *settings, const struct r
                                       .x = map.x,
                                       .y = map.y,
                                       .z = z,
-                                      .image = true,
                                       .diverging = k == MAPS - 1 && field != FIELD_VELOCITY};
         panels[k] = (struct plot_panel){.title = titles[k],
                                         .x_label = "x [length]",

@@ -1,32 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report_piece.h"
 
-#include <math.h>
 #include <string.h>
 
+#include "case_state.h"
 #include "result.h"
 #include "value.h"
-
-/* Error at level l: L1 of a field, or the distance of a functional from its exact value. */
-static double error_of(const json_t *study, const char *what, size_t l)
-{
-    const json_t *level = json_array_get(json_object_get(study, "levels"), l);
-    const json_t *functional = value_named(json_object_get(study, "functionals"), what);
-    if (!functional) return value_inner(json_object_get(level, "errors"), what, "l1");
-    return fabs(value_real(json_array_get(json_object_get(functional, "values"), l)) -
-                value_member(functional, "exact"));
-}
 
 static void add_points(const json_t *study, const char *what, json_t *points)
 {
     const json_t *level;
     size_t l;
     json_array_foreach(json_object_get(study, "levels"), l, level)
-        json_array_append_new(
-            points, result_object(
-                        "scheme=%s n=%p error=%g cpu_s=%g on_front=%p", value_text(study, "label"),
-                        (void *)json_incref(json_object_get(level, "n")), error_of(study, what, l),
-                        value_member(level, "cpu_s"), (void *)json_false()));
+        json_array_append_new(points,
+                              result_object("scheme=%s n=%p error=%g cpu_s=%g on_front=%p",
+                                            value_text(study, "label"),
+                                            (void *)json_incref(json_object_get(level, "n")),
+                                            case_state_level_error(study, what, l),
+                                            value_member(level, "cpu_s"), (void *)json_false()));
 }
 
 /* The bench document of the study's case. */
@@ -49,9 +40,7 @@ void code_cost_add(json_t *results)
     json_t *bench = json_array(), *study;
     size_t i;
     json_array_foreach(json_object_get(results, "studies"), i, study) {
-        const char *measured =
-            json_string_value(json_array_get(json_object_get(study, "measured"), 0));
-        const char *what = measured ? measured : "density";
+        const char *what = case_state_measured(study);
         json_t *document = bench_of(bench, study, what);
         json_array_append_new(json_object_get(document, "schemes"),
                               result_object("scheme=%s", value_text(study, "label")));

@@ -82,7 +82,7 @@ static int severity(const struct difference *d)
 
 static bool is_timing(const struct difference *d)
 {
-    return d->new && d->new->kind == READING_TIMING;
+    return d->new && d->new->kind == METRIC_TIMING;
 }
 
 static int worst_first(const void *a, const void *b)
@@ -110,8 +110,7 @@ static void judge(struct diff *diff, const struct metric *old, const struct metr
     d->verdict = metric_judge(old, new, &d->amount, &fault);
     if (diff->problem[0] && old && new)
         d->verdict = VERDICT_INCOMPARABLE, d->amount = 0, fault = false;
-    const bool order =
-        new &&new->kind == READING_ORDER; /* an order has its interval as threshold */
+    const bool order = new &&new->kind == METRIC_ORDER; /* an order has its interval as threshold */
     d->regression = d->verdict == VERDICT_WORSE && fault && (order || d->amount > threshold);
 }
 
@@ -167,7 +166,7 @@ static void mark_broken(struct diff *diff)
 static void mark_times(struct diff *diff)
 {
     for (size_t i = 0; i < diff->count; i++)
-        diff->list[i].left_out = diff->list[i].any->kind == READING_TIMING;
+        diff->list[i].left_out = diff->list[i].any->kind == METRIC_TIMING;
 }
 
 /* True if the documents name two different processors. */

@@ -21,7 +21,7 @@ struct difference {
 struct diff {
     struct metrics old, new;
     struct difference *list; /* regressions first, then vanished, incomparable, worse, better ... */
-    size_t count, verdicts[READING_VERDICTS], regressions;
+    size_t count, verdicts[METRIC_VERDICTS], regressions;
     size_t compared;       /* comparable figures that both documents have */
     size_t left_out;       /* figures of broken runs: only the breakdown is compared */
     size_t left_out_times; /* timings of different processors */

@@ -21,11 +21,11 @@ static double ratio_of(const struct difference *d)
 static double exact_of(const struct difference *d)
 {
     switch (d->any->kind) {
-    case READING_ERROR:
-    case READING_CHECK:
-    case READING_PART:
+    case METRIC_ERROR:
+    case METRIC_CHECK:
+    case METRIC_PART:
         return 0;
-    case READING_EXACT:
+    case METRIC_EXACT:
         return d->any->exact;
     default:
         return (double)NAN;
@@ -57,7 +57,7 @@ json_t *diff_figures_json(const struct diff *diff, size_t most)
 void diff_add_json(const struct diff *diff, json_t *document)
 {
     json_t *summary = json_object();
-    for (int v = 0; v < READING_VERDICTS; v++)
+    for (int v = 0; v < METRIC_VERDICTS; v++)
         json_object_set_new(summary, metric_verdicts[v],
                             json_integer((json_int_t)diff->verdicts[v]));
     result_add(summary, "regressions=%zu compared=%zu left_out=%zu", diff->regressions,

@@ -165,10 +165,10 @@ static json_t *since_last(const json_t *nights, const struct metrics *now)
     const json_t *last = json_array_get(nights, count - 2),
                  *figures = json_object_get(last, "figures");
     json_t *moved = json_array();
-    size_t verdicts[READING_VERDICTS] = {0};
+    size_t verdicts[METRIC_VERDICTS] = {0};
     for (size_t i = 0; i < now->count; i++) {
         const struct metric *new = &now->list[i];
-        if (!new->headline || new->kind == READING_TIMING) continue;
+        if (!new->headline || new->kind == METRIC_TIMING) continue;
         const json_t *value = json_object_get(figures, new->path);
         struct metric old = *new;
         double amount;
@@ -185,11 +185,11 @@ static json_t *since_last(const json_t *nights, const struct metrics *now)
                           (void *)(value ? value_of(&old) : json_null()), (void *)value_of(new),
                           (void *)(isfinite(ratio) ? result_number(ratio) : json_null()),
                           metric_verdicts[verdict], fault && amount > DIFF_THRESHOLD,
-                          new->kind == READING_COUNT));
+                          new->kind == METRIC_COUNT));
     }
     json_t *since = result_object("date=%s git=%s figures=%p", value_text(last, "date"),
                                   value_text(last, "git"), (void *)sorted(moved, worst_first));
-    for (int v = 0; v < READING_VERDICTS; v++)
+    for (int v = 0; v < METRIC_VERDICTS; v++)
         json_object_set_new(since, metric_verdicts[v], json_integer((json_int_t)verdicts[v]));
     return since;
 }
@@ -257,7 +257,7 @@ static json_t *trends(const json_t *nights, const json_t *results)
 static json_t *change_json(const struct metric *metric, const json_t *nights, const size_t *night,
                            const struct trend_change *change)
 {
-    const bool order = metric->kind == READING_ORDER;
+    const bool order = metric->kind == METRIC_ORDER;
     const double before = order ? change->before : exp(change->before),
                  after = order ? change->after : exp(change->after);
     const json_t *at = json_array_get(nights, night[change->at]),
@@ -275,7 +275,7 @@ static void add_changes(const struct metric *metric, const json_t *nights, json_
     double value[HISTORY_NIGHTS_MAX];
     size_t night[HISTORY_NIGHTS_MAX], n = 0;
     struct trend_change found[HISTORY_NIGHTS_MAX]; /* at most one per night */
-    const bool order = metric->kind == READING_ORDER;
+    const bool order = metric->kind == METRIC_ORDER;
     for (size_t i = 0; i < json_array_size(nights); i++) {
         const json_t *figures = json_object_get(json_array_get(nights, i), "figures");
         const double now = value_member(figures, metric->path);
@@ -323,8 +323,7 @@ enum status history_tell(const json_t *results, const char *path, json_t **histo
         json_array_append(nights, line);
         for (size_t i = 0; i < metrics.count; i++) {
             const struct metric *metric = &metrics.list[i];
-            if (metric->headline &&
-                (metric->kind == READING_ERROR || metric->kind == READING_ORDER))
+            if (metric->headline && (metric->kind == METRIC_ERROR || metric->kind == METRIC_ORDER))
                 add_changes(metric, nights, changes);
         }
         *history =

@@ -67,18 +67,18 @@ static double exact_of(const json_t *parent, const char *name)
 /* Sets a figure's noise from other members of the same object. */
 static void refine(struct metric *metric, const json_t *parent, const char *name)
 {
-    if (metric->kind == READING_ORDER) {
+    if (metric->kind == METRIC_ORDER) {
         const double half = (value_member(parent, "high") - value_member(parent, "low")) / 2;
         if (half > metric->noise) metric->noise = half;
     }
-    if (metric->kind == READING_CHECK && value_member(parent, "floor") >= 0)
+    if (metric->kind == METRIC_CHECK && value_member(parent, "floor") >= 0)
         metric->floor = fmax(metric->floor, check_floors * value_member(parent, "floor"));
-    if (metric->kind == READING_PART && isfinite(value_member(parent, "predicted"))) {
-        metric->kind = READING_EXACT;
+    if (metric->kind == METRIC_PART && isfinite(value_member(parent, "predicted"))) {
+        metric->kind = METRIC_EXACT;
         metric->exact = value_member(parent, "predicted");
-    } else if (metric->kind == READING_EXACT) {
+    } else if (metric->kind == METRIC_EXACT) {
         metric->exact = exact_of(parent, name);
-        if (!isfinite(metric->exact)) metric->kind = READING_NEUTRAL;
+        if (!isfinite(metric->exact)) metric->kind = METRIC_NEUTRAL;
     }
 }
 
@@ -104,7 +104,7 @@ static bool is_headline(const struct place *at, const json_t *parent, const char
                                         "particle_mean", "class", "suspicion"};
     const char *norm = json_string_value(json_object_get(parent, "norm"));
     return !one_of(name, minor, LENGTH(minor)) && (!norm || !strcmp(norm, "l1")) &&
-           metric->kind != READING_NEUTRAL &&
+           metric->kind != METRIC_NEUTRAL &&
            !metric_passes(at->path, "kernels verify budget budgets");
 }
 
@@ -127,16 +127,16 @@ static void take(struct metrics *metrics, const struct place *at, const json_t *
                             .noise = rule->noise,
                             .floor = rule->floor,
                             .rank = at->rank};
-    if (rule->kind == READING_STATUS) {
+    if (rule->kind == METRIC_STATUS) {
         if (truth) word = json_is_true(value) ? "true" : "false";
         if (!word) return;
         metric.word = (char *)word;
     } else if (number) {
         metric.value = value_real(value);
-        if (rule->kind == READING_ERROR && metric.value < 0)
+        if (rule->kind == METRIC_ERROR && metric.value < 0)
             note_trouble(metrics, path, "a negative error");
         refine(&metric, parent, name);
-        if (at->level && at->field && rule->kind == READING_ERROR)
+        if (at->level && at->field && rule->kind == METRIC_ERROR)
             metric.noise = fmax(metric.noise, level_noise(at->level, at->field, name));
     } else {
         return;
@@ -332,7 +332,7 @@ static void join_alike(struct metrics *metrics)
         size_t worst = i;
         for (next = i + 1; next < metrics->count; next++) {
             if (strcmp(list[next].path, list[i].path) != 0) break;
-            if (list[worst].kind == READING_NEUTRAL)
+            if (list[worst].kind == METRIC_NEUTRAL)
                 note_trouble(metrics, list[i].path, "nothing tells several entries apart");
             if (metric_worse(&list[next], &list[worst])) worst = next;
         }

@@ -11,15 +11,15 @@
 #include "status.h"
 
 enum metric_kind {
-    READING_ERROR,   /* less is better; noise is relative */
-    READING_CHECK,   /* less is better, factors below 3 are noise; the check has its own status */
-    READING_ORDER,   /* more is better; noise is absolute */
-    READING_PART,    /* less is better, but its whole is judged instead: never a fault */
-    READING_EXACT,   /* closer to `exact` is better; noise is relative to the distance */
-    READING_COUNT,   /* amount of work: less is better, never a fault; noise is relative */
-    READING_TIMING,  /* less is better, never a fault; noise is a ratio */
-    READING_STATUS,  /* a word */
-    READING_NEUTRAL, /* no direction is better: every change is reported */
+    METRIC_ERROR,   /* less is better; noise is relative */
+    METRIC_CHECK,   /* less is better, factors below 3 are noise; the check has its own status */
+    METRIC_ORDER,   /* more is better; noise is absolute */
+    METRIC_PART,    /* less is better, but its whole is judged instead: never a fault */
+    METRIC_EXACT,   /* closer to `exact` is better; noise is relative to the distance */
+    METRIC_COUNT,   /* amount of work: less is better, never a fault; noise is relative */
+    METRIC_TIMING,  /* less is better, never a fault; noise is a ratio */
+    METRIC_STATUS,  /* a word */
+    METRIC_NEUTRAL, /* no direction is better: every change is reported */
 };
 
 struct metric {
@@ -27,7 +27,7 @@ struct metric {
     enum metric_kind kind;
     double value;               /* NaN for a word */
     double noise, floor, exact; /* values below the floor are equal */
-    char *word;                 /* for READING_STATUS, else NULL */
+    char *word;                 /* for METRIC_STATUS, else NULL */
     double rank;                /* rank of the check it belongs to; infinite: none */
     size_t number;              /* position in the document */
     bool headline;              /* kept in the history */
@@ -53,8 +53,8 @@ enum metric_verdict {
     VERDICT_VANISHED,     /* only the old document has it */
     VERDICT_NEW,          /* only the new one has it */
 };
-enum { READING_VERDICTS = VERDICT_NEW + 1 };
-extern const char *const metric_verdicts[READING_VERDICTS];
+enum { METRIC_VERDICTS = VERDICT_NEW + 1 };
+extern const char *const metric_verdicts[METRIC_VERDICTS];
 
 /* Judges the change of a metric; old or new may be NULL. *amount: how much worse it is, relative to
  * the old value (absolute for an order); infinite if a word or a finite number was lost; 0 unless

@@ -10,8 +10,8 @@ static const double timing_least = 0.02;
 /* Changes of a check's value within this factor are noise. */
 static const double check_factor = 3;
 
-const char *const metric_verdicts[READING_VERDICTS] = {"same",         "better",   "worse",
-                                                       "incomparable", "vanished", "new"};
+const char *const metric_verdicts[METRIC_VERDICTS] = {"same",         "better",   "worse",
+                                                      "incomparable", "vanished", "new"};
 
 /* Severity of a word; -1: unknown. From FAULT on it is a fault. */
 enum { FAULT = 3 };
@@ -73,25 +73,25 @@ static enum metric_verdict judge_number(const struct metric *old, const struct m
     const double a = old->value, b = new->value, noise = fmax(old->noise, new->noise);
     const double floor = fmax(old->floor, new->floor);
     switch (new->kind) {
-    case READING_ERROR:
+    case METRIC_ERROR:
         *fault = true;
         return judge_less(a, b, noise, floor, amount);
-    case READING_CHECK:
+    case METRIC_CHECK:
         return judge_less(a, b, check_factor - 1, floor, amount) == VERDICT_WORSE ? VERDICT_WORSE
                : b * check_factor < a && a > floor                                ? VERDICT_BETTER
                                                                                   : VERDICT_SAME;
-    case READING_EXACT:
+    case METRIC_EXACT:
         return judge_less(fabs(a - old->exact), fabs(b - new->exact), noise,
                           floor * (1 + fabs(new->exact)), amount);
-    case READING_COUNT:
-    case READING_PART:
+    case METRIC_COUNT:
+    case METRIC_PART:
         return judge_less(a, b, noise, floor, amount);
-    case READING_TIMING:
+    case METRIC_TIMING:
         if (fabs(b - a) < timing_least || (b < noise * a && a < noise * b)) return VERDICT_SAME;
         if (b < a) return VERDICT_BETTER;
         *amount = b / a;
         return VERDICT_WORSE;
-    case READING_ORDER:
+    case METRIC_ORDER:
         if (fabs(b - a) <= hypot(old->noise, new->noise)) return VERDICT_SAME;
         if (b > a) return VERDICT_BETTER;
         *amount = a - b;
@@ -114,10 +114,10 @@ enum metric_verdict metric_judge(const struct metric *old, const struct metric *
     const double a = old->value, b = new->value;
     if (a == b || (isnan(a) && isnan(b))) return VERDICT_SAME;
     if (isfinite(a) && isfinite(b)) return judge_number(old, new, amount, fault);
-    if (new->kind == READING_NEUTRAL) return VERDICT_INCOMPARABLE;
+    if (new->kind == METRIC_NEUTRAL) return VERDICT_INCOMPARABLE;
     if (isfinite(b)) return VERDICT_BETTER;
     *amount = (double)INFINITY;
-    *fault = new->kind == READING_ERROR;
+    *fault = new->kind == METRIC_ERROR;
     return VERDICT_WORSE;
 }
 
@@ -127,11 +127,11 @@ bool metric_worse(const struct metric *a, const struct metric *b)
     if (a->word) return rank(a->word, is_suspicion(a)) > rank(b->word, is_suspicion(b));
     if (isnan(a->value) || isnan(b->value)) return isnan(a->value) && !isnan(b->value);
     switch (a->kind) {
-    case READING_NEUTRAL:
+    case METRIC_NEUTRAL:
         return false;
-    case READING_ORDER:
+    case METRIC_ORDER:
         return a->value < b->value;
-    case READING_EXACT:
+    case METRIC_EXACT:
         return fabs(a->value - a->exact) > fabs(b->value - b->exact);
     default:
         return a->value > b->value;

@@ -84,7 +84,7 @@ static void add_printed(struct buffer *to, const struct diff *diff, bool exact, 
     fclose(file);
 }
 
-static void add_readings(struct buffer *to, const json_t *document)
+static void add_metrics(struct buffer *to, const json_t *document)
 {
     struct metrics metrics;
     struct error error = {0};
@@ -113,7 +113,7 @@ TEST(diffs)
         json_t *old = drawn_document(&draw, kind),
                *new = drawn_below(&draw, 6) ? changed(&draw, old, "") : drawn_document(&draw, kind);
         if (!drawn_below(&draw, 15)) json_object_set_new(new, "command", json_string("kernel"));
-        add_readings(&text, old);
+        add_metrics(&text, old);
         const enum status status = diff_documents(old, new, DIFF_THRESHOLD, &diff, &error);
         buffer_format(&text, "%d %s\n", status, error.message);
         if (status == STATUS_OK || status == STATUS_CHECK_FAILED) {

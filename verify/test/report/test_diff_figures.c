@@ -107,28 +107,28 @@ TEST(limits)
         enum metric_verdict verdict;
         double worse; /* by so much */
     } rows[] = {
-        {READING_ERROR, 1, 0.5, 0, 0, 1, 0, VERDICT_SAME, 0},
-        {READING_ERROR, 0.5, 1, 0, 0, 1, 0, VERDICT_SAME, 0},
-        {READING_ERROR, 1, 1.5, 0.5, 0, 0, 0, VERDICT_SAME, 0},
-        {READING_ERROR, 1, 1.75, 0.5, 0, 0, 0, VERDICT_WORSE, 0.75},
-        {READING_CHECK, 1, 0.25, 0, 0, 1, 0, VERDICT_SAME, 0},
-        {READING_CHECK, 1, 0.25, 0, 0, 0.5, 0, VERDICT_BETTER, 0},
-        {READING_CHECK, 3, 1, 0, 0, 0, 0, VERDICT_SAME, 0},
-        {READING_CHECK, 1, 3, 0, 0, 0, 0, VERDICT_SAME, 0},
-        {READING_ERROR, 2, 5, 0.5, 0, 1, 0, VERDICT_WORSE, 1.5},
-        {READING_ERROR, 0.5, 5, 0.5, 0, 2, 0, VERDICT_WORSE, 1.5},
-        {READING_CHECK, 2, 7, 0, 0, 0, 0, VERDICT_WORSE, 2.5},
-        {READING_PART, 2, 3, 0.25, 0, 0, 0, VERDICT_WORSE, 0.5},
-        {READING_COUNT, 2, 3, 0.25, 0, 0, 0, VERDICT_WORSE, 0.5},
-        {READING_EXACT, 4, 6, 0.5, 0, 0, 3, VERDICT_WORSE, 2},
-        {READING_EXACT, 7, 4, 0, 0, 1, 3, VERDICT_SAME, 0},
-        {READING_EXACT, 7.5, 4, 0, 0, 1, 3, VERDICT_BETTER, 0},
-        {READING_TIMING, 2, 3, 1.5, 0, 0, 0, VERDICT_WORSE, 1.5},
-        {READING_TIMING, 3, 2, 1.5, 0, 0, 0, VERDICT_BETTER, 0},
-        {READING_ORDER, 2, 1.375, 0.375, 0.5, 0, 0, VERDICT_SAME, 0},
-        {READING_ORDER, 2, 1.25, 0.375, 0.5, 0, 0, VERDICT_WORSE, 0.75},
-        {READING_NEUTRAL, -2, -1, 0.5, 0, 0, 0, VERDICT_SAME, 0},
-        {READING_NEUTRAL, -2, -1, 0, 0, 1, 0, VERDICT_SAME, 0},
+        {METRIC_ERROR, 1, 0.5, 0, 0, 1, 0, VERDICT_SAME, 0},
+        {METRIC_ERROR, 0.5, 1, 0, 0, 1, 0, VERDICT_SAME, 0},
+        {METRIC_ERROR, 1, 1.5, 0.5, 0, 0, 0, VERDICT_SAME, 0},
+        {METRIC_ERROR, 1, 1.75, 0.5, 0, 0, 0, VERDICT_WORSE, 0.75},
+        {METRIC_CHECK, 1, 0.25, 0, 0, 1, 0, VERDICT_SAME, 0},
+        {METRIC_CHECK, 1, 0.25, 0, 0, 0.5, 0, VERDICT_BETTER, 0},
+        {METRIC_CHECK, 3, 1, 0, 0, 0, 0, VERDICT_SAME, 0},
+        {METRIC_CHECK, 1, 3, 0, 0, 0, 0, VERDICT_SAME, 0},
+        {METRIC_ERROR, 2, 5, 0.5, 0, 1, 0, VERDICT_WORSE, 1.5},
+        {METRIC_ERROR, 0.5, 5, 0.5, 0, 2, 0, VERDICT_WORSE, 1.5},
+        {METRIC_CHECK, 2, 7, 0, 0, 0, 0, VERDICT_WORSE, 2.5},
+        {METRIC_PART, 2, 3, 0.25, 0, 0, 0, VERDICT_WORSE, 0.5},
+        {METRIC_COUNT, 2, 3, 0.25, 0, 0, 0, VERDICT_WORSE, 0.5},
+        {METRIC_EXACT, 4, 6, 0.5, 0, 0, 3, VERDICT_WORSE, 2},
+        {METRIC_EXACT, 7, 4, 0, 0, 1, 3, VERDICT_SAME, 0},
+        {METRIC_EXACT, 7.5, 4, 0, 0, 1, 3, VERDICT_BETTER, 0},
+        {METRIC_TIMING, 2, 3, 1.5, 0, 0, 0, VERDICT_WORSE, 1.5},
+        {METRIC_TIMING, 3, 2, 1.5, 0, 0, 0, VERDICT_BETTER, 0},
+        {METRIC_ORDER, 2, 1.375, 0.375, 0.5, 0, 0, VERDICT_SAME, 0},
+        {METRIC_ORDER, 2, 1.25, 0.375, 0.5, 0, 0, VERDICT_WORSE, 0.75},
+        {METRIC_NEUTRAL, -2, -1, 0.5, 0, 0, 0, VERDICT_SAME, 0},
+        {METRIC_NEUTRAL, -2, -1, 0, 0, 1, 0, VERDICT_SAME, 0},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct metric old = {.kind = rows[k].kind,
@@ -144,10 +144,10 @@ TEST(limits)
             fail_msg("row %zu: worse by %g", k, amount);
     }
     /* among equal verdicts a word is worse than a number */
-    const struct metric number = {.kind = READING_PART, .value = 1},
+    const struct metric number = {.kind = METRIC_PART, .value = 1},
                         word = {.path = "status", .word = "pass"};
     assert_true(metric_worse(&word, &number) && !metric_worse(&number, &word));
-    const struct metric nan = {.kind = READING_PART, .value = NAN};
+    const struct metric nan = {.kind = METRIC_PART, .value = NAN};
     assert_true(metric_worse(&nan, &number) && !metric_worse(&number, &nan));
     assert_false(metric_worse(&nan, &nan));
 }
@@ -300,89 +300,4 @@ TEST(totals_and_parts)
                 diff_free(&diff);
                 json_decref(old), json_decref(new);
             }
-}
-
-/* ---- lists ---- */
-
-/* Two of the same rank, and one without rank (0). */
-static const struct {
-    const char *group, *name;
-    int rank;
-} checks[] = {{"kernels", "derivative", 150}, {"kernels", "support", 101}, {"norms", "sum", 650},
-              {"hydro", "rates", 101},        {"gradients", "order", 250}, {"none", "such", 0}};
-enum { CHECKS = sizeof checks / sizeof *checks };
-
-/* Random lists of checks and figures of all kinds: good, bad or missing, before and after. */
-static void drawn(json_t *document)
-{
-    json_t *list = json_array(), *studies = json_array();
-    for (size_t f = 0; f < KINDS; f++) {
-        const int draw = rand() % 5;
-        if (draw) add_figure(document, &kinds[f], draw < 3 ? kinds[f].good : kinds[f].bad);
-    }
-    for (size_t c = 0; c < CHECKS; c++)
-        for (int subject = 0; subject < 2; subject++) {
-            char name[] = "a";
-            name[0] = (char)('a' + subject);
-            if (rand() % 6 == 0) continue;
-            const bool fails = rand() % 3 == 0;
-            json_t *entry = json_pack("{s:s, s:s, s:s, s:f, s:f, s:f, s:s}", "group",
-                                      checks[c].group, "name", checks[c].name, "subject", name,
-                                      "value", (fails ? 10. : 0.1) * (double)(1 << rand() % 4),
-                                      "bound", 1., "floor", 0., "status", fails ? "fail" : "pass");
-            if (checks[c].rank) json_object_set_new(entry, "rank", json_integer(checks[c].rank));
-            json_array_append_new(list, entry);
-        }
-    for (int s = 0; s < 6; s++) {
-        char label[32];
-        snprintf(label, sizeof label, "label %d", s);
-        if (rand() % 6 == 0) continue;
-        json_array_append_new(
-            studies, json_pack("{s:s, s:s, s:{s:{s:f, s:f, s:f}}, s:{s:f}}", "case", "sod", "label",
-                               label, "errors", "density", "l1", 1e-3 * (1 + rand() % 3),
-                               "l1_whole", 1e-3 * (1 + rand() % 3), "linf", 0.1 * (1 + rand() % 3),
-                               "cost", "cpu_s", 1. + rand() % 5));
-    }
-    json_object_set_new(document, "checks", list);
-    json_object_set_new(document, "studies", studies);
-}
-
-/* A figure that vanishes in one direction is new in the other one; the same figure stays the
- * same. */
-TEST(diffs_in_both_directions)
-{
-    static const enum metric_verdict back[] = {
-        [VERDICT_SAME] = VERDICT_SAME,    [VERDICT_BETTER] = VERDICT_WORSE,
-        [VERDICT_WORSE] = VERDICT_BETTER, [VERDICT_INCOMPARABLE] = VERDICT_INCOMPARABLE,
-        [VERDICT_VANISHED] = VERDICT_NEW, [VERDICT_NEW] = VERDICT_VANISHED,
-    };
-    srand(4);
-    for (int draw = 0; draw < 100; draw++) {
-        json_t *old = json_pack("{s:s, s:f}", "command", "report", "error_l1", 1.),
-               *new = json_deep_copy(old);
-        struct diff one, other;
-        drawn(old), drawn(new);
-        const enum status status = differ(old, new, &one);
-        differ(new, old, &other);
-        assert_int_equal(one.count, other.count);
-        size_t verdicts[READING_VERDICTS] = {0}, regressions = 0, compared = 0;
-        for (size_t i = 0; i < one.count; i++) {
-            const struct difference *d = &one.list[i], *e = find(&other, d->any->path);
-            assert_non_null(e);
-            if (strcmp(d->any->path, "normalisation"))
-                assert_int_equal(e->verdict, back[d->verdict]);
-            verdicts[d->verdict]++;
-            regressions += d->regression;
-            compared += d->old && d->new &&
-                        (d->new->word || !(isnan(d->old->value) && isnan(d->new->value)));
-        }
-        assert_memory_equal(one.verdicts, verdicts, sizeof verdicts);
-        assert_int_equal(one.regressions, regressions);
-        assert_int_equal(one.compared, compared);
-        assert_int_equal(one.well, !regressions && !verdicts[VERDICT_VANISHED] &&
-                                       !verdicts[VERDICT_INCOMPARABLE]);
-        assert_int_equal(status, one.well ? STATUS_OK : STATUS_CHECK_FAILED);
-        diff_free(&one), diff_free(&other);
-        json_decref(old), json_decref(new);
-    }
 }

@@ -7,25 +7,35 @@
 #include "result.h"
 #include "verdict.h"
 
+/* The whole page of these results, which it takes over. */
+static char *page_of(json_t *results)
+{
+    struct page made;
+    size_t sealed;
+    char fault[256];
+    json_object_set_new(results, "verdict", verdict_make(results));
+    assert_true(page_make(&made, results));
+    char *whole = markup_unsealed(made.html, &sealed);
+    if (!markup_well_formed(whole, fault, sizeof fault)) fail_msg("%s", fault);
+    page_free(&made);
+    json_decref(results);
+    return whole;
+}
+
 /* For a failed check the page shows the worst figure and 20 more, then the number of figures. */
 TEST(failing_figures)
 {
     for (int failing = 1; failing < 24; failing++) {
-        json_t *results = json_object(), *checks = json_array();
-        struct page made;
-        size_t sealed, shown = 0;
-        char more[64], fault[256];
+        json_t *checks = json_array();
+        size_t shown = 0;
+        char more[64];
         for (int i = 0; i <= failing; i++)
             json_array_append_new(checks,
                                   json_pack("{s:s, s:s, s:s, s:s, s:f, s:f, s:f, s:s}", "group",
                                             "kernels", "name", "support", "property", "ends",
                                             "subject", "a", "value", i ? 2. : 0.5, "bound", 1.,
                                             "floor", 0., "status", i ? "fail" : "pass"));
-        json_object_set_new(results, "verify", json_pack("{s:o}", "checks", checks));
-        json_object_set_new(results, "verdict", verdict_make(results));
-        assert_true(page_make(&made, results));
-        char *whole = markup_unsealed(made.html, &sealed);
-        if (!markup_well_formed(whole, fault, sizeof fault)) fail_msg("%s", fault);
+        char *whole = page_of(json_pack("{s:{s:o}}", "verify", "checks", checks));
         for (const char *at = whole; (at = strstr(at, "… and</td>")); at++) shown++;
         snprintf(more, sizeof more, "… and %d more failing figures", failing - 21);
         assert_int_equal(shown, failing < 21 ? failing - 1 : 20);
@@ -33,8 +43,6 @@ TEST(failing_figures)
         assert_int_equal(strstr(whole, "more failing figures") != NULL, failing > 21);
         assert_non_null(strstr(whole, ">1 of "));
         free(whole);
-        page_free(&made);
-        json_decref(results);
     }
 }
 
@@ -55,21 +63,14 @@ TEST(shares_of_a_bound)
                 {1000, "> 1000 times", "over"},
                 {(double)NAN, "—", "over"}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        json_t *results = json_pack("{s:{s:[{s:s, s:s, s:o, s:f, s:s}]}}", "verify", "checks",
-                                    "group", "kernels", "name", "support", "value",
-                                    result_number(rows[k].value), "bound", 1., "status", "pass");
-        struct page made;
-        size_t sealed;
         char cell[120];
-        json_object_set_new(results, "verdict", verdict_make(results));
-        assert_true(page_make(&made, results));
-        char *whole = markup_unsealed(made.html, &sealed);
+        char *whole = page_of(json_pack(
+            "{s:{s:[{s:s, s:s, s:o, s:f, s:s}]}}", "verify", "checks", "group", "kernels", "name",
+            "support", "value", result_number(rows[k].value), "bound", 1., "status", "pass"));
         snprintf(cell, sizeof cell, "<td class=\"n\">%s<span class=\"margin\"><i class=\"%s\"",
                  rows[k].words, rows[k].color);
         if (!strstr(whole, cell)) fail_msg("%g is not %s", rows[k].value, cell);
         free(whole);
-        page_free(&made);
-        json_decref(results);
     }
 }
 
@@ -87,9 +88,7 @@ TEST(changes_of_one_subject)
     static const int orders[][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1},
                                     {2, 1, 0}, {0, 1, 0}, {1, 0, 0}, {0, 3, 2}, {2, 0, 3}};
     for (size_t o = 0; o < sizeof orders / sizeof *orders; o++) {
-        json_t *results = json_object(), *figures = json_array();
-        struct page made;
-        size_t sealed;
+        json_t *figures = json_array();
         int most = 0;
         for (int i = 0; i < 3; i++) {
             const int k = orders[o][i];
@@ -98,20 +97,14 @@ TEST(changes_of_one_subject)
                 figures, result_object("path=%s old=%g new=%g ratio=%g verdict=%s", changes[k].path,
                                        1., 2., changes[k].ratio, "worse"));
         }
-        json_object_set_new(results, "history",
-                            json_pack("{s:{s:s, s:s, s:o, s:i, s:i, s:i}}", "since", "git", "abc",
-                                      "date", "2026-01-31T12:00:00Z", "figures", figures, "worse",
-                                      3, "better", 0, "same", 0));
-        json_object_set_new(results, "verdict", verdict_make(results));
-        assert_true(page_make(&made, results));
-        char *whole = markup_unsealed(made.html, &sealed);
+        char *whole = page_of(json_pack("{s:{s:{s:s, s:s, s:o, s:i, s:i, s:i}}}", "history",
+                                        "since", "git", "abc", "date", "2026-01-31T12:00:00Z",
+                                        "figures", figures, "worse", 3, "better", 0, "same", 0));
         for (int k = 0; k < 4; k++) {
             char row[120];
             snprintf(row, sizeof row, "<td>%s<br/>and 2 more of the same", changes[k].path);
             assert_int_equal(strstr(whole, row) != NULL, k == most);
         }
         free(whole);
-        page_free(&made);
-        json_decref(results);
     }
 }

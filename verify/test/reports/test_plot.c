@@ -534,7 +534,7 @@ TEST(images)
 {
     static const double left[] = {0.5, 1.5, 2.5}, up[] = {1, 3}, z[] = {-1, 2, 3, 4, NAN, 6};
     const struct plot_heat image = {
-        .nx = 3, .ny = 2, .x = left, .y = up, .z = z, .image = true, .diverging = true};
+        .nx = 3, .ny = 2, .x = left, .y = up, .z = z, .diverging = true};
     const struct plot_panel one = {.heat = &image, .equal = true, .own_x = true};
     const struct plot_panel two[] = {one, one};
     const struct plot plot = {.name = "image",

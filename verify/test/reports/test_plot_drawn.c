@@ -62,7 +62,7 @@ static void draw_heat(struct drawing *draw, struct drawn *d, size_t p)
     numbers(draw, d->z[p], heat->nx * heat->ny);
     heat->x = x, heat->y = y, heat->z = d->z[p];
     heat->label = words(draw);
-    heat->image = toss(draw, 2), heat->diverging = toss(draw, 4);
+    heat->diverging = toss(draw, 4);
     if (toss(draw, 3)) heat->low = -drawn_real(draw), heat->high = drawn_real(draw);
 }
 

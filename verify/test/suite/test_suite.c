@@ -3,11 +3,8 @@
  * registry is in order. Arguments: the groups that meson runs, one test each. */
 #include "test.h"
 
-#include <unistd.h>
-
 #include "check_registry.h"
 #include "sample_checks.h"
-#include "suite_output.h"
 #include "worst.h"
 
 static struct suite run(const struct check *check, bool mutants, enum status expected)
@@ -18,65 +15,28 @@ static struct suite run(const struct check *check, bool mutants, enum status exp
     return suite;
 }
 
-TEST(good_checks)
+TEST(counts)
 {
-    struct suite suite = run(&good, true, STATUS_OK);
-    assert_int_equal(suite.passed, 1);
-    assert_int_equal(suite.failed, 0);
-    assert_int_equal(suite.mutants, 2);
-    assert_int_equal(suite.mutants_detected, 2);
-    assert_int_equal(suite.series_count, 0);
-    suite_free(&suite);
-}
-
-/* A check kept by another process is joined; one kept without any figure is refused. */
-TEST(join)
-{
-    const struct check *const checks[] = {&good};
-    struct error error;
-    struct suite suite = run(&good, false, STATUS_OK);
-    const size_t figures = suite.figure_count;
-    json_t *document = suite_keep(&suite);
-    suite_free(&suite);
-    const json_t *const documents[] = {document};
-    assert_int_equal(suite_join(&suite, checks, documents, 1, &error), STATUS_OK);
-    assert_true(figures > 0 && suite.figure_count == figures);
-    suite_free(&suite);
-    json_array_clear(json_object_get(document, "checks"));
-    assert_int_equal(suite_join(&suite, checks, documents, 1, &error), STATUS_ENVIRONMENT);
-    assert_non_null(strstr(error.message, good.name));
-    json_decref(document);
-}
-
-TEST(failing_checks)
-{
-    struct suite suite = run(&failing, false, STATUS_CHECK_FAILED);
-    assert_int_equal(suite.passed, 1);
-    assert_int_equal(suite.failed, 2);
-    assert_int_equal(suite.series_count, 3);
-    suite_free(&suite);
-}
-
-TEST(undetected_mutant)
-{
-    struct suite suite = run(&leaky, true, STATUS_CHECK_FAILED);
-    assert_int_equal(suite.failed, 0);
-    assert_int_equal(suite.mutants, 2);
-    assert_int_equal(suite.mutants_detected, 1);
-    suite_free(&suite);
-}
-
-TEST(vacuous_checks)
-{
-    struct suite suite = run(&vacuous, true, STATUS_CHECK_FAILED);
-    assert_int_equal(suite.failed, 1);
-    assert_non_null(strstr(suite.figures[1].subject, "vacuous"));
-    suite_free(&suite);
-    suite = run(&bare, true, STATUS_CHECK_FAILED);
-    assert_int_equal(suite.failed, 1);
-    suite_free(&suite);
-    suite = run(&bare, false, STATUS_OK);
-    suite_free(&suite);
+    static const struct {
+        const struct check *check;
+        bool mutants;
+        enum status status;
+        size_t passed, failed, mutant_count, detected, series;
+    } rows[] = {{&good, true, STATUS_OK, 1, 0, 2, 2, 0},
+                {&failing, false, STATUS_CHECK_FAILED, 1, 2, 0, 0, 3},
+                {&leaky, true, STATUS_CHECK_FAILED, 1, 0, 2, 1, 0},
+                {&vacuous, true, STATUS_CHECK_FAILED, 1, 1, 1, 0, 0},
+                {&bare, true, STATUS_CHECK_FAILED, 1, 1, 0, 0, 0},
+                {&bare, false, STATUS_OK, 1, 0, 0, 0, 0}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct suite suite = run(rows[k].check, rows[k].mutants, rows[k].status);
+        assert_int_equal(suite.passed, rows[k].passed);
+        assert_int_equal(suite.failed, rows[k].failed);
+        assert_int_equal(suite.mutants, rows[k].mutant_count);
+        assert_int_equal(suite.mutants_detected, rows[k].detected);
+        assert_int_equal(suite.series_count, rows[k].series);
+        suite_free(&suite);
+    }
 }
 
 static const double nothing = 0.25, something = 0.5;
@@ -103,29 +63,34 @@ static void skips(struct check_run *run, const void *subject)
     check_skip(run, "not today");
 }
 
-static void expect_one_failure(const struct check *check, const char *says)
+/* Figures of the harness itself have the value 1 and the bound 0. */
+static void expect_one_failure(const struct check *check, bool mutants, const char *says)
 {
-    struct suite suite = run(check, false, STATUS_CHECK_FAILED);
+    struct suite suite = run(check, mutants, STATUS_CHECK_FAILED);
     assert_int_equal(suite.failed, 1);
     const struct figure *last = &suite.figures[suite.figure_count - 1];
     assert_int_equal(last->status, FINDING_FAIL);
+    assert_true(last->value == 1 && last->bound == 0 && last->floor == 0);
+    assert_memory_equal(last->subject, "harness: ", 9);
     assert_non_null(strstr(last->subject, says));
     suite_free(&suite);
 }
 
-/* Checks without a subject, without figures for all subjects or for one, and one that skips all. */
+/* Checks without a subject, without figures for all subjects or for one, one that skips all, and
+ * one that rejects no mutant. */
 TEST(measures_nothing)
 {
     struct check silent = failing;
     silent.subjects = nothing_subject;
-    expect_one_failure(&silent, "nothing at all");
+    expect_one_failure(&silent, false, "nothing at all");
     silent.subjects = no_subjects;
-    expect_one_failure(&silent, "nothing at all");
+    expect_one_failure(&silent, false, "nothing at all");
     silent.subjects = something_and_nothing;
-    expect_one_failure(&silent, "subject 2 of 2");
+    expect_one_failure(&silent, false, "subject 2 of 2");
     silent = good;
     silent.measure = skips;
-    expect_one_failure(&silent, "skipped all 1");
+    expect_one_failure(&silent, false, "skipped all 1");
+    expect_one_failure(&vacuous, true, "vacuous");
 }
 
 /* More subjects than any array of a plausible fixed size. */
@@ -324,27 +289,14 @@ static void skips_then_measures(struct check_run *run, const void *subject)
     check_measure(run, 0, 1, 0, "but this");
 }
 
-/* One measured figure suffices; figures of the harness itself have the value 1 and the bound 0. */
-TEST(harness_figures)
+/* One measured figure suffices. */
+TEST(one_figure)
 {
     struct check late = bare;
     late.measure = skips_then_measures;
     struct suite suite = run(&late, false, STATUS_OK);
     assert_true(suite.passed == 1 && suite.skipped == 1);
     suite_free(&suite);
-    struct check silent = failing, skipping = bare;
-    silent.subjects = no_subjects;
-    skipping.measure = skips;
-    struct check half = failing;
-    half.subjects = something_and_nothing;
-    const struct check *const checks[] = {&silent, &skipping, &half, &vacuous};
-    for (size_t k = 0; k < 4; k++) {
-        suite = run(checks[k], k == 3, STATUS_CHECK_FAILED);
-        const struct figure *last = &suite.figures[suite.figure_count - 1];
-        assert_true(last->value == 1 && last->bound == 0 && last->floor == 0);
-        assert_memory_equal(last->subject, "harness: ", 9);
-        suite_free(&suite);
-    }
 }
 
 static const double zero = 0;
@@ -402,49 +354,6 @@ TEST(many_groups)
     assert_true(groups[0] == names[0] && groups[N - 1] == names[N - 1]);
     free(behind);
     free(groups);
-}
-
-TEST(results)
-{
-    struct suite suite = run(&failing, true, STATUS_CHECK_FAILED);
-    json_t *document = json_object();
-    suite_output_json(&suite, document);
-    json_int_t failed, mutants;
-    const char *status, *value;
-    assert_int_equal(json_unpack(document, "{s:[*], s:{s:I, s:I}}", "checks", "summary", "failed",
-                                 &failed, "mutants", &mutants),
-                     0);
-    assert_true(failed == 2 && mutants == 2);
-    const json_t *last = json_array_get(json_object_get(document, "checks"), 2);
-    assert_int_equal(json_unpack((json_t *)last, "{s:s, s:s}", "status", &status, "value", &value),
-                     0);
-    assert_string_equal(status, "fail");
-    assert_string_equal(value, "nan");
-    json_decref(document);
-
-    char folder[] = "sphproof-suite-XXXXXX", path[64], text[4096];
-    assert_non_null(mkdtemp(folder));
-    assert_int_equal(suite_output_failures(&suite, folder, NULL, NULL), STATUS_OK);
-    snprintf(path, sizeof path, "%s/a-failing.json", folder);
-    document = json_load_file(path, 0, NULL);
-    assert_non_null(document);
-    assert_int_equal(json_array_size(json_object_get(document, "series")), 3);
-    json_decref(document);
-    unlink(path);
-
-    snprintf(path, sizeof path, "%s/junit.xml", folder);
-    assert_int_equal(suite_output_junit(&suite, path, NULL), STATUS_OK);
-    FILE *file = fopen(path, "r");
-    assert_non_null(file);
-    text[fread(text, 1, sizeof text - 1, file)] = '\0';
-    fclose(file);
-    assert_non_null(strstr(text, "tests=\"3\" failures=\"2\""));
-    assert_non_null(strstr(text, "value &lt;2&gt;"));
-    unlink(path);
-    snprintf(path, sizeof path, "%s/a-failing.svg", folder);
-    unlink(path);
-    assert_int_equal(rmdir(folder), 0);
-    suite_free(&suite);
 }
 
 TEST(registered_checks)
