@@ -275,7 +275,7 @@ static enum status scaling(struct request *request, struct error *error)
 {
     static struct run_settings settings;
     static struct scaling result;
-    size_t ladder[CASE_LADDER_MAX], count;
+    size_t ladder[CASE_LADDER_MAX], count, first = 0;
     const char *sizes = options_value(request->options, "n");
     const char *plot = options_value(request->options, "plot");
     const int threads = request->options->threads == 1 ? 2 : request->options->threads;
@@ -285,9 +285,12 @@ static enum status scaling(struct request *request, struct error *error)
                      error) ||
         (plot && picture_probe(plot, error)))
         return error->status;
+    /* with fewer particles than on its own ladder, a case may have smoothing lengths that its box
+     * does not hold */
+    while (!sizes && first + 1 < count && ladder[first] < settings.file.ladder[0]) first++;
     progress_begin(&request->progress, "bench --scaling", request->options->quiet);
-    enum status status =
-        bench_scaling_measure(&settings, ladder, count, threads, &request->rules, &result, error);
+    enum status status = bench_scaling_measure(&settings, ladder + first, count - first, threads,
+                                               &request->rules, &result, error);
     progress_end(&request->progress);
     if (!status && plot) status = bench_scaling_plot(&result, plot, error);
     if (!status) {
