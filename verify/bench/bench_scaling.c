@@ -215,13 +215,11 @@ enum status bench_scaling_measure(const struct run_settings *settings, const siz
         if (!status) status = add(&bench, ladder[i], STEPS_LONG, 1, 1, error);
         if (!status && ladder[i] <= RUN_N_MAX) status = add(&bench, ladder[i], 0, 1, 1, error);
     }
-    while (scaling->thread_count < THREAD_LEVELS && count &&
-           thread_n[scaling->thread_count] <= ladder[count - 1])
-        scaling->thread_count++;
-    for (size_t i = 0; i < scaling->thread_count && !status; i++) {
-        first[count + i] = bench.count;
+    for (size_t t = 0; t < THREAD_LEVELS && count && !status; t++) {
+        if (thread_n[t] < ladder[0] || thread_n[t] > ladder[count - 1]) continue;
+        first[count + scaling->thread_count++] = bench.count;
         for (int k = 0; k < 3 && !status; k++) {
-            status = add(&bench, thread_n[i], STEPS_THREADS, k == 1 ? threads : 1,
+            status = add(&bench, thread_n[t], STEPS_THREADS, k == 1 ? threads : 1,
                          k == 2 ? threads : 1, error);
             bench.jobs[bench.count - 1].keep = k < 2;
         }

@@ -586,6 +586,10 @@ TEST(scaling)
     assert_true(scaling.threads[0].gain_of_processes > 0 &&
                 isfinite(scaling.threads[0].gain_of_processes));
     assert_int_equal(scaling.run.n, 4);
+    /* numbers of threads are only compared with as many particles as the ladder has */
+    assert_int_equal(
+        bench_scaling_measure(&given, (size_t[2]){801, 900}, 2, 2, &brief, &scaling, &error), 0);
+    assert_int_equal(scaling.thread_count, 0);
 }
 
 /* --- a small study: order and consistency of its points --------------------------------------- */
