@@ -78,7 +78,8 @@ void bench_scaling_print(const struct scaling *scaling, const struct table_style
             printf(" %12s %9s", "-", "-");
         printf(" %10.1f\n", 1e-6 * level->peak_rss);
     }
-    printf("%sstep: all particles awake, one thread; run: as given, to t_end (up to n = 10000)%s\n",
+    printf("%sstep: of the start, all particles awake, one thread; run: as given, to t_end (up to "
+           "n = 10000)%s\n",
            style->faint, style->end);
     printf("%sexponents%s\n", style->bold, style->end);
     print_exponent("CPU time of a step", &scaling->step);

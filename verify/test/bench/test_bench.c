@@ -590,6 +590,11 @@ TEST(scaling)
     assert_int_equal(
         bench_scaling_measure(&given, (size_t[2]){801, 900}, 2, 2, &brief, &scaling, &error), 0);
     assert_int_equal(scaling.thread_count, 0);
+    /* a blast that would meet its images soon after t_end */
+    prepare("sedov_2d", 0, NULL);
+    assert_int_equal(
+        bench_scaling_measure(&given, (size_t[1]){400}, 1, 2, &brief, &scaling, &error), 0);
+    near_inside(scaling.levels[0].step_cpu_s, 1e-5, 1);
 }
 
 /* --- a small study: order and consistency of its points --------------------------------------- */
