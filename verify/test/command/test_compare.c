@@ -421,67 +421,6 @@ TEST(draws_that_repeat_others)
     for (size_t r = 0; r < 5; r++) assert_int_equal(seen(&c, r), r > 2);
 }
 
-/* A snapshot is a single draw, which stands for any number of draws. */
-TEST(snapshots)
-{
-    static struct comparison c;
-    struct error error = {0};
-    struct run_result result;
-    char path[] = "sphproof_compare_XXXXXX.csv";
-    const int file = mkstemps(path, 4);
-    assert_true(file >= 0);
-    close(file);
-    take(&c, "gresho n=144 kernel=cubic_spline eta=1.7 t_end=0.01", path);
-    assert_true(c.sides[1].is_snapshot && !c.sides[0].is_snapshot);
-    assert_int_equal(run_execute(&c.sides[0].first, &result, &error), STATUS_OK);
-    assert_int_equal(run_write_snapshot(&result, path, &error), STATUS_OK);
-    c.asked = 3;
-    if (draw_all(&c, &options, &error)) fail_msg("%s", error.message);
-    assert_int_equal(c.draws, 3);
-    const struct side *side = &c.sides[1];
-    assert_int_equal(side->count, FIELDS);
-    for (size_t r = 0; r < STUDY_REPLICATES_MAX; r++) {
-        assert_int_equal(side->n[r], 144);
-        assert_true(isnan(side->cpu_s[r]));
-        for (int f = 0; f < FIELDS; f++)
-            near_relative(side->error[f][r], result.errors[f].l1, 1e-6);
-    }
-    for (int s = 0; s < 2; s++) json_decref(c.sides[s].result);
-    take(&c, path, path);
-    c.asked = 3;
-    assert_int_equal(draw_all(&c, &options, &error), STATUS_OK);
-    assert_int_equal(c.draws, 1);
-    for (int s = 0; s < 2; s++) json_decref(c.sides[s].result);
-    run_free(&result);
-    remove(path);
-}
-
-TEST(sides_that_are_files)
-{
-    static const struct {
-        const char *name;
-        bool file, is;
-    } rows[] = {{"a.csv", true, true},
-                {"a.csv", false, false},
-                {"x.ini", true, false},
-                {".ini", true, true},
-                {"xini", true, true},
-                {"a.ini.gz", true, true},
-                {"a long name.ini", true, false}};
-    char folder[] = "sphproof_compare_XXXXXX";
-    assert_non_null(mkdtemp(folder));
-    assert_false(is_file(folder));
-    assert_int_equal(chdir(folder), 0);
-    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        FILE *file = rows[k].file ? fopen(rows[k].name, "w") : NULL;
-        if (file) fclose(file);
-        assert_int_equal(is_file(rows[k].name), rows[k].is);
-        remove(rows[k].name);
-    }
-    assert_int_equal(chdir(".."), 0);
-    rmdir(folder);
-}
-
 /* Draws that are refused: fewer than 4 particles; refused by the solver; an unknown case. */
 TEST(refused_draws)
 {
@@ -555,95 +494,10 @@ TEST(dimensions)
     assert_non_null(strstr(error.message, "a is of the case sod in 1D, b of sod in 2D"));
 }
 
-/* Valid and invalid words of a side. */
-TEST(words_of_a_side)
-{
-    static const struct {
-        const char *text, *words; /* joined by |; NULL: refused */
-    } rows[] = {{"sod", "sod"},
-                {"  sod   n=40   ", "sod|n=40"},
-                {"sod 'n=4 0' x", "sod|n=4 0|x"},
-                {"a'b c'd \"e 'f\" g", "ab cd|e 'f|g"},
-                {"a ''", "a|"},
-                {"", ""},
-                {"a 'b", NULL},
-                {"a b\"", NULL}};
-    char *words[WORDS_MAX], text[300], joined[300];
-    int count;
-    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        strcpy(text, rows[k].text);
-        assert_int_equal(split(text, words, &count), rows[k].words != NULL);
-        if (!rows[k].words) continue;
-        *joined = '\0';
-        for (int i = 0; i < count; i++)
-            sprintf(joined + strlen(joined), "%s%s", i ? "|" : "", words[i]);
-        assert_string_equal(joined, rows[k].words);
-    }
-    for (int n = WORDS_MAX; n <= WORDS_MAX + 1; n++) {
-        for (int i = 0; i < n; i++) memcpy(text + 2 * i, "a ", 3);
-        assert_int_equal(split(text, words, &count), n <= WORDS_MAX);
-        assert_int_equal(count, WORDS_MAX);
-    }
-}
-
 TEST(longest_words)
 {
     char text[12] = "12|45|78|01";
     strcpy(text, "12");
     say(text, 8, "%s", "3456789");
     assert_memory_equal(text, "1234567\0|01", 12);
-}
-
-/* ---- whole calls ---- */
-
-static void call_is(int n, char **sides, enum status expected, const char *says)
-{
-    struct error error = {0};
-    const enum status status = run(&options, n, sides, &error);
-    if (status != expected || !strstr(error.message, says))
-        fail_msg("%s, %s: %d, %s", sides[0], n > 1 ? sides[1] : "-", status, error.message);
-}
-
-TEST(exit_statuses)
-{
-    static const struct {
-        const char *a, *b, *draws;
-        int sides;
-        enum status status;
-        const char *says;
-    } rows[] = {
-        {"sod n=40" SHORT, "sod n=40" SHORT, "1", 2, STATUS_OK, ""},
-        {"sod n=8 t_end=0", "sod n=8 t_end=0", "64", 2, STATUS_OK, ""},
-        {"sod n=40", "sod n=40", "0", 2, STATUS_BAD_INPUT, "integer from 1 to 64"},
-        {"sod n=40", "sod n=40", "65", 2, STATUS_BAD_INPUT, "integer from 1 to 64"},
-        {"sod n=40", "sod n=40", "2.5", 2, STATUS_BAD_INPUT, "integer from 1 to 64"},
-        {"sod n=40", "sod n=40", NULL, 1, STATUS_BAD_INPUT, "two sides are needed"},
-        {"sod n=40", "sod n=40", NULL, 3, STATUS_BAD_INPUT, "two sides are needed"},
-        {"sod n=40" SHORT, "sod n=0", NULL, 2, STATUS_BAD_INPUT, "n=0:"},
-        {"sod n=40" SHORT, "no_case.ini", NULL, 2, STATUS_BAD_INPUT, "no_case.ini"},
-        {"sod n=40", "sod n=40 alpha=0 cfl=20", "1", 2, STATUS_BROKE_DOWN,
-         "b, 'sod n=40 alpha=0 cfl=20', n=40: "},
-        {"sod n=40", "lax n=40", NULL, 2, STATUS_BAD_INPUT, "lax"},
-    };
-    options.speak = 0;
-    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        char *sides[] = {(char *)rows[k].a, (char *)rows[k].b, (char *)rows[k].b};
-        values[0] = rows[k].draws;
-        call_is(rows[k].sides, sides, rows[k].status, rows[k].says);
-    }
-    values[0] = NULL;
-}
-
-/* Output that cannot be written. */
-TEST(unwritable)
-{
-    static struct comparison c;
-    struct error error = {0};
-    const struct options to_file = {
-        .command = &command_compare, .values = values, .json = "no/such.json"};
-    assert_int_equal(tell(&to_file, &c, &error), STATUS_ENVIRONMENT);
-    values[2] = "no/such.html";
-    assert_int_equal(tell(&options, &c, &error), STATUS_ENVIRONMENT);
-    assert_non_null(strstr(error.message, "no/such.html"));
-    values[2] = NULL;
 }
