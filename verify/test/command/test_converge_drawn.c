@@ -51,14 +51,24 @@ static void draw_result(struct drawing *draw, struct study_result *result)
     for (int f = 0; f < FIELDS; f++)
         result->interpolation[f] = drawn_below(draw, 2) ? 0.01 * f : (double)NAN;
     strcpy(result->suspicion, drawn_below(draw, 3) ? "" : "too good");
-    strcpy(result->message, "it is so");
+    strcpy(result->message, drawn_below(draw, 2) ? "it is so" : "it is not");
     result->excluded = !drawn_below(draw, 6);
-    if (!drawn_below(draw, 6)) result->status = STATUS_BROKE_DOWN;
+    if (!drawn_below(draw, 6)) {
+        result->status = STATUS_BROKE_DOWN;
+        result->level_count = drawn_below(draw, 3);
+    }
+    const size_t n = result->functional_count;
+    if (drawn_below(draw, 2)) result->functional_exact[0] = (double)NAN;
+    if (n < PROBLEM_FUNCTIONALS_MAX) { /* after the last: is not read */
+        result->functional_names[n] = "none", result->functional_exact[n] = 1;
+        result->functional_errors[n].fit.n = 4;
+    }
 }
 
 TEST(printed_studies)
 {
-    static const char *const cases[] = {"sod", "gresho", "sound_wave", "noh_2d"};
+    static const char *const cases[] = {"sod", "gresho", "sound_wave", "noh_2d",
+                                        "kelvin_helmholtz_mode"};
     static char text[TEXT];
     struct digests kept;
     digests_open(&kept, test_word(1), "converge.txt");
@@ -67,8 +77,8 @@ TEST(printed_studies)
         struct code_external external = {0};
         const struct options options = {.color = k % 3 == 0};
         char name[32];
-        struct study study =
-            made(cases[k % 4], k % 5 ? NULL : "kernel=cubic_spline,wendland_c2", 1 + k % 2, NULL);
+        struct study study = made(
+            cases[k / 5 % 5], k % 5 ? NULL : "kernel=cubic_spline,wendland_c2", 1 + k % 2, NULL);
         for (size_t c = 0; c < study.sweep.count; c++) draw_result(&draw, &study.results[c]);
         if (!drawn_below(&draw, 4)) study.settings.external = &external.base;
         strcpy(study.suspicion, drawn_below(&draw, 4) ? "" : "without effect");

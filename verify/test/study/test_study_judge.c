@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Tests how a study evaluates the documents of its runs: means and spreads, orders, missing runs,
- * gas that should be at rest, suspiciously small errors, settings without effect, and which
- * combinations its own document is about. */
+ * gas that should be at rest, suspiciously small errors, settings without effect. */
 #include "test.h"
 
 #include "measure.h"
@@ -473,8 +472,6 @@ TEST(suspicions)
     study_free(&study);
 }
 
-/* ---- documents (test_converge_drawn.c tests their members) ---- */
-
 static void first_combination_stops(json_t *run, size_t c, size_t l, size_t r)
 {
     (void)r;
@@ -483,67 +480,12 @@ static void first_combination_stops(json_t *run, size_t c, size_t l, size_t r)
     if (c == 1 && l == 2) json_object_set_new(run, "suspicion", json_string("odder"));
 }
 
-/* Each combination has its own settings; the first of several suspicions counts. */
-TEST(combinations_are_told_apart)
+/* The first of several suspicions counts. (Documents: test_converge_drawn.c.) */
+TEST(first_suspicions)
 {
     struct study study = made("sod", "eta=1.5,2", 1, first_combination_stops);
-    json_t *document = json_object();
     assert_string_equal(study.results[0].suspicion, "odd");
     assert_string_equal(study.results[1].suspicion, "odd, too");
     assert_int_equal(study.status, STATUS_CHECK_FAILED);
-    study.results[0].excluded = true;
-    strcpy(study.results[0].message, "not so");
-    study.results[1].status = STATUS_BROKE_DOWN;
-    study.results[1].level_count = 2;
-    strcpy(study.results[1].message, "n = 160: broken");
-    study_add_json(&study, document);
-    json_t *excluded = json_pack("[{s:s, s:{s:s}}]", "reason", "not so", "settings", "eta", "1.5");
-    assert_true(json_equal(json_object_get(document, "excluded"), excluded));
-    json_decref(excluded);
-    const json_t *levels = json_object_get(document, "levels"), *level;
-    size_t i;
-    assert_int_equal(json_array_size(levels), 2);
-    json_array_foreach(levels, i, level)
-        assert_string_equal(
-            json_string_value(json_object_get(json_object_get(level, "settings"), "eta")), "2");
-    assert_int_equal(json_array_size(json_object_get(document, "orders")), 0);
-    assert_int_equal(json_array_size(json_object_get(document, "floors")), 0);
-    assert_null(json_object_get(document, "budgets"));
-    assert_string_equal(json_string_value(json_object_get(document, "message")), "n = 160: broken");
-    json_decref(document);
-    study.results[1].level_count = 0; /* all lists are present nevertheless */
-    document = json_object();
-    study_add_json(&study, document);
-    static const char *const lists[] = {"levels", "orders", "functionals", "floors", "excluded"};
-    for (size_t k = 0; k < 5; k++) assert_true(json_is_array(json_object_get(document, lists[k])));
-    json_decref(document);
-    study_free(&study);
-}
-
-/* The figures of a case are those of the first combination; no element after a list's end is
- * read. */
-TEST(the_first_combination_counts)
-{
-    struct study study = made("kelvin_helmholtz_mode", "eta=2.2,0.5", 1, NULL);
-    struct study_result *result = &study.results[0];
-    assert_true(!result->excluded && study.results[1].excluded);
-    json_t *document = json_object(), *want = json_array();
-    const size_t n = result->functional_count;
-    assert_true(n > 1 && n < PROBLEM_FUNCTIONALS_MAX);
-    result->functional_names[n] = "none";
-    result->functional_exact[n] = 1;
-    result->functional_errors[n].fit.n = 4;
-    for (size_t i = 0; i < n; i++)
-        if (isfinite(result->functional_exact[i]))
-            json_array_append_new(want, json_string(result->functional_names[i]));
-    study_add_json(&study, document);
-    assert_true(json_array_size(want) > 0);
-    assert_true(json_equal(json_object_get(document, "measured"), want));
-    assert_int_equal(json_array_size(json_object_get(document, "functionals")), n);
-    char *text = json_dumps(json_object_get(document, "orders"), 0);
-    assert_null(strstr(text, "none\", \"norm\": \"error\""));
-    free(text);
-    json_decref(want);
-    json_decref(document);
     study_free(&study);
 }
