@@ -324,16 +324,22 @@ static enum status add_case(struct bench *bench, size_t c, struct error *error)
 
 /* --- all of them ------------------------------------------------------------------------------ */
 
-/* Difference caused by time steps longer by this fraction: strong shocks and the noise behind them
- * amplify round-off, so no promise can be tighter. 0 if it cannot be measured. */
+/* Difference caused by a start whose particles are moved by this fraction of their spacing, or, if
+ * the case takes no jitter, by time steps longer by this fraction: strong shocks, the noise behind
+ * them and blasts on a symmetric lattice amplify round-off, so no promise can be tighter. 0 if it
+ * cannot be measured. */
 static double sensitivity(const struct job *job, double nudge)
 {
     struct error ignored = {0};
     struct run_result result = {0};
     double difference = 0;
-    char cfl[40];
-    snprintf(cfl, sizeof cfl, "cfl=%.17g", job->run->scheme.cfl * (1 + nudge));
-    struct run *nudged = run_with(&job->run->asked, cfl, NULL, &ignored);
+    char key[40];
+    const struct run_settings *asked = &job->run->asked;
+    const double jitter = settings_real(&asked->settings, SETTING_jitter);
+    snprintf(key, sizeof key, "jitter=%.17g", jitter > 0 ? jitter * (1 + nudge) : nudge);
+    struct run *nudged = run_with(asked, key, NULL, &ignored);
+    snprintf(key, sizeof key, "cfl=%.17g", job->run->scheme.cfl * (1 + nudge));
+    if (!nudged) nudged = run_with(asked, key, NULL, &ignored);
     if (!nudged) return 0;
     if (!run_execute(nudged, &result, &ignored))
         difference = bench_skips_difference(&job->last.snapshot, &result.snapshot,
@@ -388,8 +394,8 @@ static void judge(struct bench_skip *skip, const struct job *job)
                                                     domain_length(&a->problem.domain, 0));
     if (skip->promise == PROMISE_ROUND_OFF && skip->difference > skip->bound)
         skip->bound =
-            fmax(skip->bound, 10 * sensitivity(&job[BENCH_WITH],
-                                               skip->shares ? skip->shares->tolerance : 1e-11));
+            fmax(skip->bound,
+                 sensitivity(&job[BENCH_WITH], skip->shares ? skip->shares->tolerance : 1e-11));
     skip->enough = !skip->shares || bench_shares_enough(skip->shares);
     skip->kept = skip->difference <= skip->bound ||
                  (skip->promise == PROMISE_ERROR &&

@@ -139,8 +139,8 @@ void bench_skips_print(const struct bench_skips *result, const struct table_styl
         "done for such neighbours;\nviscosity, slopes: "
         "of the updates that are done, those without. Differences: "
         "largest of "
-        "any field at t_end over the field's largest value;\nbound of round-off: 1e-8, or ten "
-        "times what steps change that are longer by the tolerance of skips%s\n",
+        "any field at t_end over the field's largest value;\nbound of round-off: 1e-8, or "
+        "what moving the start by the tolerance of skips (in spacings) changes%s\n",
         style->faint, BENCH_LOOPS_PARTICLES, style->end);
 }
 

@@ -442,6 +442,20 @@ TEST(skips_keep_their_promises)
     bench_skips_free(&skips);
 }
 
+/* A blast amplifies what sleep changes beyond 1e-8. The bound is then what a start changes whose
+ * particles are moved by the tolerance of sleep; longer steps keep the symmetry of the lattice, and
+ * would change less than sleep does. */
+TEST(the_bound_of_sleep_follows_what_the_flow_amplifies)
+{
+    struct bench_skips skips = skips_of("sedov_2d", 1, (char *[]){"n=24^2"}, BENCH_WORK);
+    const struct bench_skip *sleep = &skips.skips[0];
+    assert_non_null(sleep->shares);
+    near_inside(sleep->difference, 1e-8, 1e-7);
+    assert_true(sleep->kept);
+    near_inside(sleep->bound, sleep->difference, 1e-6);
+    bench_skips_free(&skips);
+}
+
 /* A run without viscosity and one with viscosity of strength 0 have the same bits and time
  * steps. */
 TEST(no_viscosity_equals_strength_0)
