@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "layout.h"
+#include "output.h"
 #include "script.h"
 #include "style.h"
 
@@ -37,7 +38,7 @@ void plot_pen_free(struct plot_pen *pen)
 
 static void begin(struct plot_pen *pen)
 {
-    FILE *file = access("/dev/fd/0", F_OK) ? NULL : tmpfile();
+    FILE *file = access("/dev/fd/0", F_OK) ? NULL : output_temporary();
     pen->script = file ? fcntl(fileno(file), F_DUPFD_CLOEXEC, 3) : -1;
     if (file) fclose(file);
     pen->begun = true;

@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include "output.h"
 #include "table.h"
 
 struct printed {
@@ -15,7 +16,7 @@ struct printed {
 static inline struct printed printed_begin(void)
 {
     fflush(stdout);
-    const struct printed printed = {dup(1), tmpfile()};
+    const struct printed printed = {dup(1), output_temporary()};
     assert_non_null(printed.file);
     dup2(fileno(printed.file), 1);
     return printed;

@@ -8,6 +8,7 @@
 #include "diff.h"
 #include "drawn_document.h"
 #include "history.h"
+#include "output.h"
 #include "own_folder.h"
 #include "report_piece.h"
 
@@ -73,7 +74,7 @@ static void add_printed(struct buffer *to, const struct diff *diff, bool exact, 
     char text[4096];
     fflush(stdout);
     const int before = dup(1);
-    FILE *file = tmpfile();
+    FILE *file = output_temporary();
     dup2(fileno(file), 1);
     diff_print(diff, DIFF_THRESHOLD, exact, color);
     fflush(stdout);

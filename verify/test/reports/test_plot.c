@@ -12,6 +12,7 @@
 #include "layout.h"
 #include "markup.h"
 #include "movie.h"
+#include "output.h"
 #include "own_folder.h"
 #include "page_plot.h"
 #include "picture.h"
@@ -333,7 +334,7 @@ TEST(persistent_program)
                  {"die\n", "", PROCESS_FAILED, false},
                  {"stop\n", "bye\n", PROCESS_OK, false},
                  {"3\n", "3\n", PROCESS_OK, true}};
-    FILE *file = tmpfile();
+    FILE *file = output_temporary();
     assert_non_null(file);
     fputs("file\n", file);
     rewind(file);
