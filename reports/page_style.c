@@ -3,15 +3,13 @@
  * and dark colours, print. */
 #include "page_part.h"
 
-#define DARK                                                                                       \
-    "--paper:#14171b;--card:#1b1f25;--ink:#e6e8eb;--dim:#9aa2ad;--line:#30363e;--good:#3ddc97;"    \
-    "--bad:#ff8080;--link:#7cc4ff;--good-card:#12291f;--bad-card:#341c1e;"
-
 const char *const page_styles[] = {
     ":root{color-scheme:light dark;--paper:#fff;--card:#f6f7f9;--ink:#1b1f24;--dim:#5c6570;"
     "--line:#d9dde3;--good:#0a7d4f;--bad:#c0232c;--link:#0b5cad;--good-card:#e8f6ef;"
-    "--bad-card:#fdecec}"
-    "@media screen and (prefers-color-scheme:dark){:root{" DARK "}}"
+    "--bad-card:#fdecec;--shade:#0003;--warn-card:#fdf0d5;--open:#8a5a00}"
+    "@media screen and (prefers-color-scheme:dark){:root{--paper:#14171b;--card:#1b1f25;"
+    "--ink:#e6e8eb;--dim:#9aa2ad;--line:#30363e;--good:#3ddc97;--bad:#ff8080;--link:#7cc4ff;"
+    "--good-card:#12291f;--bad-card:#341c1e;--warn-card:#3a2f12;--shade:#000a;--open:#e8b75a}}"
     "*{box-sizing:border-box}"
     "html{-webkit-text-size-adjust:100%}"
     "body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.5 system-ui,-apple-system,"
@@ -101,9 +99,7 @@ const char *const page_styles[] = {
     "overflow:hidden;margin-left:8px;vertical-align:middle}"
     ".margin i{display:block;height:100%;background:var(--good)}.margin i.close{background:#b07800}"
     ".margin i.over{background:var(--bad)}"
-    ":root{--shade:#0003;--warn-card:#fdf0d5;--open:#8a5a00}@media screen and "
-    "(prefers-color-scheme:dark){:root{--warn-card:"
-    "#3a2f12;--shade:#000a;--open:#e8b75a}}.map td{padding:4px 10px;border:2px solid "
+    ".map td{padding:4px 10px;border:2px solid "
     "var(--paper);text-align:right}"
     ".map td:first-child{text-align:left;white-space:nowrap;padding-left:0}.map th{padding:4px "
     "10px;"

@@ -7,10 +7,18 @@
 
 #include "output.h"
 
+/* False: neither .svg nor .png. */
+static bool format_of(const char *path, enum plot_format *format)
+{
+    const char *dot = strrchr(path, '.');
+    *format = dot && !strcmp(dot, ".png") ? PLOT_PNG : PLOT_SVG;
+    return dot && (!strcmp(dot, ".svg") || !strcmp(dot, ".png"));
+}
+
 enum status picture_probe(const char *path, struct error *error)
 {
     enum plot_format format;
-    if (!plot_format_of(path, &format))
+    if (!format_of(path, &format))
         return error_set(error, STATUS_BAD_INPUT,
                          "--plot '%.150s': allowed: FILE.svg or FILE.png, of `run "
                          "--snapshot-every` also FILE.gif or FILE.mp4",
@@ -20,11 +28,11 @@ enum status picture_probe(const char *path, struct error *error)
 
 enum status picture_write(const struct plot *plot, const char *path, struct error *error)
 {
-    enum plot_format format = PLOT_SVG;
+    enum plot_format format;
     struct output output;
     char *bytes, message[256] = "";
     size_t size;
-    if (!plot_format_of(path, &format)) return picture_probe(path, error);
+    if (!format_of(path, &format)) return picture_probe(path, error);
     if (plot_draw(plot, format, &bytes, &size, message, sizeof message) != PLOT_OK)
         return error_set(error, STATUS_ENVIRONMENT, "--plot '%.150s': %.250s", path, message);
     enum status status = output_open(&output, path, error);

@@ -171,13 +171,6 @@ void plot_range(const double *values, size_t n, double *low, double *high)
     }
 }
 
-bool plot_format_of(const char *path, enum plot_format *format)
-{
-    const char *dot = strrchr(path, '.');
-    *format = dot && !strcmp(dot, ".png") ? PLOT_PNG : PLOT_SVG;
-    return dot && (!strcmp(dot, ".svg") || !strcmp(dot, ".png"));
-}
-
 enum plot_status plot_draw(const struct plot *plot, enum plot_format format, char **bytes,
                            size_t *size, char *message, size_t n)
 {

@@ -117,9 +117,6 @@ void plot_range(const double *values, size_t n, double *low, double *high);
 
 enum plot_format { PLOT_SVG, PLOT_PNG };
 
-/* The format for a path by its suffix (.svg, .png); false: neither. */
-bool plot_format_of(const char *path, enum plot_format *format);
-
 /* A standalone picture of size bytes, malloced. On failure *bytes is NULL. */
 enum plot_status plot_draw(const struct plot *plot, enum plot_format format, char **bytes,
                            size_t *size, char *message, size_t n);

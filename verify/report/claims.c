@@ -70,19 +70,11 @@ static const struct claim {
 };
 enum { CLAIMS = sizeof claims_made / sizeof *claims_made };
 
-struct claim_run {
-    char keys[256];
-    struct run run;
-    size_t job;
-};
-
-static enum status plan_run(struct claim_run *of, const struct claim *claim, const char *size,
-                            const char *row, const char *side, struct pool *pool,
-                            struct error *error)
+enum status claim_run_add(struct claim_run *of, const char *case_name, struct pool *pool,
+                          struct error *error)
 {
     struct run_settings settings;
-    snprintf(of->keys, sizeof of->keys, "%s %s %s", size, row, side);
-    if (run_prepare(&settings, claim->case_name, 0, NULL, error) ||
+    if (run_prepare(&settings, case_name, 0, NULL, error) ||
         settings_apply_words(&settings.settings, of->keys, error) ||
         run_resolve(&of->run, &settings, error))
         return error->status;
@@ -97,10 +89,12 @@ enum status claims_plan(struct claims *claims, bool nightly, struct pool *pool, 
         const struct claim *claim = &claims_made[c];
         const char *size = nightly ? claim->night : claim->day;
         for (const char *const *row = claim->rows; *row; row++)
-            for (int side = 0; side < 2; side++)
-                if (plan_run(&claims->runs[claims->count++], claim, size, *row,
-                             side ? claim->with : claim->without, pool, error))
-                    return error->status;
+            for (int side = 0; side < 2; side++) {
+                struct claim_run *of = &claims->runs[claims->count++];
+                snprintf(of->keys, sizeof of->keys, "%s %s %s", size, *row,
+                         side ? claim->with : claim->without);
+                if (claim_run_add(of, claim->case_name, pool, error)) return error->status;
+            }
     }
     return STATUS_OK;
 }

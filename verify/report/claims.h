@@ -9,6 +9,15 @@
 #include "pool.h"
 #include "run.h"
 
+/* A run with these keys, which claim_run_add adds to a pool; it must outlive it. */
+struct claim_run {
+    char keys[256];
+    struct run run;
+    size_t job;
+};
+enum status claim_run_add(struct claim_run *of, const char *case_name, struct pool *pool,
+                          struct error *error);
+
 struct claims {
     struct claim_run *runs; /* two for each row of each claim, in order */
     size_t count;

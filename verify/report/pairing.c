@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "result.h"
-#include "run_job.h"
 #include "value.h"
 
 enum { LADDER_MAX = 12, KEYS_MAX = 12, TEXT = 256 };
@@ -54,25 +53,18 @@ struct pairing_run {
     const struct crowd *crowd;
     const char *kernel; /* its name, a static string */
     int neighbours;
-    char keys[TEXT];
-    struct run run;
-    size_t job;
+    struct claim_run run;
 };
 
 static enum status plan_run(struct pairing_run *of, bool nightly, struct pool *pool,
                             struct error *error)
 {
     const struct crowd *crowd = of->crowd;
-    struct run_settings settings;
     const double eta =
         crowd->dim == 2 ? sqrt(of->neighbours / M_PI) : cbrt(0.75 * of->neighbours / M_PI);
-    snprintf(of->keys, TEXT, "%s %s kernel=%s gradient=%s eta=%.4g",
+    snprintf(of->run.keys, sizeof of->run.keys, "%s %s kernel=%s gradient=%s eta=%.4g",
              nightly ? crowd->night : crowd->day, usual, of->kernel, crowd->gradient, eta);
-    if (run_prepare(&settings, crowd->case_name, 0, NULL, error) ||
-        settings_apply_words(&settings.settings, of->keys, error) ||
-        run_resolve(&of->run, &settings, error))
-        return error->status;
-    return run_job_add(pool, &of->run, &of->job, error);
+    return claim_run_add(&of->run, crowd->case_name, pool, error);
 }
 
 enum status pairing_plan(struct pairing *pairing, bool nightly, struct pool *pool,
@@ -114,7 +106,7 @@ static struct ladder ladder_read(const struct pairing_run *runs, size_t most,
     size_t i;
     while (ladder.count < most && runs[ladder.count].crowd == runs->crowd &&
            strcmp(runs[ladder.count].kernel, runs->kernel) == 0) {
-        const json_t *document = pool->jobs[runs[ladder.count].job].document;
+        const json_t *document = pool->jobs[runs[ladder.count].run.job].document;
         const json_t *found = json_object_get(document, "regularity");
         const bool sound = found && strcmp(value_text(document, "status"), "ok") == 0;
         ladder.paired[ladder.count] = sound ? value_member(found, "paired") : (double)NAN;
@@ -164,7 +156,7 @@ static json_t *ladder_json(const struct ladder *ladder, const char *verdict)
         json_array_append_new(neighbours, json_integer(runs[i].neighbours));
     const size_t shown = ladder->first < ladder->count ? ladder->first : ladder->count - 1;
     snprintf(command, sizeof command, "sphproof run %s %s", runs->crowd->case_name,
-             runs[shown].keys);
+             runs[shown].run.keys);
     return result_object("kernel=%s dim=%d first_negative_kh=%g? predicted=%g? neighbours=%p "
                          "paired=%p nearest=%p verdict=%s reproduce=%s",
                          runs->kernel, runs->crowd->dim, ladder->negative, ladder->predicted,
