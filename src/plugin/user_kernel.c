@@ -17,7 +17,7 @@
 enum { KNOTS_CAPACITY = 1 << 16 };
 
 /* Functions of the plug-in; w and dw are required, the others may be NULL. */
-static struct functions {
+static struct {
     double (*w)(double q, int dim);
     double (*dw)(double q, int dim);
     double (*constant)(int dim);
@@ -91,21 +91,20 @@ static void find(void *library, const char *symbol, void *function)
     memcpy(function, &address, sizeof address);
 }
 
-static enum status find_functions(void *library, const char *path, struct functions *f,
-                                  struct error *error)
+static enum status find_functions(void *library, const char *path, struct error *error)
 {
-    find(library, "sphproof_kernel_w", &f->w);
-    find(library, "sphproof_kernel_dw", &f->dw);
-    find(library, "sphproof_kernel_constant", &f->constant);
-    find(library, "sphproof_kernel_dw_dh", &f->dw_dh);
-    find(library, "sphproof_kernel_knots", &f->knots);
-    find(library, "sphproof_kernel_class", &f->class);
-    find(library, "sphproof_kernel_negative", &f->negative);
-    find(library, "sphproof_kernel_name", &f->name);
-    if (f->w && f->dw) return STATUS_OK;
+    find(library, "sphproof_kernel_w", &functions.w);
+    find(library, "sphproof_kernel_dw", &functions.dw);
+    find(library, "sphproof_kernel_constant", &functions.constant);
+    find(library, "sphproof_kernel_dw_dh", &functions.dw_dh);
+    find(library, "sphproof_kernel_knots", &functions.knots);
+    find(library, "sphproof_kernel_class", &functions.class);
+    find(library, "sphproof_kernel_negative", &functions.negative);
+    find(library, "sphproof_kernel_name", &functions.name);
+    if (functions.w && functions.dw) return STATUS_OK;
     return error_set(error, STATUS_BAD_INPUT,
                      "kernel '%.200s' has no function sphproof_kernel_%s (see plugin.h)", path,
-                     f->w ? "dw" : "w");
+                     functions.w ? "dw" : "w");
 }
 
 void user_kernel_file_name(const char *path, char *name, size_t size)
@@ -117,10 +116,10 @@ void user_kernel_file_name(const char *path, char *name, size_t size)
     status_clean(name);
 }
 
-static void take_name(struct user_kernel *user, const char *path, const struct functions *f)
+static void take_name(struct user_kernel *user, const char *path)
 {
     announce("sphproof_kernel_name", 0);
-    const char *given = f->name ? f->name() : NULL;
+    const char *given = functions.name ? functions.name() : NULL;
     user_kernel_file_name(path, user->name, sizeof user->name);
     if (given && given[0]) snprintf(user->name, sizeof user->name, "%s", given);
     guard_back();
@@ -130,12 +129,11 @@ static void take_name(struct user_kernel *user, const char *path, const struct f
 }
 
 /* Adds the knots of one dimension to the list; 0 and 1 are break points anyway. */
-static enum status take_knots(struct user_kernel *user, const struct functions *f, int dim,
-                              double *found, struct error *error)
+static enum status take_knots(struct user_kernel *user, int dim, double *found, struct error *error)
 {
     for (int i = 0; i < KNOTS_CAPACITY; i++) found[i] = (double)NAN;
     announce("sphproof_kernel_knots", dim);
-    const int n = f->knots(dim, found);
+    const int n = functions.knots(dim, found);
     guard_back();
     double last = -1;
     if (n < 0 || n > SPHPROOF_KERNEL_KNOTS_MAX)
@@ -155,15 +153,14 @@ static enum status take_knots(struct user_kernel *user, const struct functions *
 }
 
 /* Collects the knots of all dimensions in one list; superfluous knots are harmless. */
-static enum status take_all_knots(struct user_kernel *user, const struct functions *f,
-                                  const int range[2], struct error *error)
+static enum status take_all_knots(struct user_kernel *user, const int range[2], struct error *error)
 {
     enum status status = STATUS_OK;
     double *found = malloc(KNOTS_CAPACITY * sizeof *found);
     user->knots = malloc((size_t)KERNEL_DIM_MAX * SPHPROOF_KERNEL_KNOTS_MAX * sizeof *user->knots);
     if (!found || !user->knots) status = error_set(error, STATUS_ENVIRONMENT, "no memory");
     for (int dim = range[0]; dim <= range[1] && !status; dim++)
-        status = take_knots(user, f, dim, found, error);
+        status = take_knots(user, dim, found, error);
     free(found);
     if (status) return status;
     struct kernel *kernel = &user->kernel;
@@ -197,14 +194,14 @@ static enum status probe_values(const struct kernel *kernel, int dim, struct err
 }
 
 /* Sets the class if it is not declared; an undeclared jump of w itself counts against C0. */
-static enum status take_class(struct user_kernel *user, const struct functions *f,
-                              const struct pieces *pieces, struct error *error)
+static enum status take_class(struct user_kernel *user, const struct pieces *pieces,
+                              struct error *error)
 {
     struct kernel *kernel = &user->kernel;
     const int dim = pieces->dim;
-    if (f->class) {
+    if (functions.class) {
         announce("sphproof_kernel_class", dim);
-        kernel->smoothness[dim] = f->class(dim);
+        kernel->smoothness[dim] = functions.class(dim);
         guard_back();
         if (kernel->smoothness[dim] < 0)
             return error_set(error, STATUS_BAD_INPUT,
@@ -228,65 +225,62 @@ static enum status check_constant(const struct user_kernel *user, int dim, struc
 }
 
 /* Asks the plug-in for its declarations in dim dimensions. */
-static enum status ask(struct user_kernel *user, const struct functions *f, int dim,
-                       struct error *error)
+static enum status ask(struct user_kernel *user, int dim, struct error *error)
 {
     if (probe_values(&user->kernel, dim, error)) return error->status;
-    if (f->negative) {
+    if (functions.negative) {
         announce("sphproof_kernel_negative", dim);
-        user->negative[dim] = f->negative(dim) != 0;
+        user->negative[dim] = functions.negative(dim) != 0;
         guard_back();
     }
-    if (!f->constant) return STATUS_OK;
+    if (!functions.constant) return STATUS_OK;
     announce("sphproof_kernel_constant", dim);
-    user->kernel.constant[dim] = f->constant(dim);
+    user->kernel.constant[dim] = functions.constant(dim);
     guard_back();
     return check_constant(user, dim, error);
 }
 
 /* Determines what the plug-in does not declare. */
-static enum status complete(struct user_kernel *user, const struct functions *f, int dim,
-                            struct error *error)
+static enum status complete(struct user_kernel *user, int dim, struct error *error)
 {
     struct kernel *kernel = &user->kernel;
     struct pieces pieces;
     if (pieces_find(&pieces, kernel, dim, &user->terms, error)) return error->status;
-    if (!f->constant) kernel->constant[dim] = measure_constant(&pieces);
-    enum status status = take_class(user, f, &pieces, error);
+    if (!functions.constant) kernel->constant[dim] = measure_constant(&pieces);
+    enum status status = take_class(user, &pieces, error);
     pieces_free(&pieces);
     return status ? status : check_constant(user, dim, error);
 }
 
-static void take_functions(struct user_kernel *user, const struct functions *f)
+static void take_functions(struct user_kernel *user)
 {
     user->kernel.w = shape_w;
     user->kernel.dw = shape_dw;
-    user->kernel.plugin_w = f->w;
-    user->kernel.plugin_dw = f->dw;
-    user->kernel.plugin_dw_dh = f->dw_dh ? width_slope : NULL;
-    user->kernel.knot_count = f->knots ? 0 : -1;
-    user->found_constant = !f->constant;
-    user->found_dh = !f->dw_dh;
-    user->found_class = !f->class;
-    user->found_knots = !f->knots;
+    user->kernel.plugin_w = functions.w;
+    user->kernel.plugin_dw = functions.dw;
+    user->kernel.plugin_dw_dh = functions.dw_dh ? width_slope : NULL;
+    user->kernel.knot_count = functions.knots ? 0 : -1;
+    user->found_constant = !functions.constant;
+    user->found_dh = !functions.dw_dh;
+    user->found_class = !functions.class;
+    user->found_knots = !functions.knots;
 }
 
 static enum status load(struct user_kernel *user, const char *path, int dim, struct error *error)
 {
     const int range[2] = {dim ? dim : 1, dim ? dim : KERNEL_DIM_MAX};
-    struct functions *f = &functions;
     if (open_library(user, path, error)) return error->status;
-    if (find_functions(user->library, path, f, error)) return error->status;
-    take_name(user, path, f);
-    take_functions(user, f);
-    if (f->knots && take_all_knots(user, f, range, error)) return error->status;
+    if (find_functions(user->library, path, error)) return error->status;
+    take_name(user, path);
+    take_functions(user);
+    if (functions.knots && take_all_knots(user, range, error)) return error->status;
     for (int d = range[0]; d <= range[1]; d++)
-        if (ask(user, f, d, error)) return error->status;
+        if (ask(user, d, error)) return error->status;
     guard_begun();
     user->terms.constant_count = places_constants(path, &user->constants);
     user->terms.constants = user->constants;
     for (int d = range[0]; d <= range[1]; d++)
-        if (complete(user, f, d, error)) return error->status;
+        if (complete(user, d, error)) return error->status;
     return STATUS_OK;
 }
 

@@ -3,8 +3,7 @@
  * Include after test.h. */
 #pragma once
 
-#include "expected_note.h"
-#include "own_folder.h"
+#include "expected_snapshot.h"
 
 enum { ROWS = 9, TEXT_MAX = 1 << 15, TYPE = SNAPSHOT_COLUMNS, OTHER };
 
@@ -130,12 +129,6 @@ static size_t text_of(const struct table *t, char *text, int row, int column, co
     return (size_t)(at - text);
 }
 
-static void put_file(const char *text, size_t size)
-{
-    FILE *out = fopen(path_of("a.txt"), "wb");
-    assert_true(out && fwrite(text, 1, size, out) == size && fclose(out) == 0);
-}
-
 static void is_read(const struct table *t, const struct snapshot_file *file)
 {
     size_t order[ROWS], n = 0, gas = ROWS, columns = 0;
@@ -168,7 +161,7 @@ static inline struct snapshot_file file_of(const char *text, size_t size, const 
     const struct snapshot_options options = {.map = map};
     struct snapshot_file file;
     struct error error = {0};
-    put_file(text, size);
+    put_bytes("a.txt", text, size);
     if (snapshot_read(path_of("a.txt"), &options, &file, &error))
         fail_msg("%s\n%s", error.message, text);
     return file;
@@ -185,12 +178,6 @@ static inline struct snapshot_file reads(const struct table *t, const char *map)
 static inline void refuses(const char *text, size_t size, const char *map, const char *says)
 {
     const struct snapshot_options options = {.map = map};
-    struct snapshot_file file;
-    struct error error = {0};
-    put_file(text, size);
-    enum status status = snapshot_read(path_of("a.txt"), &options, &file, &error);
-    if (!status) status = snapshot_check_gas(path_of("a.txt"), &file, &error);
-    snapshot_file_free(&file);
-    if (status != STATUS_BAD_INPUT || !strstr(error.message, says))
-        fail_msg("'%s' is not in: %s\n%s", says, error.message, text);
+    put_bytes("a.txt", text, size);
+    is_refused("a.txt", &options, text, says);
 }

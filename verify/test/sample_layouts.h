@@ -3,8 +3,7 @@
  * where HAVE_HDF5 is defined. */
 #pragma once
 
-#include "expected_note.h"
-#include "own_folder.h"
+#include "expected_snapshot.h"
 #include "sample_hdf5.h"
 #include "snapshot_file.h"
 
@@ -304,14 +303,6 @@ static inline void reads(const struct layout *l, const struct item *items, const
 static inline void refuses(const struct layout *l, const struct item *items, const char *what,
                            const char *says)
 {
-    struct snapshot_file file;
-    struct error error = {0};
-    char *path = path_of("a.hdf5");
-    write_items(path, items, l->count);
-    enum status status = snapshot_read(path, &here, &file, &error);
-    if (!status) status = snapshot_check_gas(path, &file, &error);
-    snapshot_file_free(&file);
-    if (status != STATUS_BAD_INPUT || !strstr(error.message, says))
-        fail_msg("%s: %s: status %d, '%s' is not in: %s", l->name, what, (int)status, says,
-                 error.message);
+    write_items(path_of("a.hdf5"), items, l->count);
+    is_refused("a.hdf5", &here, what, says);
 }

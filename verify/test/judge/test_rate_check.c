@@ -15,6 +15,8 @@ struct gas {
     struct setup setup;
 };
 
+static struct gas gas; /* of the test */
+
 static double noise(unsigned *random)
 {
     *random = *random * 1664525u + 1013904223u;
@@ -39,7 +41,7 @@ static void set_scheme(struct setup *setup, const char *words)
 }
 
 /* side^dim particles in the periodic unit box, displaced at random from a lattice. */
-static void make(struct gas *gas, int dim, size_t side, const char *words)
+static void make(struct gas *made, int dim, size_t side, const char *words)
 {
     unsigned random = 2385;
     size_t n = 1;
@@ -49,23 +51,23 @@ static void make(struct gas *gas, int dim, size_t side, const char *words)
         const size_t i = k * 5 % n; /* so that particles are not in the order of positions */
         size_t rest = k;
         for (int a = 0; a < 3; a++, rest /= side) {
-            gas->x[a][i] =
+            made->x[a][i] =
                 ((double)(rest % side) + 0.5 + 0.3 * (noise(&random) - 0.5)) / (double)side;
-            gas->v[a][i] = noise(&random) - 0.5;
+            made->v[a][i] = noise(&random) - 0.5;
         }
-        gas->m[i] = (1 + 0.2 * noise(&random)) / (double)n;
-        gas->u[i] = 1 + 0.3 * noise(&random);
+        made->m[i] = (1 + 0.2 * noise(&random)) / (double)n;
+        made->u[i] = 1 + 0.3 * noise(&random);
     }
-    gas->setup = (struct setup){.dim = dim,
-                                .hi = {1, 1, 1},
-                                .t_end = 1,
-                                .n = n,
-                                .x = {gas->x[0], gas->x[1], gas->x[2]},
-                                .v = {gas->v[0], gas->v[1], gas->v[2]},
-                                .m = gas->m,
-                                .u = gas->u,
-                                .threads = 1};
-    set_scheme(&gas->setup, words);
+    made->setup = (struct setup){.dim = dim,
+                                 .hi = {1, 1, 1},
+                                 .t_end = 1,
+                                 .n = n,
+                                 .x = {made->x[0], made->x[1], made->x[2]},
+                                 .v = {made->v[0], made->v[1], made->v[2]},
+                                 .m = made->m,
+                                 .u = made->u,
+                                 .threads = 1};
+    set_scheme(&made->setup, words);
 }
 
 #define USUAL                                                                                      \
@@ -93,7 +95,7 @@ static struct rate_table table_of(const struct setup *setup)
 /* Rates are in the order of the setup, whatever the order of positions. */
 TEST(rates_are_in_the_setups_order)
 {
-    static struct gas gas, turned;
+    static struct gas turned;
     for (int dim = 1; dim <= 3; dim++) {
         char words[400];
         snprintf(words, sizeof words, "%s gradient=ia", schemes[dim]);
@@ -143,7 +145,6 @@ TEST(rates_are_in_the_setups_order)
  * vanish. */
 TEST(rates_do_not_depend_on_the_energy_integrated)
 {
-    static struct gas gas;
     make(&gas, 2, 6, USUAL " energy=internal");
     gas.setup.gravity[0] = 0.25, gas.setup.gravity[1] = -2;
     struct rate_table internal = table_of(&gas.setup);
@@ -170,7 +171,6 @@ TEST(rates_do_not_depend_on_the_energy_integrated)
 
 TEST(no_setup_no_table)
 {
-    static struct gas gas;
     struct rate_table table;
     struct error error = {0};
     make(&gas, 2, 6, USUAL);
@@ -184,11 +184,11 @@ TEST(no_setup_no_table)
 
 static const char *const names[] = {"h", "rho", "P", "ax", "ay", "az", "du"};
 
-static double value(const struct gas *gas, const struct rate_table *table, int column, size_t i)
+static double value(const struct rate_table *table, int column, size_t i)
 {
     const double of[] = {table->h[i],        table->rho[i],      table->P[i], table->force[0][i],
                          table->force[1][i], table->force[2][i], table->dU[i]};
-    return of[column] / (column > 2 ? gas->m[i] : 1);
+    return of[column] / (column > 2 ? gas.m[i] : 1);
 }
 
 /* A table as if read from a file. */
@@ -197,38 +197,37 @@ struct file {
     double values[7][MOST];
 };
 
-static void write_file(struct file *file, const struct gas *gas, const struct rate_table *table,
-                       unsigned columns)
+static struct file file; /* of the test */
+
+static void write_file(const struct rate_table *table, unsigned columns)
 {
-    file->csv = (struct csv){.rows = table->n};
+    file.csv = (struct csv){.rows = table->n};
     for (int c = 0; c < 7; c++) {
         if (!(columns >> c & 1)) continue;
-        for (size_t i = 0; i < table->n; i++) file->values[c][i] = value(gas, table, c, i);
-        file->csv.names[file->csv.columns] = (char *)(uintptr_t)names[c];
-        file->csv.values[file->csv.columns++] = file->values[c];
+        for (size_t i = 0; i < table->n; i++) file.values[c][i] = value(table, c, i);
+        file.csv.names[file.csv.columns] = (char *)(uintptr_t)names[c];
+        file.csv.values[file.csv.columns++] = file.values[c];
     }
 }
 
-static struct rate_check checked(const struct file *file, const struct gas *gas,
-                                 const struct rate_table *ours, double tolerance)
+static struct rate_check checked(const struct setup *setup, const struct rate_table *ours,
+                                 double tolerance)
 {
     struct rate_check check;
     struct error error;
-    if (rate_check_make(&check, "theirs.csv", &file->csv, &gas->setup, ours, tolerance, &error))
+    if (rate_check_make(&check, "theirs.csv", &file.csv, setup, ours, tolerance, &error))
         fail_msg("%s", error.message);
     return check;
 }
 
 TEST(equal_tables_are_good)
 {
-    static struct gas gas;
-    static struct file file;
     struct error error = {0};
     for (int dim = 1; dim <= 3; dim++) {
         make(&gas, dim, sides[dim], schemes[dim]);
         struct rate_table ours = table_of(&gas.setup);
-        write_file(&file, &gas, &ours, 0x7f);
-        struct rate_check check = checked(&file, &gas, &ours, 0);
+        write_file(&ours, 0x7f);
+        struct rate_check check = checked(&gas.setup, &ours, 0);
         assert_true(check.good);
         assert_int_equal(check.count, 4 + dim); /* columns of other directions are not compared */
         for (size_t k = 0; k < check.count; k++) {
@@ -238,13 +237,13 @@ TEST(equal_tables_are_good)
             assert_true(c->good && c->worst == 0 && c->rms == 0 && c->particle == 0 &&
                         !c->cause[0]);
         }
-        write_file(&file, &gas, &ours, dim < 3 ? 0x20 : 0); /* only az, or no rate */
+        write_file(&ours, dim < 3 ? 0x20 : 0); /* only az, or no rate */
         assert_int_equal(
             rate_check_make(&check, "theirs.csv", &file.csv, &gas.setup, &ours, 0, &error),
             STATUS_BAD_INPUT);
         assert_non_null(strstr(error.message, "theirs.csv:1: nothing to compare"));
         for (int more = -1; more <= 1; more += 2) {
-            write_file(&file, &gas, &ours, 1);
+            write_file(&ours, 1);
             file.csv.rows += (size_t)more;
             assert_int_equal(
                 rate_check_make(&check, "theirs.csv", &file.csv, &gas.setup, &ours, 0, &error),
@@ -257,15 +256,14 @@ TEST(equal_tables_are_good)
 
 /* The scale of an error: the largest acceleration or heating rate of all particles; for h, rho and
  * P the particle's own value. */
-static double scale_of(const struct gas *gas, const struct rate_table *t, int column, size_t i)
+static double scale_of(const struct rate_table *t, int column, size_t i)
 {
     double most = 0;
-    if (column < 3) return fabs(value(gas, t, column, i));
+    if (column < 3) return fabs(value(t, column, i));
     for (size_t k = 0; k < t->n; k++)
-        most = fmax(most, column == 6
-                              ? fabs(value(gas, t, 6, k))
-                              : sqrt(pow(value(gas, t, 3, k), 2) + pow(value(gas, t, 4, k), 2) +
-                                     pow(value(gas, t, 5, k), 2)));
+        most = fmax(most, column == 6 ? fabs(value(t, 6, k))
+                                      : sqrt(pow(value(t, 3, k), 2) + pow(value(t, 4, k), 2) +
+                                             pow(value(t, 5, k), 2)));
     return most;
 }
 
@@ -284,7 +282,6 @@ TEST(rows_of_other_particles)
                 {0, true, BOUNDARY_OPEN, false}};
     for (int dim = 1; dim <= 3; dim++)
         for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-            struct gas gas;
             struct error error;
             double x[3][MOST];
             static char letters[3][2] = {"x", "y", "z"};
@@ -316,8 +313,6 @@ TEST(rows_of_other_particles)
  * tiny, and if those of particle 0 are by far the largest. */
 TEST(reported_errors)
 {
-    static struct gas gas;
-    static struct file file;
     static const size_t who[2][2] = {{3, 11}, {11, 0}};
     for (int dim = 2; dim <= 3; dim++) {
         make(&gas, dim, sides[dim], schemes[dim]);
@@ -330,10 +325,10 @@ TEST(reported_errors)
             }
             for (int c = 0; c < 7; c++) {
                 if (dim == 2 && c == 5) continue;
-                write_file(&file, &gas, &ours, 0x7f);
-                file.values[c][first] -= 0.25 * scale_of(&gas, &ours, c, first);
-                file.values[c][second] += 0.5 * scale_of(&gas, &ours, c, second);
-                struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+                write_file(&ours, 0x7f);
+                file.values[c][first] -= 0.25 * scale_of(&ours, c, first);
+                file.values[c][second] += 0.5 * scale_of(&ours, c, second);
+                struct rate_check check = checked(&gas.setup, &ours, 1e-9);
                 assert_false(check.good);
                 for (size_t k = 0; k < check.count; k++) {
                     const struct rate_comparison *r = &check.columns[k];
@@ -345,11 +340,11 @@ TEST(reported_errors)
                     assert_int_equal(r->particle, second);
                     if (c % 2) continue;
                     /* a tolerance equal to the error suffices, and no smaller one */
-                    assert_true(checked(&file, &gas, &ours, r->worst).good);
-                    assert_false(checked(&file, &gas, &ours, nextafter(r->worst, 0)).good);
+                    assert_true(checked(&gas.setup, &ours, r->worst).good);
+                    assert_false(checked(&gas.setup, &ours, nextafter(r->worst, 0)).good);
                 }
                 file.values[c][5] = (double)NAN;
-                check = checked(&file, &gas, &ours, 1);
+                check = checked(&gas.setup, &ours, 1);
                 assert_false(check.good);
             }
         }
@@ -413,8 +408,6 @@ TEST(each_choice_is_named)
         {"", "kernel=quartic_spline eta=2.6", "ax",
          "kernel: theirs is quartic_spline, with eta 2.6"},
     };
-    static struct gas gas;
-    static struct file file;
     char words[400];
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         snprintf(words, sizeof words, "%s %s", USUAL, rows[k].ours);
@@ -424,8 +417,8 @@ TEST(each_choice_is_named)
         snprintf(words, sizeof words, "%s %s %s", USUAL, rows[k].ours, rows[k].theirs);
         set_scheme(&changed, words);
         struct rate_table theirs = table_of(&changed);
-        write_file(&file, &gas, &theirs, 0x5f);
-        const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+        write_file(&theirs, 0x5f);
+        const struct rate_check check = checked(&gas.setup, &ours, 1e-9);
         if (strcmp(cause_of(&check, rows[k].quantity), rows[k].cause) != 0)
             fail_msg("%s: '%s', not '%s'", rows[k].theirs, cause_of(&check, rows[k].quantity),
                      rows[k].cause);
@@ -439,8 +432,8 @@ TEST(each_choice_is_named)
         if (dim > 1) {
             for (int a = 0; a < dim; a++) changed.boundary[a] = BOUNDARY_OPEN;
             struct rate_table theirs = table_of(&changed);
-            write_file(&file, &gas, &theirs, 0x5f);
-            const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+            write_file(&theirs, 0x5f);
+            const struct rate_check check = checked(&gas.setup, &ours, 1e-9);
             assert_string_equal(cause_of(&check, "rho"), "boundary: theirs is open");
             rate_table_free(&theirs);
         }
@@ -452,40 +445,36 @@ TEST(each_choice_is_named)
  * tolerance. */
 TEST(when_a_change_is_a_cause)
 {
-    static struct gas gas;
-    static struct file file;
     make(&gas, 2, 6, USUAL);
     struct rate_table ours = table_of(&gas.setup);
     struct setup changed = gas.setup;
     changed.scheme.viscosity = VISCOSITY_NONE;
     struct rate_table theirs = table_of(&changed);
-    const double scale = scale_of(&gas, &theirs, 3, 0);
-    write_file(&file, &gas, &theirs, 1 << 3);
-    const struct rate_check plain = checked(&file, &gas, &ours, 1e-9);
+    const double scale = scale_of(&theirs, 3, 0);
+    write_file(&theirs, 1 << 3);
+    const struct rate_check plain = checked(&gas.setup, &ours, 1e-9);
     const double worst = plain.columns[0].worst;
     const size_t other = plain.columns[0].particle == 2 ? 3 : 2;
     assert_string_equal(plain.columns[0].cause, "viscosity: they have none");
     for (int side = -1; side <= 1; side += 2) {
         const double much = worst * 1e-3 * (1 + side * 4e-7) * scale;
-        file.values[3][other] = value(&gas, &theirs, 3, other) + much;
-        struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+        file.values[3][other] = value(&theirs, 3, other) + much;
+        struct rate_check check = checked(&gas.setup, &ours, 1e-9);
         assert_true(check.columns[0].worst == worst);
         assert_string_equal(check.columns[0].cause, side < 0 ? "viscosity: they have none" : "");
         /* the remaining error may equal the tolerance, and no more */
-        check = checked(&file, &gas, &ours, 1e-9);
-        struct gas without = gas;
-        without.setup = changed;
-        const double left = checked(&file, &without, &theirs, 1).columns[0].worst;
+        check = checked(&gas.setup, &ours, 1e-9);
+        const double left = checked(&changed, &theirs, 1).columns[0].worst;
         if (side > 0) {
-            check = checked(&file, &gas, &ours, left);
+            check = checked(&gas.setup, &ours, left);
             assert_string_equal(check.columns[0].cause, "viscosity: they have none");
-            check = checked(&file, &gas, &ours, nextafter(left, 0));
+            check = checked(&gas.setup, &ours, nextafter(left, 0));
             assert_string_equal(check.columns[0].cause, "");
         }
         /* a larger tolerance still gives a cause; an error within the tolerance has none */
-        check = checked(&file, &gas, &ours, 2e-3 * worst);
+        check = checked(&gas.setup, &ours, 2e-3 * worst);
         assert_string_equal(check.columns[0].cause, "viscosity: they have none");
-        check = checked(&file, &gas, &ours, worst);
+        check = checked(&gas.setup, &ours, worst);
         assert_string_equal(check.columns[0].cause, "");
     }
     rate_table_free(&ours);
@@ -496,8 +485,6 @@ TEST(when_a_change_is_a_cause)
  * eta, unless they scatter by more than two parts in a thousand. */
 TEST(scattered_widths)
 {
-    static struct gas gas;
-    static struct file file;
     make(&gas, 2, sides[2], schemes[2]);
     struct rate_table ours = table_of(&gas.setup);
     for (size_t k = 0; k < kernel_family.n; k++)
@@ -510,8 +497,8 @@ TEST(scattered_widths)
             struct rate_table theirs = table_of(&changed);
             for (size_t i = 0; i < theirs.n; i++)
                 theirs.h[i] *= 1 + ((double)(i % 2) - 0.5) * (wide ? 2.2e-3 : 1e-3);
-            write_file(&file, &gas, &theirs, 3);
-            const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+            write_file(&theirs, 3);
+            const struct rate_check check = checked(&gas.setup, &ours, 1e-9);
             if (strcmp(name, "cubic_spline") != 0)
                 snprintf(expected, sizeof expected, "kernel: theirs is %s, with eta 2.6", name);
             for (int c = 0; c < 2; c++) {
@@ -527,8 +514,6 @@ TEST(scattered_widths)
 /* Differences that no choice of a scheme makes. */
 TEST(differences_that_no_scheme_makes)
 {
-    static struct gas gas;
-    static struct file file;
     for (int dim = 1; dim <= 3; dim++)
         for (int c = 0; c < 7; c++) {
             if (c >= 3 && c < 6 && c - 3 >= dim) continue;
@@ -539,33 +524,33 @@ TEST(differences_that_no_scheme_makes)
             for (int k = 0; k < 2; k++) {
                 static const double factors[] = {0.8125, -3};
                 if (k && c >= 3) continue;
-                write_file(&file, &gas, &ours, 1u << c);
+                write_file(&ours, 1u << c);
                 for (size_t i = 0; i < n; i++) file.values[c][i] *= factors[k];
-                const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+                const struct rate_check check = checked(&gas.setup, &ours, 1e-9);
                 snprintf(text, sizeof text, "theirs is %.9g times ours everywhere", factors[k]);
                 assert_string_equal(check.columns[0].cause, text);
             }
-            write_file(&file, &gas, &ours, 1u << c);
+            write_file(&ours, 1u << c);
             for (size_t i = 0; i < n; i++) file.values[c][i] *= -1;
-            struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+            struct rate_check check = checked(&gas.setup, &ours, 1e-9);
             assert_string_equal(check.columns[0].cause, c < 3 ? "theirs is -1 times ours everywhere"
                                                               : "the sign is the other one");
-            write_file(&file, &gas, &ours, 1u << c);
+            write_file(&ours, 1u << c);
             for (size_t i = 0; i < n; i++) file.values[c][i] *= gas.m[i];
-            check = checked(&file, &gas, &ours, 1e-9);
+            check = checked(&gas.setup, &ours, 1e-9);
             snprintf(text, sizeof text, "they give %s: %s = that over m",
                      c == 6 ? "dU/dt" : "dp/dt", names[c]);
             assert_string_equal(check.columns[0].cause, c < 3 ? "" : text);
             /* cubic spline: W(0) = C/h^d, C = 4/3, 40/(7 pi), 8/pi */
             static const double C[] = {0, 4 / 3., 40 / (7 * M_PI), 8 / M_PI};
-            write_file(&file, &gas, &ours, 1u << c);
+            write_file(&ours, 1u << c);
             for (size_t i = 0; i < n; i++)
                 file.values[c][i] -= gas.m[i] * C[dim] / pow(ours.h[i], dim);
-            check = checked(&file, &gas, &ours, 1e-9);
+            check = checked(&gas.setup, &ours, 1e-9);
             assert_string_equal(check.columns[0].cause,
                                 c == 1 ? "self-contribution: they leave out m W(0)" : "");
             gas.setup.scheme.volume_element = VOLUME_ENERGY;
-            check = checked(&file, &gas, &ours, 1e-9);
+            check = checked(&gas.setup, &ours, 1e-9);
             assert_null(strstr(check.columns[0].cause, "self"));
             rate_table_free(&ours);
         }
@@ -574,8 +559,6 @@ TEST(differences_that_no_scheme_makes)
 /* A cause leaves an error a thousand times smaller. */
 TEST(when_a_difference_is_a_cause)
 {
-    static struct gas gas;
-    static struct file file;
     static const char *const causes[] = {
         "theirs is 0.8125", "self-contribution", "", "the sign", "", "", "they give dU/dt"};
     make(&gas, 2, 6, USUAL);
@@ -583,25 +566,25 @@ TEST(when_a_difference_is_a_cause)
     const double n = (double)gas.setup.n;
     for (int c = 0; c < 7; c++)
         for (int side = -1; side <= 1 && causes[c][0]; side += 2) {
-            write_file(&file, &gas, &ours, 1u << c);
+            write_file(&ours, 1u << c);
             for (size_t i = 0; i < gas.setup.n; i++) {
                 if (c == 0) file.values[c][i] *= 0.8125;
                 if (c == 1) file.values[c][i] -= gas.m[i] * 40 / (7 * M_PI) / pow(ours.h[i], 2);
                 if (c == 3) file.values[c][i] *= -1;
                 if (c == 6) file.values[c][i] *= gas.m[i];
             }
-            struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+            struct rate_check check = checked(&gas.setup, &ours, 1e-9);
             const double worst = check.columns[0].worst;
             const size_t other = check.columns[0].particle == 2 ? 3 : 2;
             assert_ptr_equal(strstr(check.columns[0].cause, causes[c]), check.columns[0].cause);
             /* the factor is a mean: it absorbs part of one particle's difference */
             const double share = c == 0 ? 1 - 1 / n : 1;
             file.values[c][other] +=
-                worst * 1e-3 * (1 + side * 4e-7) / share * scale_of(&gas, &ours, c, other);
-            check = checked(&file, &gas, &ours, 1e-9);
+                worst * 1e-3 * (1 + side * 4e-7) / share * scale_of(&ours, c, other);
+            check = checked(&gas.setup, &ours, 1e-9);
             near_relative(check.columns[0].worst, worst, 1e-12);
             assert_true(!strstr(check.columns[0].cause, causes[c]) == (side > 0));
-            check = checked(&file, &gas, &ours, 2e-3 * worst);
+            check = checked(&gas.setup, &ours, 2e-3 * worst);
             assert_non_null(strstr(check.columns[0].cause, causes[c]));
         }
     rate_table_free(&ours);
@@ -610,14 +593,12 @@ TEST(when_a_difference_is_a_cause)
 /* A kernel that is not 1 at 0: 66 (7/478 pi) 3^2/h^2 is the quintic spline's W(0) in 2D. */
 TEST(self_contribution)
 {
-    static struct gas gas;
-    static struct file file;
     make(&gas, 2, 8, USUAL " kernel=quintic_spline eta=2.5");
     struct rate_table ours = table_of(&gas.setup);
-    write_file(&file, &gas, &ours, 1 << 1);
+    write_file(&ours, 1 << 1);
     for (size_t i = 0; i < gas.setup.n; i++)
         file.values[1][i] -= gas.m[i] * 66 * 7 * 9 / (478 * M_PI) / pow(ours.h[i], 2);
-    const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+    const struct rate_check check = checked(&gas.setup, &ours, 1e-9);
     assert_string_equal(cause_of(&check, "rho"), "self-contribution: they leave out m W(0)");
     rate_table_free(&ours);
 }
@@ -626,19 +607,17 @@ TEST(self_contribution)
  * here the smallest is off. */
 TEST(factor_of_an_acceleration)
 {
-    static struct gas gas;
-    static struct file file;
     size_t least = 0;
     make(&gas, 2, 6, USUAL);
     struct rate_table ours = table_of(&gas.setup);
-    write_file(&file, &gas, &ours, 1 << 3);
+    write_file(&ours, 1 << 3);
     for (size_t i = 0; i < gas.setup.n; i++) {
         if (fabs(file.values[3][i]) < fabs(file.values[3][least])) least = i;
         file.values[3][i] *= 0.8125;
     }
-    const double worst = checked(&file, &gas, &ours, 1e-9).columns[0].worst;
-    file.values[3][least] += 0.5e-3 * worst * scale_of(&gas, &ours, 3, least);
-    const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+    const double worst = checked(&gas.setup, &ours, 1e-9).columns[0].worst;
+    file.values[3][least] += 0.5e-3 * worst * scale_of(&ours, 3, least);
+    const struct rate_check check = checked(&gas.setup, &ours, 1e-9);
     assert_non_null(strstr(cause_of(&check, "ax"), "times ours everywhere"));
     rate_table_free(&ours);
 }
@@ -646,16 +625,14 @@ TEST(factor_of_an_acceleration)
 /* If all rates are 0, every difference is infinitely large, and no cause is named. */
 TEST(rates_that_are_all_0)
 {
-    static struct gas gas;
-    static struct file file;
     make(&gas, 2, 6, USUAL);
     struct rate_table ours = table_of(&gas.setup);
-    write_file(&file, &gas, &ours, 1 << 3);
+    write_file(&ours, 1 << 3);
     for (size_t i = 0; i < gas.setup.n; i++) {
         for (int a = 0; a < 2; a++) ours.force[a][i] = 0;
         file.values[3][i] *= 1 + 0.01 * (double)i;
     }
-    const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+    const struct rate_check check = checked(&gas.setup, &ours, 1e-9);
     assert_true(isinf(check.columns[0].worst) && !check.columns[0].good);
     assert_string_equal(cause_of(&check, "ax"), "");
     rate_table_free(&ours);
@@ -664,13 +641,11 @@ TEST(rates_that_are_all_0)
 /* Codes sort particles by keys of their own; one value that is not ours is no other order. */
 TEST(rows_in_another_order)
 {
-    static struct gas gas;
-    static struct file file;
     for (int dim = 1; dim <= 3; dim++)
         for (int whole = 0; whole < 2; whole++) {
             make(&gas, dim, sides[dim], schemes[dim]);
             struct rate_table ours = table_of(&gas.setup);
-            write_file(&file, &gas, &ours, 0x7f);
+            write_file(&ours, 0x7f);
             for (int c = 0; c < 7; c++) {
                 for (size_t i = 0; i + 1 < gas.setup.n; i++) {
                     const double kept = file.values[c][i];
@@ -678,7 +653,7 @@ TEST(rows_in_another_order)
                 }
                 if (!whole) file.values[c][0] = 2 * file.values[c][1] + 1;
             }
-            const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+            const struct rate_check check = checked(&gas.setup, &ours, 1e-9);
             for (size_t k = 0; k < check.count; k++) {
                 const struct rate_comparison *c = &check.columns[k];
                 assert_int_equal(!strncmp(c->cause, "rows: ", 6), whole);
@@ -691,17 +666,15 @@ TEST(rows_in_another_order)
 /* Quantities after the first wrong one follow from it; those before it do not. */
 TEST(order_of_causes)
 {
-    static struct gas gas;
-    static struct file file;
     make(&gas, 2, 6, USUAL);
     struct rate_table ours = table_of(&gas.setup);
     for (int first = 0; first < 7; first++) {
         if (first == 5) continue;
-        write_file(&file, &gas, &ours, 0x5f);
+        write_file(&ours, 0x5f);
         for (int c = first; c < 7; c++)
             for (size_t i = 0; i < gas.setup.n; i += 3)
                 file.values[c][i] += 0.125 * (double)(i + 1);
-        const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+        const struct rate_check check = checked(&gas.setup, &ours, 1e-9);
         for (int c = 0; c < 7; c++) {
             char text[80] = "";
             if (c == 5) continue;
@@ -719,8 +692,6 @@ TEST(order_of_causes)
 TEST(no_grad_h)
 {
     static const char cause[] = "grad-h: their lagrangian formulation has no grad-h factors";
-    static struct gas gas;
-    static struct file file;
     for (int dim = 1; dim <= 3; dim++) {
         char words[400];
         snprintf(words, sizeof words, "%s formulation=lagrangian", schemes[dim]);
@@ -731,7 +702,7 @@ TEST(no_grad_h)
         assert_int_equal(oracle_create(&oracle, &gas.setup, NULL), STATUS_OK);
         oracle.without_grad_h = true;
         assert_int_equal(oracle_evaluate(&oracle, NULL), STATUS_OK);
-        write_file(&file, &gas, &ours, 0x7f);
+        write_file(&ours, 0x7f);
         for (size_t i = 0; i < n; i++) {
             for (int a = 0; a < dim; a++)
                 file.values[3 + a][i] = (double)oracle.particles[i].F[a] / gas.m[i];
@@ -741,23 +712,23 @@ TEST(no_grad_h)
         static double before[4][MOST];
         const double *const rates[4] = {ours.force[0], ours.force[1], ours.force[2], ours.dU};
         for (int k = 0; k < 4; k++) memcpy(before[k], rates[k], n * sizeof(double));
-        struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+        struct rate_check check = checked(&gas.setup, &ours, 1e-9);
         for (int k = 0; k < 4; k++) /* our own rates do not change */
             assert_memory_equal(before[k], rates[k], n * sizeof(double));
         for (int a = 0; a < dim; a++) assert_string_equal(cause_of(&check, names[3 + a]), cause);
         assert_string_equal(cause_of(&check, "du"), cause);
         for (int a = 0; a < dim && dim > 1; a++) {
-            struct gas other = gas;
-            other.setup.gravity[a] = 1e-3;
-            check = checked(&file, &other, &ours, 1e-9);
+            struct setup other = gas.setup;
+            other.gravity[a] = 1e-3;
+            check = checked(&other, &ours, 1e-9);
             assert_string_not_equal(cause_of(&check, "ax"), cause);
-            other.setup = gas.setup;
-            other.setup.boundary[a] = BOUNDARY_OPEN;
-            check = checked(&file, &other, &ours, 1e-9);
+            other = gas.setup;
+            other.boundary[a] = BOUNDARY_OPEN;
+            check = checked(&other, &ours, 1e-9);
             assert_string_not_equal(cause_of(&check, "ax"), cause);
         }
         gas.setup.scheme.formulation = FORMULATION_VANILLA_ICE;
-        check = checked(&file, &gas, &ours, 1e-9);
+        check = checked(&gas.setup, &ours, 1e-9);
         assert_string_not_equal(cause_of(&check, "ax"), cause);
         rate_table_free(&ours);
     }

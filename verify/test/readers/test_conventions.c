@@ -384,23 +384,3 @@ TEST(notes)
     assert_int_equal(snapshot_file_make(&file, SNAPSHOT_X, "a", NULL), STATUS_ENVIRONMENT);
     assert_null(file.column[SNAPSHOT_X]);
 }
-
-static double flat(const struct kernel *kernel, double q, int dim)
-{
-    (void)kernel, (void)q, (void)dim;
-    return 1;
-}
-
-/* A ball of constant density; if all particles are near the ends, they are compared. */
-TEST(particles_near_the_ends_only)
-{
-    const struct kernel ball = {.w = flat};
-    for (int dim = 1; dim <= 3; dim++)
-        near_relative(measure_deviation(&ball, dim), sqrt(1. / (dim + 2)), 1e-12);
-    const struct snapshot_file file = scatter(2, 4, 1.5, 0);
-    for (int i = 0; i < 4; i++)
-        storage[0][i] = i % 2, storage[1][i] = i / 2, storage[SNAPSHOT_RHO][i] = 1;
-    const struct conventions found = found_in(&file, open_box, NULL, NULL);
-    assert_int_equal(found.sample, CONVENTIONS_SAMPLE);
-    assert_true(found.count > 0);
-}

@@ -6,8 +6,7 @@
 
 #include <float.h>
 
-#include "own_folder.h"
-#include "snapshot_file.h"
+#include "expected_snapshot.h"
 
 enum { N = 14, BYTES = 1 << 16, KINDS = 8, ARRAYS = 10, VALUES = 12 };
 enum { X, Y, Z, H, VX, VY, VZ, U, P, ALPHA }; /* the last is not read */
@@ -173,21 +172,15 @@ static size_t put_all(const struct dump *d)
 static enum status read_bytes(size_t size, struct snapshot_file *file, struct error *error)
 {
     static const struct snapshot_options plain = {0};
-    FILE *out = fopen(path_of("dump_00000"), "wb");
-    assert_true(out && fwrite(bytes, 1, size, out) == size && fclose(out) == 0);
-    *error = (struct error){0};
-    const enum status status = snapshot_read(path_of("dump_00000"), &plain, file, error);
-    return status ? status : snapshot_check_gas(path_of("dump_00000"), file, error);
+    put_bytes("dump_00000", bytes, size);
+    return read_gas("dump_00000", &plain, file, error);
 }
 
 static void refuses(size_t size, const char *says)
 {
-    struct snapshot_file file;
-    struct error error;
-    const enum status status = read_bytes(size, &file, &error);
-    snapshot_file_free(&file);
-    if (status != STATUS_BAD_INPUT || !strstr(error.message, says))
-        fail_msg("status %d: '%s' is not in: %s", (int)status, says, error.message);
+    static const struct snapshot_options plain = {0};
+    put_bytes("dump_00000", bytes, size);
+    is_refused("dump_00000", &plain, "a dump", says);
 }
 
 static const double *value_of(const struct dump *d, const char *name)

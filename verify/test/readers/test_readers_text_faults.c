@@ -299,7 +299,7 @@ TEST(legacy_vtk)
         struct snapshot_file file;
         struct error error = {0};
         char says[400];
-        put_file(rows[k].text, strlen(rows[k].text));
+        put_bytes("a.txt", rows[k].text, strlen(rows[k].text));
         snprintf(says, sizeof says, "%s: legacy VTK: %s", path_of("a.txt"), rows[k].says);
         const enum status status = snapshot_read(path_of("a.txt"), &plain, &file, &error);
         snapshot_file_free(&file);
