@@ -17,6 +17,12 @@ static inline double draw(double low, double high)
     return low + (high - low) * ldexp((double)draw_bits(), -53);
 }
 
+/* A random integer below n. */
+static inline unsigned drawn(unsigned n)
+{
+    return (unsigned)draw(0, n);
+}
+
 /* A random integer from low to high, both included. */
 static inline int draw_count(int low, int high)
 {

@@ -5,6 +5,7 @@
 
 #include <float.h>
 
+#include "draw.h"
 #include "expected_snapshot.h"
 
 enum { TYPES = 6, MOST = 40, BYTES = 1 << 16 };
@@ -13,13 +14,6 @@ static const char *const tags[BLOCKS] = {"POS ", "VEL ", "ID  ", "MASS",
                                          "U   ", "RHO ", "HSML", "ACCE"};
 static const int columns[BLOCKS] = {SNAPSHOT_X, SNAPSHOT_VX,  -1,         SNAPSHOT_M,
                                     SNAPSHOT_U, SNAPSHOT_RHO, SNAPSHOT_H, SNAPSHOT_AX};
-
-static uint64_t seed = 26;
-static inline unsigned drawn(unsigned below)
-{
-    seed = seed * 6364136223846793005u + 1442695040888963407u;
-    return (unsigned)(seed >> 33) % below;
-}
 
 static inline double uniform(double lo, double hi)
 {

@@ -3,21 +3,10 @@
  * Include after test.h. */
 #pragma once
 
+#include "draw.h"
 #include "expected_snapshot.h"
 
 enum { ROWS = 9, TEXT_MAX = 1 << 15, TYPE = SNAPSHOT_COLUMNS, OTHER };
-
-static uint64_t seed = 26;
-static inline unsigned drawn(unsigned below)
-{
-    seed = seed * 6364136223846793005u + 1442695040888963407u;
-    return (unsigned)(seed >> 33) % below;
-}
-
-static inline double uniform(void)
-{
-    return drawn(1u << 30) / (double)(1u << 30);
-}
 
 struct table {
     size_t columns;
@@ -65,7 +54,7 @@ static inline struct table table_of(int dim, bool all)
                                       : "entropy");
         for (int i = 0; i < ROWS; i++) {
             const bool positive = c >= SNAPSHOT_M && c <= SNAPSHOT_H;
-            const double value = ldexp(1 + uniform(), c < 3 ? (int)drawn(8) : (int)drawn(60) - 30);
+            const double value = ldexp(draw(1, 2), c < 3 ? (int)drawn(8) : (int)drawn(60) - 30);
             t.value[t.columns][i] = c == TYPE ? (drawn(2) ? 1 : (double)drawn(6) - 2)
                                               : (positive || drawn(2) ? value : -value);
         }

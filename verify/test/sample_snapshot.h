@@ -2,18 +2,12 @@
  * Writes text snapshots with values that a test sets, and judges them. Include after test.h. */
 #pragma once
 
+#include "draw.h"
 #include "judge.h"
 #include "keyed.h"
 #include "own_folder.h"
 
 enum { N = 240 };
-
-static uint64_t seed = 26;
-static inline double uniform(double lo, double hi)
-{
-    seed = seed * 6364136223846793005u + 1442695040888963407u;
-    return lo + (hi - lo) * (double)(seed >> 11) / 9007199254740992.;
-}
 
 /* A snapshot as text, with only those columns that are set. */
 struct planted {
@@ -32,8 +26,8 @@ static inline void plant(int dim, double lo, const char *head)
     gas = (struct planted){.dim = dim, .has_u = true};
     snprintf(gas.head, sizeof gas.head, "%s", head);
     for (int i = 0; i < N; i++) {
-        for (int d = 0; d < dim; d++) gas.x[d][i] = uniform(lo, lo + (d ? 1 : 2));
-        gas.m[i] = uniform(1, 2) / N;
+        for (int d = 0; d < dim; d++) gas.x[d][i] = draw(lo, lo + (d ? 1 : 2));
+        gas.m[i] = draw(1, 2) / N;
         gas.rho[i] = 1, gas.u[i] = 2.5, gas.P[i] = 1;
     }
     for (int d = 0; d < dim; d++) gas.x[d][0] = lo, gas.x[d][1] = lo + (d ? 1 : 2);

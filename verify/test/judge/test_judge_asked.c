@@ -469,7 +469,7 @@ TEST(open_ends_are_recognised)
             snprintf(left, 80, "%.17g %.17g %.17g", sides[0].rho, sides[0].v, sides[0].P);
             snprintf(right, 80, "%.17g %.17g %.17g", sides[1].rho, sides[1].v, sides[1].P);
             plant(1, 1, "# box = 1:3\n");
-            for (int i = 0; i < N; i++) gas.x[0][i] = uniform(1.1, 2.9);
+            for (int i = 0; i < N; i++) gas.x[0][i] = draw(1.1, 2.9);
             for (int end = 0; end < 2; end++)
                 for (int i = 0; i < 2; i++)
                     gas.x[0][2 * end + i] = end ? 3 - 2 * rows[k].at[i] : 1 + 2 * rows[k].at[i];
@@ -526,11 +526,11 @@ TEST(windows_of_random_tubes)
         struct riemann_solution solution;
         struct judged judged;
         char texts[2][100], head[80], value[80];
-        const double lo = uniform(-1, 1), length = uniform(1, 2), time = uniform(0.01, 0.3);
-        const double ends[2] = {lo, lo + length}, x0 = lo + length * uniform(0.2, 0.8);
+        const double lo = draw(-1, 1), length = draw(1, 2), time = draw(0.01, 0.3);
+        const double ends[2] = {lo, lo + length}, x0 = lo + length * draw(0.2, 0.8);
         for (int side = 0; side < 2; side++) {
             sides[side] = (struct riemann_state){
-                uniform(0.1, 1), k % 3 ? 0 : uniform(-1, 1) * (k % 2 ? 6 : 0.5), uniform(0.1, 1)};
+                draw(0.1, 1), k % 3 ? 0 : draw(-1, 1) * (k % 2 ? 6 : 0.5), draw(0.1, 1)};
             snprintf(texts[side], sizeof texts[side], "%.17g %.17g %.17g", sides[side].rho,
                      sides[side].v, sides[side].P);
         }
@@ -540,7 +540,7 @@ TEST(windows_of_random_tubes)
         request.ends[0] = lo + 0.1 * length, request.ends[1] = lo + 0.9 * length;
         snprintf(head, sizeof head, "# box = %.17g:%.17g\n", lo, lo + length);
         plant(1, 0, head);
-        for (int i = 0; i < N; i++) gas.x[0][i] = uniform(ends[0], ends[1]);
+        for (int i = 0; i < N; i++) gas.x[0][i] = draw(ends[0], ends[1]);
         put_tube(sides, x0);
         assert_null(riemann_solve(1.4, &sides[0], &sides[1], &solution));
         const double speed = fmax(fastest(sides, false), fastest(sides, true));

@@ -34,7 +34,7 @@ TEST(sources_of_gamma)
         if (rows[k].in_file > 0)
             snprintf(gas.head, sizeof gas.head, "# gamma = %.17g\n", rows[k].in_file);
         for (int i = 0; i < N; i++) {
-            gas.rho[i] = uniform(1, 1.5), gas.u[i] = i == 5 ? 0 : uniform(2, 3);
+            gas.rho[i] = draw(1, 1.5), gas.u[i] = i == 5 ? 0 : draw(2, 3);
             gas.P[i] = (rows[k].planted - 1) * gas.rho[i] * gas.u[i];
         }
         gas.P[5] = 1;                                  /* nor does an energy of 0 */
@@ -288,17 +288,16 @@ TEST(boxes_of_liquids)
  * are not the first and the last in the file; otherwise it ends at its particles. */
 TEST(ends_of_volumes)
 {
-    for (int draw = 0; draw < 40; draw++) {
-        const bool walls = draw % 8 == 7, fills = draw % 4 && !walls;
-        const double lo = uniform(1.5, 3);
+    for (int turn = 0; turn < 40; turn++) {
+        const bool walls = turn % 8 == 7, fills = turn % 4 && !walls;
+        const double lo = draw(1.5, 3);
         struct judge_request request = uniform_gas();
         double at = lo, first = 0, last = 0;
         plant(1, 0, "");
         for (int k = 0; k < N; k++) {
-            const int i = (k + 7 * draw) % N;
-            const double volume = uniform(0.2, 3) / N;
-            gas.rho[i] = uniform(0.5, 2),
-            gas.m[i] = volume * gas.rho[i] * (fills || walls ? 1 : 0.8);
+            const int i = (k + 7 * turn) % N;
+            const double volume = draw(0.2, 3) / N;
+            gas.rho[i] = draw(0.5, 2), gas.m[i] = volume * gas.rho[i] * (fills || walls ? 1 : 0.8);
             gas.x[0][i] = at + 0.5 * volume, at += volume;
             if (k == 0) first = gas.x[0][i];
             last = gas.x[0][i];
@@ -321,7 +320,7 @@ TEST(completed)
         plant(1, 0, "# box = 2\n");
         gas.has_u = which != 1, gas.has_P = which != 0;
         for (int i = 0; i < N; i++) {
-            gas.rho[i] = uniform(1, 1.5), gas.u[i] = uniform(2, 3);
+            gas.rho[i] = draw(1, 1.5), gas.u[i] = draw(2, 3);
             gas.P[i] = 0.4 * gas.rho[i] * gas.u[i];
         }
         if (which == 3) gas.P[7] *= 1 + 1e-3;
@@ -356,7 +355,7 @@ TEST(options_without_effect)
     refuses(&request, "particles in 1 dimensions; the case gresho has 2");
     request = uniform_gas();
     plant(1, 0, "# box = 2\n");
-    for (int i = 2; i < N; i++) gas.x[0][i] = uniform(0, 0.4);
+    for (int i = 2; i < N; i++) gas.x[0][i] = draw(0, 0.4);
     gas.x[0][1] = 0.4;
     refuses(&request, "no particle lies in the window, 0.5 1.5; ");
     request = (struct judge_request){

@@ -16,11 +16,11 @@ static const struct {
              {"sound_wave", 0.1, 1},    {"noh_3d", 0.3, 3},    {"shear", 0.01, 2}};
 
 /* The gas of the case at random positions in its box, with random errors. */
-static void draw(size_t k, const struct prepared *p, double noise)
+static void fill_in(size_t k, const struct prepared *p, double noise)
 {
     const struct domain box = p->domain;
-    const double off = uniform(0, 1) < 0.5 ? 0 : uniform(-noise, noise);
-    const int field = (int)uniform(0, FIELDS);
+    const double off = draw(0, 1) < 0.5 ? 0 : draw(-noise, noise);
+    const int field = (int)draw(0, FIELDS);
     char *head = gas.head + sprintf(gas.head, "# time = %.17g\n# box =", cases[k].time);
     for (int d = 0; d < box.dim; d++) head += sprintf(head, " %.17g:%.17g", box.lo[d], box.hi[d]);
     sprintf(head, "\n");
@@ -31,19 +31,19 @@ static void draw(size_t k, const struct prepared *p, double noise)
         const double part = i % 2 ? 0.15 : 1; /* half of them are near the middle */
         for (int d = 0; d < box.dim; d++)
             gas.x[d][i] = x[d] =
-                0.5 * (box.lo[d] + box.hi[d]) + part * uniform(-0.5, 0.5) * (box.hi[d] - box.lo[d]);
+                0.5 * (box.lo[d] + box.hi[d]) + part * draw(-0.5, 0.5) * (box.hi[d] - box.lo[d]);
         problem_sample(p, x, cases[k].time, &s);
         double *of[] = {&s.rho, &s.v[0], &s.P, &s.u};
         if (field == FIELD_VELOCITY)
             s.v[0] += off;
         else
             *of[field] *= 1 + off;
-        for (int d = 0; d < box.dim; d++) gas.v[d][i] = s.v[d] + noise * uniform(-0.1, 0.1);
-        gas.m[i] = noise > 0.1 ? uniform(1, 2) / N : 1. / N;
-        gas.rho[i] = s.rho * (1 + noise * uniform(-0.1, 0.1)) + 1e-9;
-        gas.u[i] = s.u * (1 + noise * uniform(-0.1, 0.1)) + 1e-9;
-        gas.P[i] = s.P * (1 + noise * uniform(-0.1, 0.1)) + 1e-9;
-        gas.h[i] = uniform(0.05, 0.1) * (box.hi[0] - box.lo[0]);
+        for (int d = 0; d < box.dim; d++) gas.v[d][i] = s.v[d] + noise * draw(-0.1, 0.1);
+        gas.m[i] = noise > 0.1 ? draw(1, 2) / N : 1. / N;
+        gas.rho[i] = s.rho * (1 + noise * draw(-0.1, 0.1)) + 1e-9;
+        gas.u[i] = s.u * (1 + noise * draw(-0.1, 0.1)) + 1e-9;
+        gas.P[i] = s.P * (1 + noise * draw(-0.1, 0.1)) + 1e-9;
+        gas.h[i] = draw(0.05, 0.1) * (box.hi[0] - box.lo[0]);
     }
 }
 
@@ -184,12 +184,12 @@ TEST(random_snapshots)
     int far = 0, draws = 0;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
         for (int twice = 0; twice < 2; twice++) {
-            const double noise = pow(10, uniform(-2, 0));
-            const int kernel = (int)floor(uniform(-1, 4));
+            const double noise = pow(10, draw(-2, 0));
+            const int kernel = (int)floor(draw(-1, 4));
             struct judge_request request = {.case_name = cases[k].name, .kernel = kernel};
             const struct run run = keyed_run(cases[k].name, "");
             char name[80] = "kernel not identifiable";
-            draw(k, &run.problem, noise);
+            fill_in(k, &run.problem, noise);
             if (kernel >= 0) request.width.ratio = 1 + 0.25 * kernel;
             struct judged judged = judges(&request);
             const struct convention *best = &judged.conventions.candidate[0];
@@ -233,7 +233,7 @@ TEST(cold_gas)
     plant(1, 0, boxes[1]);
     gas.has_P = true;
     for (int i = 0; i < N; i++) {
-        gas.rho[i] = 4, gas.v[0][i] = 3, gas.P[i] = uniform(0, 0.5);
+        gas.rho[i] = 4, gas.v[0][i] = 3, gas.P[i] = draw(0, 0.5);
         gas.u[i] = gas.P[i] / (0.4 * gas.rho[i]);
     }
     struct judged judged = judges(&request);
@@ -263,13 +263,13 @@ TEST(widths_of_an_autopsy)
             struct problem_state s;
             double x[3] = {0}, volume = 1. / N;
             for (int d = 0; d < gas.dim; d++) {
-                x[d] = box->lo[d] + uniform(0, 1) * domain_length(box, d);
+                x[d] = box->lo[d] + draw(0, 1) * domain_length(box, d);
                 gas.x[d][i] = x[d], volume *= domain_length(box, d);
             }
             problem_sample(&run.problem, x, 0, &s);
             for (int d = 0; d < gas.dim; d++) gas.v[d][i] = s.v[d];
             gas.rho[i] = s.rho, gas.u[i] = s.u, gas.m[i] = s.rho * volume;
-            gas.h[i] = uniform(1.9, 2.1) * pow(volume, 1. / gas.dim);
+            gas.h[i] = draw(1.9, 2.1) * pow(volume, 1. / gas.dim);
             eta += 1.5 * gas.h[i] / pow(gas.m[i] / gas.rho[i], 1. / gas.dim) / N;
         }
         struct judged judged = judges(&request);
@@ -290,7 +290,7 @@ TEST(widths_of_an_autopsy)
                  keys[key]);
         gas.has_h = true;
         for (int i = 0; i < N; i++) {
-            for (int d = 0; d < 2; d++) gas.x[d][i] = uniform(-5, 5);
+            for (int d = 0; d < 2; d++) gas.x[d][i] = draw(-5, 5);
             gas.h[i] = 1;
         }
         struct judged judged = judges(&request);

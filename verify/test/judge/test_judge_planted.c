@@ -16,9 +16,9 @@ TEST(transverse_noise)
             double sum = 0, volume = 0;
             plant(dim, 0, boxes[dim]);
             for (int i = 0; i < N; i++) {
-                gas.rho[i] = uniform(1, 1.5);
+                gas.rho[i] = draw(1, 1.5);
                 for (int d = 0; d < dim; d++)
-                    if (only == d || only == dim) gas.v[d][i] = uniform(-1e-3, 1e-3);
+                    if (only == d || only == dim) gas.v[d][i] = draw(-1e-3, 1e-3);
             }
             for (int i = 0; i < N; i++) {
                 if (!(fabs(gas.x[0][i] - 1) <= 0.5)) continue;
@@ -96,22 +96,22 @@ TEST(sums_of_any_box)
                                .rho = rho,
                                .P = P};
     struct run run = keyed_run("rest_3d", "");
-    for (int draw = 0; draw < 60; draw++) {
+    for (int k = 0; k < 60; k++) {
         struct prepared *p = &run.problem;
         struct conservation got = {0}, want = {0};
-        const double shift[3] = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+        const double shift[3] = {draw(-1, 1), draw(-1, 1), draw(-1, 1)};
         for (int d = 0; d < 3; d++) {
-            p->boost[d] = uniform(-1, 1);
-            p->gravity[d] = uniform(0, 1) < 0.3 ? uniform(-2, 2) : 0;
-            p->boundary[d] = (enum boundary)(draw / (d ? 4 * d : 1) % 4);
+            p->boost[d] = draw(-1, 1);
+            p->gravity[d] = draw(0, 1) < 0.3 ? draw(-2, 2) : 0;
+            p->boundary[d] = (enum boundary)(k / (d ? 4 * d : 1) % 4);
         }
         for (int i = 0; i < FEW; i++) {
-            m[i] = uniform(1, 2), u[i] = uniform(1, 2), rho[i] = 1, P[i] = 1;
+            m[i] = draw(1, 2), u[i] = draw(1, 2), rho[i] = 1, P[i] = 1;
             want.energy += m[i] * u[i];
             for (int d = 0; d < 3; d++) {
                 const bool pushed = p->boundary[d] == BOUNDARY_REFLECTING ||
                                     p->boundary[d] == BOUNDARY_FIXED || p->gravity[d] != 0;
-                x[d][i] = uniform(-1, 1), v[d][i] = uniform(-1, 1);
+                x[d][i] = draw(-1, 1), v[d][i] = draw(-1, 1);
                 want.energy +=
                     m[i] * (0.5 * v[d][i] * v[d][i] - p->gravity[d] * (x[d][i] + shift[d]));
                 want.kinetic += 0.5 * m[i] * pow(v[d][i] - p->boost[d], 2);
@@ -134,8 +134,8 @@ TEST(sums)
             plant(dim, 0, boxes[dim]);
             for (int d = 0; d < dim; d++) gas.x[d][1] -= 1e-6; /* the ends are the same position */
             for (int i = 0; i < N; i++) {
-                gas.rho[i] = uniform(1, 1.5), gas.u[i] = uniform(2, 3);
-                for (int d = 0; d < dim; d++) gas.v[d][i] = uniform(-1e-2, 2e-2);
+                gas.rho[i] = draw(1, 1.5), gas.u[i] = draw(2, 3);
+                for (int d = 0; d < dim; d++) gas.v[d][i] = draw(-1e-2, 2e-2);
             }
             for (int i = 0; i < N; i++) {
                 const double c = sqrt(1.4 * 0.4 * gas.u[i]), m = gas.m[i];
@@ -208,7 +208,7 @@ TEST(a_tenth_may_be_wrong)
         plant(1, 0, boxes[1]);
         for (int i = 0; i < N; i++) {
             gas.m[i] = 2. / N;
-            if (i < wrong) gas.u[i] *= uniform(1.2, 2);
+            if (i < wrong) gas.u[i] *= draw(1.2, 2);
         }
         struct judged judged = judges(&request);
         assert_int_equal(judged.of_start.wrong, wrong);
@@ -225,7 +225,7 @@ TEST(most_frequent_mass_is_right)
         request.time.value = 0;
         plant(1, 0, "");
         for (int i = 0; i < N; i++) gas.x[0][i] *= 1.05; /* the case's masses are unknown */
-        for (int i = 0; i < N; i++) gas.m[i] = (i % 2 ? uniform(1, 1.9) : uniform(2.1, 4)) / N;
+        for (int i = 0; i < N; i++) gas.m[i] = (i % 2 ? draw(1, 1.9) : draw(2.1, 4)) / N;
         for (int i = N - alike; i < N; i++) gas.m[i] = 2. / N;
         struct judged judged = judges(&request);
         const double worst = judged.of_start.worst[START_MASS];
@@ -299,10 +299,10 @@ TEST(moved_particles)
         for (int i = 0; i < N; i++) {
             struct problem_state s;
             /* not about the middle, where velocities differ by any amount */
-            double x[3] = {box->lo[0] + side * uniform(0.4, 0.6),
-                           box->lo[1] + side * uniform(0.56, 0.68), 0};
+            double x[3] = {box->lo[0] + side * draw(0.4, 0.6), box->lo[1] + side * draw(0.56, 0.68),
+                           0};
             problem_sample(&run.problem, x, 0, &s);
-            const double angle = uniform(0, 2 * M_PI), by = rows[k].moved * side / sqrt(N);
+            const double angle = draw(0, 2 * M_PI), by = rows[k].moved * side / sqrt(N);
             gas.x[0][i] = x[0] + by * cos(angle), gas.x[1][i] = x[1] + by * sin(angle);
             for (int d = 0; d < 2; d++) gas.v[d][i] = s.v[d];
             gas.m[i] = mass / N, gas.rho[i] = s.rho;
@@ -388,7 +388,7 @@ TEST(masses_of_two_gases)
                 const bool inside = i == 0 ? first : i % 4 == 0;
                 double at[2];
                 do
-                    for (int d = 0; d < 2; d++) at[d] = uniform(0.01, 0.99);
+                    for (int d = 0; d < 2; d++) at[d] = draw(0.01, 0.99);
                 while ((fabs(at[0] - 0.5) < 0.24 && fabs(at[1] - 0.5) < 0.24) != inside ||
                        (!inside && fabs(at[0] - 0.5) < 0.26 && fabs(at[1] - 0.5) < 0.26));
                 for (int d = 0; d < 2; d++) gas.x[d][i] = at[d];

@@ -4,18 +4,12 @@
 #include "test.h"
 
 #include "conventions.h"
+#include "draw.h"
 #include "measure.h"
 #include "own_folder.h"
 #include "snapshot_csv.h"
 
 enum { MOST = 10000 };
-
-static uint64_t seed = 26;
-static double uniform(double lo, double hi)
-{
-    seed = seed * 6364136223846793005u + 1442695040888963407u;
-    return lo + (hi - lo) * (double)(seed >> 11) / 9007199254740992.;
-}
 
 static double storage[SNAPSHOT_COLUMNS][MOST];
 static const double boxed[3] = {1, 1, 1}, open_box[3] = {0, 0, 0};
@@ -29,10 +23,10 @@ static struct snapshot_file scatter(int dim, size_t n, double h, double masses)
             (c >= SNAPSHOT_M && c <= SNAPSHOT_H))
             file.column[c] = storage[c];
     for (size_t i = 0; i < n; i++) {
-        for (int d = 0; d < dim; d++) storage[d][i] = uniform(0, 1);
-        for (int d = 0; d < dim; d++) storage[SNAPSHOT_VX + d][i] = uniform(-1, 1);
-        storage[SNAPSHOT_M][i] = (1 + uniform(0, masses)) / (double)n;
-        storage[SNAPSHOT_H][i] = h * uniform(0.9, 1.1);
+        for (int d = 0; d < dim; d++) storage[d][i] = draw(0, 1);
+        for (int d = 0; d < dim; d++) storage[SNAPSHOT_VX + d][i] = draw(-1, 1);
+        storage[SNAPSHOT_M][i] = (1 + draw(0, masses)) / (double)n;
+        storage[SNAPSHOT_H][i] = h * draw(0.9, 1.1);
         storage[SNAPSHOT_U][i] = storage[SNAPSHOT_P][i] = 1;
     }
     return file;
@@ -114,7 +108,7 @@ TEST(every_kernel)
             const char *name = kernel_family.members[k]->name;
             const struct kernel kernel = kernel_called(name);
             const enum density_sum sum = k % 2 ? DENSITY_NUMBER : DENSITY_MASSES;
-            const double ratio = k == 0 ? 0.83 : k == 1 ? 4.5 : uniform(0.9, 4);
+            const double ratio = k == 0 ? 0.83 : k == 1 ? 4.5 : draw(0.9, 4);
             const double *box = dim > 1 || k % 3 ? boxed : open_box;
             const struct snapshot_file file = scatter(dim, numbers[dim], widths[dim] / ratio, 1);
             sum_densities(&file, box, &kernel, ratio, sum);
@@ -194,7 +188,7 @@ TEST(unknown_kernels)
     struct conventions found = found_in(&file, boxed, NULL, NULL);
     assert_false(found.known);
     assert_non_null(strstr(found.why, "not 10 times more"));
-    for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_RHO][i] = uniform(1, 2);
+    for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_RHO][i] = draw(1, 2);
     found = found_in(&file, boxed, NULL, NULL);
     assert_false(found.known);
     assert_non_null(strstr(found.why, "no kernel's sum agrees with the density: the best, "));
@@ -202,8 +196,7 @@ TEST(unknown_kernels)
         file = scatter(2, 400, 0.15, 0);
         sum_densities(&file, boxed, &kernel, 1, DENSITY_MASSES);
         for (size_t i = 0; i < file.n; i++)
-            storage[SNAPSHOT_RHO][i] *=
-                1 + (worse ? 1.3e-3 : 0.7e-3) * (uniform(0, 1) < 0.5 ? 1 : -1);
+            storage[SNAPSHOT_RHO][i] *= 1 + (worse ? 1.3e-3 : 0.7e-3) * (draw(0, 1) < 0.5 ? 1 : -1);
         found = found_in(&file, boxed, &kernel, NULL);
         assert_true(found.known == !worse);
         near_inside(found.candidate[0].residual, worse ? 1.1e-3 : 0.5e-3, worse ? 1.4e-3 : 0.8e-3);
@@ -230,9 +223,9 @@ TEST(either_sum)
 {
     const struct kernel kernel = kernel_called("quadratic_spline");
     const struct snapshot_file file = scatter(1, 120, 0.08, 0);
-    for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_M][i] *= 1 + uniform(-3e-6, 3e-6);
+    for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_M][i] *= 1 + draw(-3e-6, 3e-6);
     sum_densities(&file, boxed, &kernel, 1, DENSITY_MASSES);
-    for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_RHO][i] *= 1 + uniform(-3e-6, 3e-6);
+    for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_RHO][i] *= 1 + draw(-3e-6, 3e-6);
     const struct conventions found = found_in(&file, boxed, NULL, NULL);
     assert_true(found.known && found.any_sum && !found.same_masses);
     assert_string_equal(found.candidate[0].kernel.member.name, "quadratic_spline");
@@ -287,7 +280,7 @@ TEST(too_many_neighbours_end_the_search)
     const struct kernel cubic = kernel_called("cubic_spline");
     struct snapshot_file file = scatter(1, MOST, 0.1, 0);
     for (size_t i = 0; i < file.n; i++)
-        storage[SNAPSHOT_H][i] = 0.1, storage[0][i] = ((double)i + 0.4 * uniform(0, 1)) / MOST;
+        storage[SNAPSHOT_H][i] = 0.1, storage[0][i] = ((double)i + 0.4 * draw(0, 1)) / MOST;
     for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_RHO][i] = 1;
     struct conventions found =
         found_in(&file, boxed, &cubic, &(struct width_meaning){.ratio = 2.04});
@@ -319,7 +312,7 @@ TEST(as_columns)
             for (int d = 0; d < dim; d++) fprintf(out, "%c,v%c,a%c,", 'x' + d, 'x' + d, 'x' + d);
             fprintf(out, "du,itype\n");
             for (size_t i = 0; i < made.n; i++) {
-                const double rho = storage[SNAPSHOT_RHO][i] * (proved == 1 ? 1 : uniform(1, 2));
+                const double rho = storage[SNAPSHOT_RHO][i] * (proved == 1 ? 1 : draw(1, 2));
                 fprintf(out, "%.17g,%.17g,2,", storage[SNAPSHOT_M][i], rho);
                 if (proved < 2) fprintf(out, "%.17g,", storage[SNAPSHOT_H][i]);
                 for (int d = 0; d < dim; d++)

@@ -6,6 +6,7 @@
 
 #include <float.h>
 
+#include "draw.h"
 #include "expected_snapshot.h"
 
 enum { N = 14, BYTES = 1 << 16, KINDS = 8, ARRAYS = 10, VALUES = 12 };
@@ -14,13 +15,6 @@ static const char *const tags[ARRAYS] = {"x",  "y",  "z", "h",        "vx",
                                          "vy", "vz", "u", "pressure", "alpha"};
 static const int columns[ARRAYS] = {0, 1, 2, SNAPSHOT_H, 3, 4, 5, SNAPSHOT_U, SNAPSHOT_P, -1};
 static const double types[N] = {1, -1, 2, 1, 1, 3, -1, 1, 1, -2, 1, 1, 1, 0}; /* 0: of no type */
-
-static uint64_t seed = 28;
-static unsigned drawn(unsigned below)
-{
-    seed = seed * 6364136223846793005u + 1442695040888963407u;
-    return (unsigned)(seed >> 33) % below;
-}
 
 struct dump {
     bool swapped;

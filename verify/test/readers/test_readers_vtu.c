@@ -37,7 +37,7 @@ static struct document made(void)
     d.odd = drawn(2);
     for (int a = 0; a < ARRAYS; a++)
         for (size_t i = 0; i < arrays[a].components * ROWS; i++) {
-            const double value = ldexp(1 + uniform(), (int)drawn(20) - 10);
+            const double value = ldexp(draw(1, 2), (int)drawn(20) - 10);
             d.value[a][i] = d.single ? (double)(float)value : value;
         }
     return d;
