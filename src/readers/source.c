@@ -25,51 +25,19 @@ static bool is_hdf5(int file, size_t size)
     return false;
 }
 
-#ifdef HAVE_ZLIB
-typedef gzFile stream;
-static stream stream_open(int file)
-{
-    return gzdopen(file, "rb");
-}
-static long stream_read(stream from, void *to, size_t n)
-{
-    return gzread(from, to, (unsigned)n);
-}
-static bool stream_close(stream from)
-{
-    return gzclose(from) == Z_OK;
-}
-static enum status refuse_compressed(const struct snapshot_source *source, struct error *error)
-{
-    (void)source, (void)error;
-    return STATUS_OK;
-}
-#else
-typedef FILE *stream;
-static stream stream_open(int file)
-{
-    return fdopen(file, "rb");
-}
-static long stream_read(stream from, void *to, size_t n)
+#ifndef HAVE_ZLIB
+/* Plain files in place of zlib's. */
+typedef FILE *gzFile;
+#define gzdopen fdopen
+#define gzclose fclose
+static int gzread(gzFile from, void *to, unsigned n)
 {
     const size_t got = fread(to, 1, n, from);
-    return ferror(from) ? -1 : (long)got;
-}
-static bool stream_close(stream from)
-{
-    return fclose(from) == 0;
-}
-static enum status refuse_compressed(const struct snapshot_source *source, struct error *error)
-{
-    if (source->size < 2 || source->bytes[0] != 0x1f || source->bytes[1] != 0x8b) return STATUS_OK;
-    return error_set(error, STATUS_BAD_INPUT,
-                     "%.200s: is compressed, which this program was built without: gunzip it, or "
-                     "install zlib1g-dev (Debian) or zlib-devel (Fedora) and build again",
-                     source->path);
+    return ferror(from) ? -1 : (int)got;
 }
 #endif
 
-static enum status read_all(struct snapshot_source *source, stream from, struct error *error)
+static enum status read_all(struct snapshot_source *source, gzFile from, struct error *error)
 {
     enum { FIRST = 1 << 16, MOST = 1 << 26 };
     for (size_t chunk = FIRST;; chunk += chunk < MOST ? chunk : 0) {
@@ -80,7 +48,7 @@ static enum status read_all(struct snapshot_source *source, stream from, struct 
         if (!bytes)
             return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
         source->bytes = bytes;
-        const long got = stream_read(from, source->bytes + source->size, chunk);
+        const int got = gzread(from, source->bytes + source->size, (unsigned)chunk);
         if (got < 0)
             return error_set(error, STATUS_BAD_INPUT,
                              "%.200s: cannot be read (damaged, if it is compressed)", source->path);
@@ -111,14 +79,21 @@ enum status source_open(struct snapshot_source *source, const char *path, struct
         close(file);
         return STATUS_OK;
     }
-    stream from = stream_open(file);
+    gzFile from = gzdopen(file, "rb");
     if (!from) {
         close(file);
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
     }
     enum status status = read_all(source, from, error);
-    if (!status) status = refuse_compressed(source, error);
-    if (!stream_close(from) && !status)
+#ifndef HAVE_ZLIB
+    if (!status && source->size >= 2 && source->bytes[0] == 0x1f && source->bytes[1] == 0x8b)
+        status =
+            error_set(error, STATUS_BAD_INPUT,
+                      "%.200s: is compressed, which this program was built without: gunzip it, or "
+                      "install zlib1g-dev (Debian) or zlib-devel (Fedora) and build again",
+                      path);
+#endif
+    if (gzclose(from) && !status)
         status = error_set(error, STATUS_BAD_INPUT, "%.200s: is cut off", path);
     return status;
 }

@@ -163,19 +163,21 @@ static enum status take_box(struct remarks *remarks, const char *value, const ch
     return agree(remarks, &remarks->box, same, line, error);
 }
 
-static enum status take_text(struct remarks *remarks, size_t *first, char *said, size_t size,
-                             const char *value, const char *line, struct error *error)
-{
-    const bool same = strncmp(said, value, size - 1) == 0;
-    snprintf(said, size, "%s", value);
-    return agree(remarks, first, same, line, error);
-}
-
 /* Reads a line with a #. */
 static enum status take_remark(struct remarks *remarks, const char *line, size_t length,
                                struct error *error)
 {
     struct snapshot_file *file = remarks->file;
+    const struct {
+        const char *key;
+        size_t *first;
+        char *said;
+        size_t size;
+    } texts[] = {
+        {"case", &remarks->case_name, file->case_name, sizeof file->case_name},
+        {"boundary", &remarks->boundary, file->boundary, sizeof file->boundary},
+        {"keys", &remarks->keys, file->keys, sizeof file->keys},
+    };
     char text[1200], key[16];
     if (length >= sizeof text) return STATUS_OK;
     memcpy(text, line, length);
@@ -188,15 +190,12 @@ static enum status take_remark(struct remarks *remarks, const char *line, size_t
     snprintf(key, sizeof key, "%.*s", (int)size, text + begin);
     double number;
     if (strcmp(key, "box") == 0) return take_box(remarks, text + value, text, error);
-    if (strcmp(key, "case") == 0)
-        return take_text(remarks, &remarks->case_name, file->case_name, sizeof file->case_name,
-                         text + value, text, error);
-    if (strcmp(key, "boundary") == 0)
-        return take_text(remarks, &remarks->boundary, file->boundary, sizeof file->boundary,
-                         text + value, text, error);
-    if (strcmp(key, "keys") == 0)
-        return take_text(remarks, &remarks->keys, file->keys, sizeof file->keys, text + value, text,
-                         error);
+    for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
+        if (strcmp(key, texts[k].key) != 0) continue;
+        const bool same = strncmp(texts[k].said, text + value, texts[k].size - 1) == 0;
+        snprintf(texts[k].said, texts[k].size, "%s", text + value);
+        return agree(remarks, texts[k].first, same, text, error);
+    }
     if (text_real(text + value, &number)) /* also "time 0.2" */
         return take_number(remarks, text + begin, size, number, text, error);
     return take_numbers(remarks, text, error);

@@ -3,6 +3,7 @@
 #include "test.h"
 
 #include "sample_snapshot.h"
+#include "value.h"
 
 /* Judges uniform gas in 2D with this density and total mass at this time. */
 static void judged_of(double rho, double time, double mass, struct judged *judged)
@@ -35,49 +36,42 @@ static const json_t *at(const json_t *from, const char *a, const char *b)
     return found;
 }
 
-static double real_at(const json_t *from, const char *a, const char *b)
-{
-    return json_number_value(at(from, a, b));
-}
-
 static void is_one(const json_t *one, const struct judged *judged, double rho)
 {
     const struct conventions *c = &judged->conventions;
-    assert_string_equal(json_string_value(at(one, "file", NULL)), judged->path);
-    assert_string_equal(json_string_value(at(one, "layout", NULL)), "csv");
-    assert_string_equal(json_string_value(at(one, "code", NULL)), "unknown");
-    assert_string_equal(json_string_value(at(one, "verdict", NULL)), judged->verdict);
-    assert_int_equal(json_integer_value(at(one, "n", NULL)), N);
-    assert_int_equal(json_integer_value(at(one, "dim", NULL)), 2);
-    assert_true(real_at(one, "time", NULL) == judged->result.time);
-    assert_true(real_at(one, "precision", "positions") == judged->file.precision[0]);
-    assert_true(real_at(one, "precision", "fields") == judged->file.precision[1]);
-    near_relative(json_number_value(at(at(one, "errors", "density"), "l1", NULL)), rho - 1, 1e-12);
-    near_relative(real_at(one, "noise", "transverse_velocity"), 0.01, 1e-12);
+    assert_string_equal(value_text(one, "file"), judged->path);
+    assert_string_equal(value_text(one, "layout"), "csv");
+    assert_string_equal(value_text(one, "code"), "unknown");
+    assert_string_equal(value_text(one, "verdict"), judged->verdict);
+    assert_true(value_member(one, "n") == N && value_member(one, "dim") == 2);
+    assert_true(value_member(one, "time") == judged->result.time);
+    assert_true(value_inner(one, "precision", "positions") == judged->file.precision[0]);
+    assert_true(value_inner(one, "precision", "fields") == judged->file.precision[1]);
+    near_relative(value_member(at(one, "errors", "density"), "l1"), rho - 1, 1e-12);
+    near_relative(value_inner(one, "noise", "transverse_velocity"), 0.01, 1e-12);
     assert_true(json_boolean_value(at(one, "foreign", NULL)) == judged->foreign);
     const json_t *notes = at(one, "assumptions", NULL);
     assert_int_equal(json_array_size(notes), judged->file.notes.count);
     for (size_t k = 0; k < json_array_size(notes); k++) {
         const struct snapshot_note *note_of = &judged->file.notes.note[k];
         const json_t *got = json_array_get(notes, k);
-        assert_string_equal(json_string_value(at(got, "what", NULL)), note_of->what);
-        assert_string_equal(json_string_value(at(got, "value", NULL)), note_of->value);
-        assert_string_equal(json_string_value(at(got, "evidence", NULL)), note_of->evidence);
+        assert_string_equal(value_text(got, "what"), note_of->what);
+        assert_string_equal(value_text(got, "value"), note_of->value);
+        assert_string_equal(value_text(got, "evidence"), note_of->evidence);
     }
     const json_t *kernel = at(one, "kernel", NULL), *candidates = at(kernel, "candidates", NULL);
-    assert_string_equal(json_string_value(at(kernel, "name", NULL)), "not identifiable");
+    assert_string_equal(value_text(kernel, "name"), "not identifiable");
     assert_true(json_is_null(at(kernel, "ratio", NULL)) && json_is_null(at(kernel, "said", NULL)) &&
                 json_is_null(at(kernel, "said_ratio", NULL)));
-    assert_true(real_at(kernel, "residual", NULL) == c->candidate[0].residual);
-    assert_string_equal(json_string_value(at(kernel, "why", NULL)), c->why);
+    assert_true(value_member(kernel, "residual") == c->candidate[0].residual);
+    assert_string_equal(value_text(kernel, "why"), c->why);
     assert_int_equal(json_array_size(candidates), c->count);
     for (size_t k = 0; k < c->count; k++) {
         const json_t *got = json_array_get(candidates, k);
-        assert_string_equal(json_string_value(at(got, "name", NULL)),
-                            c->candidate[k].kernel.member.name);
-        assert_string_equal(json_string_value(at(got, "density", NULL)), "masses");
-        assert_true(real_at(got, "ratio", NULL) == c->candidate[k].ratio);
-        assert_true(real_at(got, "residual", NULL) == c->candidate[k].residual);
+        assert_string_equal(value_text(got, "name"), c->candidate[k].kernel.member.name);
+        assert_string_equal(value_text(got, "density"), "masses");
+        assert_true(value_member(got, "ratio") == c->candidate[k].ratio);
+        assert_true(value_member(got, "residual") == c->candidate[k].residual);
     }
 }
 
@@ -96,23 +90,23 @@ TEST(documents)
         json_t *document = judge_json(judged, n, gates, n == 2);
         assert_non_null(document);
         is_one(document, &judged[n - 1], n == 1 ? 1.01 : 1.02);
-        assert_string_equal(json_string_value(at(document, "case", NULL)), "sod");
-        assert_true(real_at(document, "settings", "gamma") == 1.4);
+        assert_string_equal(value_text(document, "case"), "sod");
+        assert_true(value_inner(document, "settings", "gamma") == 1.4);
         assert_int_equal(json_array_size(at(document, "orders", NULL)), 0);
         const json_t *list = at(document, "gates", NULL);
         assert_int_equal(json_array_size(list), 2);
         for (size_t k = 0; k < 2; k++) {
             const json_t *one = json_array_get(list, k);
-            assert_true(real_at(one, "value", NULL) == values[k] &&
-                        real_at(one, "bound", NULL) == bounds[k]);
+            assert_true(value_member(one, "value") == values[k] &&
+                        value_member(one, "bound") == bounds[k]);
             /* findings of gates follow those of the snapshots */
             const json_t *finding = json_array_get(at(document, "findings", NULL), n + k);
-            assert_string_equal(json_string_value(at(finding, "status", NULL)), statuses[k]);
-            assert_string_equal(json_string_value(at(finding, "message", NULL)),
+            assert_string_equal(value_text(finding, "status"), statuses[k]);
+            assert_string_equal(value_text(finding, "message"),
                                 k ? "velocity_l2 3 is not <= 2" : "density_l1 0.25 is <= 0.5");
         }
-        assert_string_equal(json_string_value(at(document, "status", NULL)), "fail");
-        const char *headline = json_string_value(at(document, "headline", NULL));
+        assert_string_equal(value_text(document, "status"), "fail");
+        const char *headline = value_text(document, "headline");
         assert_true(strstr(headline, "1 of 2 gates failed: velocity_l2 3 is not <= 2; ") ==
                     headline);
         assert_true(!json_object_get(document, "profile") == (n == 1));
@@ -124,14 +118,14 @@ TEST(documents)
                 "the case's initial state");
             near_relative(judged[0].start.mass, 2, 1e-12);
             near_relative(judged[0].start.energy, 5, 1e-12);
-            near_relative(real_at(conservation, "energy", NULL),
-                          fabs(judged[0].sums.energy / 5 - 1), 1e-9);
+            near_relative(value_member(conservation, "energy"), fabs(judged[0].sums.energy / 5 - 1),
+                          1e-9);
         }
         if (n == 2) {
-            near_relative(real_at(conservation, "mass", NULL), 0.05, 1e-12);
-            near_relative(real_at(conservation, "momentum", NULL), 0.1 / 2.1, 1e-9);
-            assert_true(real_at(conservation, "angular_momentum", NULL) >= 0);
-            near_relative(real_at(conservation, "energy", NULL),
+            near_relative(value_member(conservation, "mass"), 0.05, 1e-12);
+            near_relative(value_member(conservation, "momentum"), 0.1 / 2.1, 1e-9);
+            assert_true(value_member(conservation, "angular_momentum") >= 0);
+            near_relative(value_member(conservation, "energy"),
                           fabs(judged[1].sums.energy / judged[0].sums.energy - 1), 1e-9);
             const json_t *between = at(conservation, "between", NULL);
             assert_string_equal(json_string_value(json_array_get(between, 0)), judged[0].path);
@@ -152,7 +146,7 @@ TEST(documents)
     char no_orders[400];
     snprintf(no_orders, sizeof no_orders, "the time is 0.05 in %.100s and 0.1 in %.100s",
              judged[0].path, judged[1].path);
-    assert_string_equal(json_string_value(at(orderless, "no_orders", NULL)), no_orders);
+    assert_string_equal(value_text(orderless, "no_orders"), no_orders);
     json_decref(orderless);
     judged[1].result.n = N;
     gates = json_array();
@@ -168,8 +162,8 @@ TEST(documents)
             json_t *document = judge_json(judged, 2, gate, false);
             char headline[1600];
             snprintf(headline, sizeof headline, "%s%s", first[k], judged[1].verdict);
-            assert_string_equal(json_string_value(at(document, "headline", NULL)), headline);
-            assert_string_equal(json_string_value(at(document, "status", NULL)),
+            assert_string_equal(value_text(document, "headline"), headline);
+            assert_string_equal(value_text(document, "status"),
                                 silent == 2 && k == 2 ? "fail" : "pass");
             json_decref(document);
             json_decref(gate);
@@ -178,10 +172,9 @@ TEST(documents)
         const json_t *findings = at(document, "findings", NULL);
         assert_int_equal(json_array_size(findings), 1 + silent);
         for (size_t k = 0; k < silent; k++)
-            assert_string_equal(json_string_value(at(json_array_get(findings, k), "status", NULL)),
-                                "undetermined");
+            assert_string_equal(value_text(json_array_get(findings, k), "status"), "undetermined");
         if (silent == 2)
-            assert_string_equal(json_string_value(at(json_array_get(findings, 2), "message", NULL)),
+            assert_string_equal(value_text(json_array_get(findings, 2), "message"),
                                 "nothing could be compared");
         json_decref(document);
     }
@@ -198,14 +191,13 @@ TEST(documents)
     judged[0].file.ratio = 1.75;
     json_t *document = judge_json(judged, 1, NULL, false);
     const json_t *kernel = at(document, "kernel", NULL);
-    assert_string_equal(json_string_value(at(kernel, "name", NULL)),
+    assert_string_equal(value_text(kernel, "name"),
                         judged[0].conventions.candidate[0].kernel.member.name);
-    assert_true(real_at(kernel, "ratio", NULL) == judged[0].conventions.candidate[0].ratio);
-    assert_string_equal(json_string_value(at(kernel, "said", NULL)), "a spline");
-    assert_true(real_at(kernel, "said_ratio", NULL) == 1.75);
-    assert_string_equal(
-        json_string_value(at(json_array_get(at(kernel, "candidates", NULL), 0), "density", NULL)),
-        "number");
+    assert_true(value_member(kernel, "ratio") == judged[0].conventions.candidate[0].ratio);
+    assert_string_equal(value_text(kernel, "said"), "a spline");
+    assert_true(value_member(kernel, "said_ratio") == 1.75);
+    assert_string_equal(value_text(json_array_get(at(kernel, "candidates", NULL), 0), "density"),
+                        "number");
     assert_int_equal(json_array_size(at(document, "gates", NULL)), 0);
     judged[0].conventions.count = 0;
     json_decref(document);

@@ -6,6 +6,7 @@
 #include "judge.h"
 #include "keyed.h"
 #include "problem_list.h"
+#include "value.h"
 
 enum { MOST = 5 };
 static struct problem problem; /* of all results */
@@ -103,8 +104,7 @@ TEST(snapshots_in_every_order)
             for (size_t f = 0; f < json_array_size(orders); f++) {
                 const json_t *one = json_array_get(orders, f),
                              *pairwise = json_object_get(one, "pairwise");
-                assert_string_equal(json_string_value(json_object_get(one, "field")),
-                                    field_family.members[f]->name);
+                assert_string_equal(value_text(one, "field"), field_family.members[f]->name);
                 assert_int_equal(json_array_size(pairwise), levels - 1);
                 for (size_t i = 0; i + 1 < levels; i++) {
                     const struct judged *a = &judged[place[groups[g].levels[i]]],
@@ -164,19 +164,18 @@ TEST(orders)
                 for (int i = 0; i + 1 < count; i++)
                     near_relative(json_real_value(json_array_get(pairwise, (size_t)i)),
                                   0.5 * (f + 1), 1e-12);
-                assert_string_equal(json_string_value(json_object_get(one, "norm")), "l1");
+                assert_string_equal(value_text(one, "norm"), "l1");
                 if (count < 4) {
                     assert_true(json_is_null(json_object_get(one, "order")));
                     assert_true(json_is_null(json_object_get(one, "low")));
                     assert_true(json_is_null(json_object_get(one, "high")));
-                    assert_string_equal(json_string_value(json_object_get(one, "class")),
-                                        "too few levels");
+                    assert_string_equal(value_text(one, "class"), "too few levels");
                     continue;
                 }
-                near_relative(json_real_value(json_object_get(one, "order")), 0.5 * (f + 1), 1e-12);
-                near_relative(json_real_value(json_object_get(one, "low")), 0.5 * (f + 1), 1e-6);
-                near_relative(json_real_value(json_object_get(one, "high")), 0.5 * (f + 1), 1e-6);
-                assert_string_equal(json_string_value(json_object_get(one, "class")), "asymptotic");
+                near_relative(value_member(one, "order"), 0.5 * (f + 1), 1e-12);
+                near_relative(value_member(one, "low"), 0.5 * (f + 1), 1e-6);
+                near_relative(value_member(one, "high"), 0.5 * (f + 1), 1e-6);
+                assert_string_equal(value_text(one, "class"), "asymptotic");
             }
             json_decref(found);
             problem.fieldless = true;
@@ -266,7 +265,7 @@ TEST(other_problems)
 
 static const char *status_at(const json_t *gates, size_t k)
 {
-    return json_string_value(json_object_get(json_array_get(gates, k), "status"));
+    return value_text(json_array_get(gates, k), "status");
 }
 
 TEST(gates)
@@ -296,9 +295,9 @@ TEST(gates)
                 json_t *found = gate(text, &judged, 1, NULL);
                 assert_int_equal(json_array_size(found), 1);
                 const json_t *one = json_array_get(found, 0);
-                assert_string_equal(json_string_value(json_object_get(one, "name")), name);
-                assert_string_equal(json_string_value(json_object_get(one, "source")), "--gate");
-                const double exact = json_number_value(json_object_get(one, "value"));
+                assert_string_equal(value_text(one, "name"), name);
+                assert_string_equal(value_text(one, "source"), "--gate");
+                const double exact = value_member(one, "value");
                 near_relative(exact, value, 1e-15);
                 json_decref(found);
                 const double less = nextafter(exact, 0), more = nextafter(exact, 10);
@@ -406,8 +405,7 @@ TEST(gates_of_orders)
     }
     json_t *orders = judge_orders(judged, MOST);
     const json_t *one = json_array_get(orders, FIELD_VELOCITY);
-    const double low = json_real_value(json_object_get(one, "low")),
-                 high = json_real_value(json_object_get(one, "high"));
+    const double low = value_member(one, "low"), high = value_member(one, "high");
     assert_true(low < 0.99 && high > 1);
     for (int least = 0; least < 2; least++) {
         const char *sign = least ? ">=" : "<=";
@@ -421,9 +419,8 @@ TEST(gates_of_orders)
         assert_string_equal(status_at(found, 2), "undetermined");
         assert_string_equal(status_at(found, 3), least ? "fail" : "pass");
         const json_t *first = json_array_get(found, 1);
-        assert_true(json_real_value(json_object_get(first, "low")) == low &&
-                    json_real_value(json_object_get(first, "high")) == high);
-        assert_non_null(strstr(json_string_value(json_object_get(first, "why")), "interval"));
+        assert_true(value_member(first, "low") == low && value_member(first, "high") == high);
+        assert_non_null(strstr(value_text(first, "why"), "interval"));
         json_decref(found);
         snprintf(text, sizeof text, "order.velocity%s%.17g,order.velocity%s%.17g", sign, low, sign,
                  high);
@@ -436,7 +433,7 @@ TEST(gates_of_orders)
     for (size_t n = 3; n <= 4; n++) {
         json_t *found = gate("order.density>=0.1", judged, n, NULL);
         assert_string_equal(status_at(found, 0), "undetermined");
-        assert_string_equal(json_string_value(json_object_get(json_array_get(found, 0), "why")),
+        assert_string_equal(value_text(json_array_get(found, 0), "why"),
                             n < 4 ? "an interval needs 4 numbers of particles, there are 3"
                                   : "an error is 0 or unknown");
         json_decref(found);
@@ -484,9 +481,8 @@ TEST(sources_of_bounds)
         if (judge_gates(NULL, true, &judged, 1, &gates, &error)) fail_msg("%s", error.message);
         assert_int_equal(json_array_size(gates), 1);
         const json_t *one = json_array_get(gates, 0);
-        assert_string_equal(json_string_value(json_object_get(one, "source")), rows[k].says);
-        near_relative(json_number_value(json_object_get(one, "bound")), 0.0375 * rows[k].raised,
-                      1e-12);
+        assert_string_equal(value_text(one, "source"), rows[k].says);
+        near_relative(value_member(one, "bound"), 0.0375 * rows[k].raised, 1e-12);
         json_decref(gates);
     }
 }
@@ -542,8 +538,8 @@ TEST(orders_of_a_case)
         const char *order = NULL, *mass = NULL, *energy = NULL, *angular = NULL;
         for (size_t g = 0; g < json_array_size(gates); g++) {
             const json_t *one = json_array_get(gates, g);
-            const char *name = json_string_value(json_object_get(one, "name"));
-            const double bound = json_number_value(json_object_get(one, "bound"));
+            const char *name = value_text(one, "name");
+            const double bound = value_member(one, "bound");
             if (!strcmp(name, "order.density")) order = status_at(gates, g);
             if (!strcmp(name, "order.density")) assert_true(bound == 0.9);
             if (!strcmp(name, "mass")) mass = status_at(gates, g);
@@ -552,7 +548,7 @@ TEST(orders_of_a_case)
             if (!strcmp(name, "angular_momentum")) angular = status_at(gates, g);
             if (!strcmp(name, "angular_momentum")) assert_true(bound == 0.02);
             if (!strcmp(name, "order.density") && !strcmp(order, "known"))
-                assert_string_equal(json_string_value(json_object_get(one, "why")), "why not");
+                assert_string_equal(value_text(one, "why"), "why not");
         }
         if (!rows[k].says != !order || (order && strcmp(order, rows[k].says)))
             fail_msg("row %zu: %s", k, order ? order : "none");
