@@ -284,9 +284,12 @@ static enum status find_blocks(const struct binary *b, struct layout *layout,
 
 /* ---- into columns ---- */
 
-static enum status take_block(const struct binary *b, const struct record *record, int block,
+/* A block of accelerations has those of the gas or, as surely if it is as long as that of the
+ * velocities, of all particles: its length alone may fit both with words of 8 or 4 bytes. */
+static enum status take_block(const struct binary *b, const struct layout *layout, int block,
                               struct snapshot_file *file, struct error *error)
 {
+    const struct record *record = layout->block[block];
     const enum snapshot_column column = columns[block];
     const bool vector = block == POSITIONS || block == VELOCITIES || block == ACCELERATIONS;
     const size_t each = vector ? 3 : 1;
@@ -294,7 +297,7 @@ static enum status take_block(const struct binary *b, const struct record *recor
                         : block == MASSES                         ? b->massive
                                                                   : b->particles[0];
     size_t width = width_of(record, each * rows);
-    if (block == ACCELERATIONS && !width) /* for all particles, not only gas */
+    if (block == ACCELERATIONS && (!width || record->size == layout->block[VELOCITIES]->size))
         width = width_of(record, each * b->all);
     if (!width)
         return error_set(error, STATUS_BAD_INPUT,
@@ -319,7 +322,7 @@ static enum status take_blocks(const struct binary *b, const struct layout *layo
     file->n = file->gas = b->particles[0];
     for (int k = 0; k < BLOCKS; k++)
         if (layout->block[k] && (k != MASSES || b->mass[0] == 0) &&
-            take_block(b, layout->block[k], k, file, error))
+            take_block(b, layout, k, file, error))
             return error->status;
     if (!(b->mass[0] > 0)) return STATUS_OK;
     snapshot_note(&file->notes, "masses", "from the header's table", "%.9g", b->mass[0]);

@@ -18,8 +18,18 @@ TEST(every_form)
         b.there[ID] = !b.tagged || drawn(2);
         b.there[ACCE] = b.tagged && drawn(2); /* without its name the block cannot be recognised */
         b.there[HSML] = drawn(3) || !b.tagged;
+        b.width[ACCE] = b.width[VEL];
         if (b.tagged && drawn(3) == 0) b.rows[ACCE] = b.rows[POS]; /* rows for all particles */
         is_read(&b, "a draw");
+    }
+    for (int all = 0; all < 2; all++) { /* as many words of 4 bytes for all as of 8 for the gas */
+        struct binary b = made(1);
+        for (int t = 0; t < TYPES; t++) b.count[t] = t < 2 ? 8 : 0, b.table[t] = 100;
+        for (int k = POS; k <= ID; k++) b.rows[k] = 16;
+        for (int k = U; k <= HSML; k++) b.rows[k] = 8;
+        b.rows[ACCE] = all ? 16 : 8, b.width[VEL] = b.width[ACCE] = all ? 4 : 8;
+        b.there[MASS] = false;
+        is_read(&b, "as many other particles");
     }
     struct binary b = made(2);
     b.box = (double)INFINITY;
