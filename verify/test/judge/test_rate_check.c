@@ -511,6 +511,25 @@ TEST(scattered_widths)
     rate_table_free(&ours);
 }
 
+/* Widths that do not scatter leave no difference of other quantities open. */
+TEST(equal_widths)
+{
+    make(&gas, 2, sides[2], schemes[2]);
+    struct rate_table ours = table_of(&gas.setup);
+    struct setup changed = gas.setup;
+    changed.scheme.eta = 2.64;
+    struct rate_table theirs = table_of(&changed);
+    write_file(&theirs, 0xb);
+    const struct rate_comparison plain = checked(&gas.setup, &ours, 1e-9).columns[2];
+    assert_string_equal(plain.cause, "eta: theirs is 2.64");
+    file.values[3][plain.particle == 2 ? 3 : 2] += 0.05 * plain.worst * scale_of(&theirs, 3, 0);
+    const struct rate_check check = checked(&gas.setup, &ours, 1e-9);
+    assert_string_equal(cause_of(&check, "h"), plain.cause);
+    assert_string_equal(cause_of(&check, "ax"), "it follows from h, or there is more than one");
+    rate_table_free(&ours);
+    rate_table_free(&theirs);
+}
+
 /* Differences that no choice of a scheme makes. */
 TEST(differences_that_no_scheme_makes)
 {
