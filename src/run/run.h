@@ -122,9 +122,8 @@ struct run_result {
     size_t crossed;               /* 1D: pairs of initial neighbours that are no longer adjacent */
     double spacing, h;    /* (box/n)^(1/d); volume-weighted mean smoothing length in the window */
     struct budget budget; /* L1 by regions of the problem */
-    /* conservation errors, relative and >= 0: see trace_drift; momentum only along directions
-     * without walls, layers or gravity */
-    double mass, momentum, angular_momentum, energy;
+    struct trace_drift drift;   /* at `time`; momentum only along directions without walls, layers
+                                   or gravity */
     struct trace_motion motion; /* NaN: unknown */
     struct simulation_cost cost;
     struct description_sums matrix; /* at `time`; none after a breakdown */
@@ -195,6 +194,10 @@ json_t *run_functionals_json(const struct run_result *result);
  * and "centre" in particle spacings. Unknown values are null. */
 void run_add_motion(const struct run_result *result, const struct trace_motion *motion,
                     json_t *conservation);
+
+/* The drifts of the sums as the first members of "conservation"; "angular_momentum" is null in 1D.
+ */
+json_t *run_drift_json(int dim, const struct trace_drift *drift);
 
 /* Adds all members of a result of kind `run` to a document (see result_new). */
 void run_add_json(const struct run_settings *settings, const struct run_result *result,

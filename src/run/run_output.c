@@ -112,12 +112,16 @@ json_t *run_window_json(const struct window *window)
                          (void *)position_json(window->dim, window->hi));
 }
 
+json_t *run_drift_json(int dim, const struct trace_drift *drift)
+{
+    json_t *angular = dim == 1 ? json_null() : result_number(drift->angular_momentum);
+    return result_object("mass=%g momentum=%g angular_momentum=%p energy=%g", drift->mass,
+                         drift->momentum, (void *)angular, drift->energy);
+}
+
 static json_t *conservation_json(const struct run_result *result)
 {
-    json_t *angular =
-        result->problem.domain.dim == 1 ? json_null() : result_number(result->angular_momentum);
-    json_t *object = result_object("mass=%g momentum=%g angular_momentum=%p energy=%g",
-                                   result->mass, result->momentum, (void *)angular, result->energy);
+    json_t *object = run_drift_json(result->problem.domain.dim, &result->drift);
     run_add_motion(result, &result->motion, object);
     return object;
 }

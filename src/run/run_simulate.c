@@ -8,17 +8,6 @@
 #include "growth.h"
 #include "initial.h"
 
-/* Compares the sums at the end with those at t = 0. */
-static void measure_conservation(struct run_result *result, const struct conservation *start,
-                                 const struct conservation *end)
-{
-    const struct trace_drift drift = trace_drift(start, end, end);
-    result->mass = drift.mass;
-    result->momentum = drift.momentum;
-    result->angular_momentum = drift.angular_momentum;
-    result->energy = drift.energy;
-}
-
 static enum status finish(struct run_result *result, const struct run_outcome *outcome,
                           struct error *error)
 {
@@ -28,7 +17,7 @@ static enum status finish(struct run_result *result, const struct run_outcome *o
     }
     result->status = outcome->status;
     snprintf(result->message, sizeof result->message, "%s", outcome->reason.message);
-    measure_conservation(result, &outcome->start, &outcome->end);
+    result->drift = trace_drift(&outcome->start, &outcome->end, &outcome->end);
     return run_keep(result, &outcome->snapshot, error);
 }
 
@@ -37,8 +26,9 @@ static enum status broke_down_at_start(struct run_result *result, const struct e
 {
     result->status = STATUS_BROKE_DOWN;
     snprintf(result->message, sizeof result->message, "%s", reason->message);
-    result->mass = result->momentum = result->angular_momentum = result->energy = (double)NAN;
-    result->motion = trace_motion(&(struct trace){.count = 0});
+    const struct trace none = {.count = 0};
+    result->drift = trace_worst(&none);
+    result->motion = trace_motion(&none);
     run_measure_nothing(result);
     return STATUS_OK;
 }

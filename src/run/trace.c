@@ -64,7 +64,8 @@ struct trace_drift trace_drift(const struct conservation *start, const struct co
 
 struct trace_drift trace_worst(const struct trace *trace)
 {
-    struct trace_drift worst = {0};
+    const double none = trace->count < 2 ? (double)NAN : 0;
+    struct trace_drift worst = {none, none, none, none};
     for (size_t k = 1; k < trace->count; k++) {
         const struct trace_drift drift =
             trace_drift(&trace->sums[0], &trace->sums[k], &trace->sums[trace->count - 1]);

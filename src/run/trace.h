@@ -44,7 +44,7 @@ struct trace_motion {
 };
 struct trace_motion trace_motion(const struct trace *trace);
 
-/* The largest drift of all entries. */
+/* The largest drift of all entries; NaN: fewer than two. */
 struct trace_drift trace_worst(const struct trace *trace);
 
 /* Names of the conserved quantities in "conservation" of results; the number of a figure is its

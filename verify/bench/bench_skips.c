@@ -370,8 +370,9 @@ static void judge(struct bench_skip *skip, const struct job *job)
     const struct run_result *a = &job[BENCH_WITHOUT].last, *b = &job[BENCH_WITH].last;
     skip->measured = error_of(a, &skip->error[BENCH_WITHOUT]);
     error_of(b, &skip->error[BENCH_WITH]);
-    skip->momentum[BENCH_WITHOUT] = a->momentum, skip->momentum[BENCH_WITH] = b->momentum;
-    skip->energy[BENCH_WITHOUT] = a->energy, skip->energy[BENCH_WITH] = b->energy;
+    skip->momentum[BENCH_WITHOUT] = a->drift.momentum,
+    skip->momentum[BENCH_WITH] = b->drift.momentum;
+    skip->energy[BENCH_WITHOUT] = a->drift.energy, skip->energy[BENCH_WITH] = b->drift.energy;
     struct error ignored;
     if (skip->name == switches[0].name && (skip->shares = calloc(1, sizeof *skip->shares)) &&
         bench_possible(job[BENCH_WITHOUT].run, skip->shares, &ignored)) {

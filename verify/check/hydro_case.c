@@ -260,7 +260,7 @@ static void measure_energy(struct check_run *run, bool thermal_only)
     for (size_t i = 0; i < s->n; i++)
         energy += s->m[i] * (s->u[i] + (thermal_only ? 0 : s->v[0][i] * s->v[0][i] / 2));
     const double want = (double)fabsl(energy / 2.75L - 1);
-    check_measure(run, fabs(result.energy / want - 1), 1e-9, 1e-12,
+    check_measure(run, fabs(result.drift.energy / want - 1), 1e-9, 1e-12,
                   "energy of symplectic_euler, off by %.3g", want);
     run_free(&result);
 }
@@ -305,8 +305,8 @@ static void measure_errors_again(struct check_run *run, const void *subject)
     const double late = wrong ? wrong->late : 0;
     check_measure(run, fabs(result.binned_density_l1 / binned_again(s, &tube, 0.2 + late) - 1),
                   2e-3, 2e-4, "binned density, against a sum with %d samples a bin", FINE);
-    check_measure(run, result.momentum, 1e-13, 2e-16, "momentum");
-    check_measure(run, result.energy, 1e-12, 2e-16, "energy");
+    check_measure(run, result.drift.momentum, 1e-13, 2e-16, "momentum");
+    check_measure(run, result.drift.energy, 1e-12, 2e-16, "energy");
     run_free(&result);
     measure_energy(run, wrong && wrong->field == FIELD_DENSITY);
 }

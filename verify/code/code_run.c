@@ -367,12 +367,7 @@ static void follow(struct course *course)
         if (now->path[i] != course->snapshot && code_is_new(now, i, &course->before, course->began))
             add_moment(course, now->path[i]);
     if (course->trace.count) trace_add(&course->trace, result->time, &course->judged.sums);
-    const struct trace_drift worst = trace_worst(&course->trace);
-    const bool known = course->trace.count > 1;
-    result->mass = known ? worst.mass : (double)NAN;
-    result->momentum = known ? worst.momentum : (double)NAN;
-    result->angular_momentum = known ? worst.angular_momentum : (double)NAN;
-    result->energy = known ? worst.energy : (double)NAN;
+    result->drift = trace_worst(&course->trace);
     result->motion = trace_motion(&course->trace);
 }
 

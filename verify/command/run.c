@@ -137,11 +137,12 @@ static void print_conservation(const struct run_result *result, const struct tab
 {
     char turning[48] = "";
     if (result->problem.domain.dim > 1)
-        snprintf(turning, sizeof turning, "angular momentum %.1e  ", result->angular_momentum);
+        snprintf(turning, sizeof turning, "angular momentum %.1e  ",
+                 result->drift.angular_momentum);
     printf("\n%sconservation%s     mass %.1e  momentum %.1e  %senergy %.1e  (relative, t = %g "
            "against 0)\n",
-           style->bold, style->end, result->mass, result->momentum, turning, result->energy,
-           result->time);
+           style->bold, style->end, result->drift.mass, result->drift.momentum, turning,
+           result->drift.energy, result->time);
     const struct trace_motion *motion = &result->motion;
     if (result->problem.problem->steady && isfinite(motion->rebound))
         printf(

@@ -131,11 +131,8 @@ json_t *judge_conservation(const struct judged *judged, size_t n, struct trace *
         return json_null();
     }
     const struct trace_motion motion = trace_motion(trace);
-    json_t *conservation =
-        json_pack("{s:o, s:o, s:o, s:o, s:[s, s]}", "mass", result_number(drift.mass), "momentum",
-                  result_number(drift.momentum), "angular_momentum",
-                  main->file.dim == 1 ? json_null() : result_number(drift.angular_momentum),
-                  "energy", result_number(drift.energy), "between", from, to);
+    json_t *conservation = run_drift_json(main->file.dim, &drift);
+    json_object_set_new(conservation, "between", json_pack("[s, s]", from, to));
     run_add_motion(&main->result, &motion, conservation);
     return conservation;
 }

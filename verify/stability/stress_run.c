@@ -70,12 +70,12 @@ json_t *stress_unsound(const struct run_result *result, const struct stress_watc
 int stress_conserved(const struct run_result *result, char reason[STRESS_REASON], int used)
 {
     const double momentum_bound = 1e-9, energy_bound = 0.05;
-    if (!(result->energy <= energy_bound))
+    if (!(result->drift.energy <= energy_bound))
         used += snprintf(reason + used, STRESS_REASON - (size_t)used, "energy error %.2g; ",
-                         result->energy);
-    if (!(result->momentum <= momentum_bound))
+                         result->drift.energy);
+    if (!(result->drift.momentum <= momentum_bound))
         used += snprintf(reason + used, STRESS_REASON - (size_t)used, "momentum error %.2g; ",
-                         result->momentum);
+                         result->drift.momentum);
     return used;
 }
 
@@ -100,7 +100,7 @@ static json_t *judge_run(const struct stress_cell *cell, const struct run_result
     char reason[STRESS_REASON] = "";
     const bool drift = cell->group->kind == STRESS_DRIFT;
     const double error = result->errors[FIELD_DENSITY].l1 / mean_density(result);
-    const double measured = drift ? result->energy : error;
+    const double measured = drift ? result->drift.energy : error;
     const size_t crossed = result->crossed;
     json_t *unsound = stress_unsound(result, watch, measured);
     if (unsound) return unsound;
@@ -116,7 +116,7 @@ static json_t *judge_run(const struct stress_cell *cell, const struct run_result
                          "%zu neighbours are no longer next to each other; ", crossed);
     if (drift)
         used += snprintf(reason + used, sizeof reason - (size_t)used,
-                         "momentum error %.2g, largest speed %.2g; ", result->momentum,
+                         "momentum error %.2g, largest speed %.2g; ", result->drift.momentum,
                          result->errors[FIELD_VELOCITY].linf);
     if (used) reason[used - 2] = '\0';
     return stress_outcome((double)NAN, measured, good ? "ok" : "inaccurate", reason);

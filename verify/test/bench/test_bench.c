@@ -350,7 +350,7 @@ static void compare_plain(const char *name, int n, char *const *more)
     }
     near_below(worst, 1e-9);
     near_inside(moved, 1e-5, 1e3); /* the particles have moved */
-    near_below(plain.momentum, 1e-12);
+    near_below(plain.drift.momentum, 1e-12);
     near_relative(plain.errors[FIELD_DENSITY].l1, fast.errors[FIELD_DENSITY].l1, 1e-8);
     run_free(&fast);
     run_free(&plain);

@@ -4,20 +4,11 @@
 #include "test.h"
 
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "cases.h"
+#include "own_folder.h"
 
 enum { LARGEST = 65536 };
-
-static char folder[] = "./sphproof_cases_XXXXXX";
-
-static const char *path_of(const char *name)
-{
-    static char path[128];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
 
 /* Writes the built-in case of that name, padded with empty lines to this size. */
 static void write_case(const char *path, const char *name, size_t bytes)
@@ -43,7 +34,7 @@ TEST(paths)
     write_case(path_of("tube"), "sod", 0);
     assert_int_equal(case_load(&file, path_of("tube"), &error), STATUS_OK);
     char *before = getcwd(NULL, 0);
-    assert_int_equal(chdir(folder), 0);
+    assert_int_equal(chdir(own_folder), 0);
     const enum status alone = case_load(&file, "tube.ini", &error),
                       bare = case_load(&file, "tube", &error),
                       dotted = case_load(&file, "tube.txt", &error);
@@ -88,7 +79,7 @@ TEST(descriptors)
 TEST(files_that_are_not_cases)
 {
     refused(path_of("none.ini"), "No such file or directory");
-    refused(folder, "Is a directory");
+    refused(path_of("."), "Is a directory");
     assert_int_equal(mkfifo(path_of("pipe.ini"), 0600), 0);
     refused(path_of("pipe.ini"), "not a regular file"); /* no process writes to it */
     unlink(path_of("pipe.ini"));
@@ -147,17 +138,3 @@ TEST(unknown_names)
     assert_int_equal(case_load(&file, name, &error), STATUS_BAD_INPUT);
     assert_memory_equal(error.message, "no case 'aaaa", 13);
 }
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return !mkdtemp(folder);
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    return rmdir(folder);
-}
-
-TEST_BETWEEN(make_folder, remove_folder);

@@ -3,36 +3,20 @@
  * with the reason. */
 #include "test.h"
 
-#include <unistd.h>
-
 #include "cache.h"
 #include "checkpoint.h"
 #include "clock.h"
+#include "own_folder.h"
 #include "sample_simulation.h"
 
-static char folder[] = "checkpoint.XXXXXX", path[64];
-static char build[CHECKPOINT_WORD + 1];
+static char path[256], build[CHECKPOINT_WORD + 1];
 
 static struct checkpoint usual(void)
 {
+    snprintf(path, sizeof path, "%s", path_of("state"));
+    memset(build, 'b', CHECKPOINT_WORD); /* the longest build */
     return (struct checkpoint){
         .path = path, .build = build, .run = "{\"settings\": {\"n\": 40}}", .snapshot = 0.125};
-}
-
-static int begin(void **state)
-{
-    (void)state;
-    if (!mkdtemp(folder)) return 1;
-    snprintf(path, sizeof path, "%s/state", folder);
-    memset(build, 'b', CHECKPOINT_WORD); /* the longest build */
-    return 0;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    unlink(path);
-    return rmdir(folder);
 }
 
 /* A checkpoint is due this many seconds after it was last written, or after the first call. */
@@ -303,9 +287,9 @@ TEST(checkpoints_that_cannot_be_written)
     struct checkpoint checkpoint = usual();
     struct growth growth = {0};
     struct error error = {0};
-    char beside[80];
+    char beside[300];
     saved(self);
-    snprintf(beside, sizeof beside, "%s/no/such", folder);
+    snprintf(beside, sizeof beside, "%s", path_of("no/such"));
     checkpoint.path = beside;
     checkpoint_save(&checkpoint, self, &growth);
     assert_int_equal(checkpoint.trouble.status, STATUS_ENVIRONMENT);
@@ -319,5 +303,3 @@ TEST(checkpoints_that_cannot_be_written)
     assert_non_null(strstr(error.message, "below': Not a directory"));
     simulation_destroy(self);
 }
-
-TEST_BETWEEN(begin, end);

@@ -3,17 +3,17 @@
  * bad file. */
 #include "test.h"
 
-#include <unistd.h>
-
 #include "initial.h"
 #include "keyed.h"
+#include "own_folder.h"
 #include "particle_file.h"
 #include "problem.h"
 
-static char path[] = "sphproof_particles_XXXXXX";
+static char path[256];
 
 static const char *written(const char *text)
 {
+    snprintf(path, sizeof path, "%s", path_of("particles.csv"));
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     fputs(text, file);
@@ -202,7 +202,7 @@ TEST(starts_of_runs)
     assert_string_equal(initial.ignored, "");
     initial_free(&initial);
     /* settings apply: a boost, but no jitter */
-    char keys[96];
+    char keys[300];
     snprintf(keys, sizeof keys, "file=%s jitter=0.3 lattice=random",
              written(PLANE "\n1,2,3,4,5,6\n0,3,8,9,10,11\n"));
     const struct settings settings = keyed_settings(keys);
@@ -265,19 +265,3 @@ TEST(starts_that_are_refused)
         initial_free(&initial);
     }
 }
-
-static int make_file(void **state)
-{
-    const int file = mkstemp(path);
-    (void)state;
-    return file < 0 || close(file);
-}
-
-static int remove_file(void **state)
-{
-    (void)state;
-    unlink(path);
-    return 0;
-}
-
-TEST_BETWEEN(make_file, remove_file);

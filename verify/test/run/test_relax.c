@@ -4,6 +4,7 @@
 
 #include "gas.h"
 #include "initial.h"
+#include "own_folder.h"
 #include "regularity.h"
 #include "relax.h"
 
@@ -196,14 +197,7 @@ TEST(large_glasses_are_kept)
 {
     enum { N = 1000 };
     static double x[3][N];
-    char folder[] = "sphproof_glass_XXXXXX", command[64];
-    assert_non_null(mkdtemp(folder));
-    const char *old = getenv("XDG_CACHE_HOME");
-    char *before = old ? strdup(old) : NULL;
-    char *whole = realpath(folder, NULL);
-    assert_non_null(whole);
-    setenv("XDG_CACHE_HOME", whole, 1);
-    free(whole);
+    setenv("XDG_CACHE_HOME", whole_path_of("kept"), 1);
     double *const places[] = {x[0], x[1], x[2]};
     static double kept[2][N];
     static const struct {
@@ -236,11 +230,4 @@ TEST(large_glasses_are_kept)
             else if (rows[k].read)
                 assert_memory_equal(kept[d], x[d], sizeof kept[d]);
     }
-    if (before)
-        setenv("XDG_CACHE_HOME", before, 1);
-    else
-        unsetenv("XDG_CACHE_HOME");
-    free(before);
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    assert_int_equal(system(command), 0);
 }

@@ -202,7 +202,7 @@ TEST(loose_widths)
              "kernel=wendland_c2 formulation=lagrangian integrator=modified_leapfrog energy=total "
              "h_tolerance=1e-2",
              "auto");
-    near_below(result.energy, 1e-12);
+    near_below(result.drift.energy, 1e-12);
     run_free(&result);
 }
 

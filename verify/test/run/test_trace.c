@@ -38,7 +38,7 @@ TEST(ends_with_the_run)
     /* relaxation has removed the jitter of 0.2 */
     assert_true(start->spread > 0.1 && end->spread < 0.5 * start->spread);
     json_t *through = trace_json(&trace, 2);
-    same(last(json_object_get(through, "angular_momentum")), result.angular_momentum);
+    same(last(json_object_get(through, "angular_momentum")), result.drift.angular_momentum);
     same(last(json_object_get(json_object_get(through, "regularity"), "gradient")), end->gradient);
     assert_int_equal(json_array_size(json_object_get(through, "time")), trace.count);
     json_decref(through);

@@ -1,104 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Tests the cache with damaged and old entries, kill -9, and two processes at once. */
+ * Tests the cache with kill -9, and with two processes at once. */
 #define _GNU_SOURCE /* nftw */
 #include "test.h"
 
-#include <fcntl.h>
-#include <time.h>
 #include <sys/wait.h>
 
 #include "sample_jobs.h"
-
-/* Old entries are removed on request, and not when another process opens the folder. */
-TEST(old_entries_are_pruned)
-{
-    struct job_folder folder;
-    struct cache_census census;
-    struct error error = {0};
-    char path[CACHE_PATH_MAX];
-    job_folder_make(&folder);
-    json_t *document = json_pack("{s:i}", "value", 1);
-    const struct timespec month[2] = {{.tv_sec = time(NULL) - (time_t)CACHE_MONTH - 60},
-                                      {.tv_sec = time(NULL) - (time_t)CACHE_MONTH - 60}};
-    for (int k = 0; k < 3; k++) {
-        char key[8];
-        snprintf(key, sizeof key, "%d", k);
-        assert_int_equal(cache_store(&folder.cache, key, document, &error), STATUS_OK);
-        assert_true(cache_has(&folder.cache, key));
-        cache_path(&folder.cache, key, path);
-        if (k) assert_int_equal(utimensat(AT_FDCWD, path, month, 0), 0);
-    }
-    json_decref(document);
-    json_decref(cache_load(&folder.cache, "2", NULL)); /* reading it resets its age */
-    assert_int_equal(cache_open(&folder.cache, folder.cache_folder, false, &error), STATUS_OK);
-    assert_int_equal(cache_prune(folder.cache_folder, HUGE_VAL, &census, &error), STATUS_OK);
-    assert_true(census.entries == 3 && census.removed == 0 && census.bytes > 0);
-    assert_int_equal(cache_prune(folder.cache_folder, CACHE_MONTH, &census, &error), STATUS_OK);
-    assert_true(census.entries == 2 && census.removed == 1);
-    assert_true(cache_has(&folder.cache, "0") && !cache_has(&folder.cache, "1") &&
-                cache_has(&folder.cache, "2"));
-    assert_int_equal(cache_prune("no/such", 1, &census, &error), STATUS_BAD_INPUT);
-    job_folder_clear(&folder);
-}
-
-static size_t read_all(const char *path, char *bytes, size_t size)
-{
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    const size_t n = fread(bytes, 1, size, file);
-    fclose(file);
-    return n;
-}
-
-static void write_all(const char *path, const char *bytes, size_t n)
-{
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, n, file), n);
-    fclose(file);
-}
-
-/* A truncated entry, one with any changed byte and that of another key count as missing. */
-TEST(damaged_entries)
-{
-    struct job_folder folder;
-    struct error error = {0};
-    char path[CACHE_PATH_MAX], other[CACHE_PATH_MAX], bytes[4096], damaged[4096];
-    job_folder_make(&folder);
-    json_t *document = json_pack("{s:f, s:[i, i]}", "value", 0.1, "list", 1, 2);
-    assert_int_equal(cache_store(&folder.cache, "key", document, &error), STATUS_OK);
-    json_t *back = cache_load(&folder.cache, "key", NULL);
-    assert_true(json_equal(back, document));
-    json_decref(back);
-    cache_path(&folder.cache, "key", path);
-    const size_t n = read_all(path, bytes, sizeof bytes);
-    for (size_t i = 0; i < n; i++) {
-        bool seen = false;
-        write_all(path, bytes, i);
-        assert_null(cache_load(&folder.cache, "key", &seen));
-        assert_true(seen);
-        memcpy(damaged, bytes, n);
-        damaged[i] = (char)(damaged[i] ^ (1 << (i % 7)));
-        write_all(path, damaged, n);
-        assert_null(cache_load(&folder.cache, "key", NULL));
-    }
-    write_all(path, bytes, n);
-    back = cache_load(&folder.cache, "key", NULL);
-    assert_non_null(back);
-    json_decref(back);
-    cache_path(&folder.cache, "other key", other);
-    *strrchr(other, '/') = '\0';
-    mkdir(other, 0777);
-    other[strlen(other)] = '/';
-    write_all(other, bytes, n);
-    assert_null(cache_load(&folder.cache, "other key", NULL));
-    /* another build has entries of its own */
-    struct cache rebuilt = folder.cache;
-    rebuilt.build[0] = rebuilt.build[0] == '0' ? '1' : '0';
-    assert_null(cache_load(&rebuilt, "key", NULL));
-    json_decref(document);
-    job_folder_clear(&folder);
-}
 
 /* If the process is killed during its third job, the first two entries are complete. */
 TEST(killed_process_leaves_whole_entries)
