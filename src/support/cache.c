@@ -62,20 +62,27 @@ static uint64_t hash_mathematics(uint64_t hash)
     return hash;
 }
 
-/* Any change of the program, or of the mathematical library, gives another build. */
+/* Any change of the program, or of the mathematical library, gives another build. The program is
+ * hashed by words, because it has millions of bytes. */
 void cache_build(char build[CACHE_BUILD_MAX])
 {
-    char bytes[1 << 16];
+    uint64_t words[1 << 13] = {0};
+    char *bytes = (char *)words;
     size_t n;
     uint64_t hash =
         cache_hash(CACHE_HASH, VERSION_FLAGS VERSION_GIT, sizeof VERSION_FLAGS VERSION_GIT);
     FILE *program = open_program();
-    while (program && (n = fread(bytes, 1, sizeof bytes, program)) > 0)
-        hash = cache_hash(hash, bytes, n);
+    while (program && (n = fread(bytes, 1, sizeof words, program)) > 0) {
+        memset(bytes + n, 0, sizeof words - n);
+        for (size_t i = 0; i < (n + 7) / 8; i++) {
+            hash = (hash ^ words[i]) * UINT64_C(0x100000001b3);
+            hash ^= hash >> 32;
+        }
+    }
     if (program) fclose(program);
 #ifdef _CS_GNU_LIBC_VERSION
-    n = confstr(_CS_GNU_LIBC_VERSION, bytes, sizeof bytes);
-    hash = cache_hash(hash, bytes, n < sizeof bytes ? n : sizeof bytes);
+    n = confstr(_CS_GNU_LIBC_VERSION, bytes, sizeof words);
+    hash = cache_hash(hash, bytes, n < sizeof words ? n : sizeof words);
 #endif
     snprintf(build, CACHE_BUILD_MAX, "%016" PRIx64, hash_mathematics(hash));
 }
