@@ -29,7 +29,7 @@ STUDIES = [
     (1, ["converge", "sod", *LADDER, "t_end=0.05"]),
     (2, ["converge", "sod", *LADDER, "kernel=none"]),
     (3, ["converge", "sod", *LADDER, "cfl=50", "viscosity=none"]),
-    (0, ["verify", "riemann/star_states", "norms", "--mutants"]),
+    (0, ["verify", "riemann/star_states", "norms/window_parts", "--mutants"]),
     (0, ["bench", "sod", "--n", "40,60", "--samples", "1", "--time", "1e-4"]),
     (3, ["bench", "sod", "--n", "60,100", "--samples", "1", "--time", "1e-4", "viscosity=none", "cfl=3", "integrator=symplectic_euler"]),
 ]

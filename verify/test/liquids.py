@@ -32,7 +32,7 @@ def poiseuille(y, t, nu, force, terms=4000):
 
 
 def cloud(wide=1):
-    n = draw.randint(18, 24)
+    n = draw.randint(9, 12)
     places = [(wide * (i + 0.5 + draw.uniform(-0.3, 0.3)) / (wide * n), (j + 0.5 + draw.uniform(-0.3, 0.3)) / n)
               for i in range(wide * n) for j in range(n)]
     return places, 1 / n ** 2

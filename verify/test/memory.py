@@ -29,32 +29,41 @@ def sphproof(*words, limit=None, status=0):
     return call(*words, "--threads", "1", status=status, env=PLAIN, preexec_fn=confine)
 
 
-def said_and_taken(words):
+def estimated(words):
     said = json.loads(sphproof("run", *words, "--explain", "--json", "-").stdout)
-    estimate = said["estimate"]
-    assert "status" not in said and estimate["cpu_s"] > 0
-    # addresses differ from run to run, and with them the number of used pages: the least of three runs counts
-    costs = [json.loads(sphproof("run", *words, "--json", "-").stdout)["cost"] for _ in range(3)]
-    cost = min(costs, key=lambda one: one["peak_rss_bytes"])
+    assert "status" not in said and said["estimate"]["cpu_s"] > 0
+    return said["estimate"]
+
+
+def taken(words, estimate):
+    cost = json.loads(sphproof("run", *words, "--json", "-").stdout)["cost"]
     expect("steps of %s" % words, 0.3 * cost["steps"] - 1 <= estimate["steps"] <= 3 * cost["steps"] + 1, (estimate, cost))
-    return estimate["memory_bytes"], cost["peak_rss_bytes"]
+    return cost["peak_rss_bytes"]
 
 
 def main():
     bytes_of = [json.loads(sphproof("run", *RUNS[0], "--explain", "--json", "-", *more).stdout)["estimate"]["memory_bytes"]
                 for more in ([], AWAY)]
     expect("snapshots on the way", bytes_of[1] - bytes_of[0] >= 300 * 120**2 and not os.path.exists("end_0000.csv"), bytes_of)
-    least = said_and_taken(TINY)
+    tiny = estimated(TINY)
+    # addresses differ from run to run, and with them the number of used pages: the least of up to three runs counts
+    least = min(taken(TINY, tiny) for _ in range(3))
     for words in [*RUNS, RUNS[0] + AWAY]:
-        said, taken = (more - tiny for more, tiny in zip(said_and_taken(words), least))
-        expect("memory of %s" % words, abs(said / taken - 1) <= (CLOSELY if words == RUNS[2] else WITHIN), (said, taken))
-        print("%s: %.1f MB said, %.1f taken" % (words[0], 1e-6 * said, 1e-6 * taken))
+        estimate, took = estimated(words), float("inf")
+        said = estimate["memory_bytes"] - tiny["memory_bytes"]
+        within = CLOSELY if words == RUNS[2] else WITHIN
+        for _ in range(3):
+            took = min(took, taken(words, estimate) - least)
+            if abs(said / took - 1) <= within:
+                break
+        expect("memory of %s" % words, abs(said / took - 1) <= within, (said, took))
+        print("%s: %.1f MB said, %.1f taken" % (words[0], 1e-6 * said, 1e-6 * took))
     said = sphproof("run", *RUNS[0], "--explain").stdout
     expect("estimate as it is printed", " about %.0f MB of memory" % (1e-6 * bytes_of[0]) in said, said)
     said = sphproof("run", *TINY, "--json", "tiny.json").stdout
     with open("tiny.json", encoding="ascii") as file:
-        taken = json.load(file)["cost"]["peak_rss_bytes"]
-    expect("memory as it is printed", " interactions, %.1f MB\n" % (1e-6 * taken) in said, (taken, said))
+        took = json.load(file)["cost"]["peak_rss_bytes"]
+    expect("memory as it is printed", " interactions, %.1f MB\n" % (1e-6 * took) in said, (took, said))
     for more in ([], ["--explain"], ["--json", "-"], AWAY):
         done = sphproof("run", "sound_wave_3d", "n=10000000", *more, limit=3 << 30, status=4)
         expect("what does not fit", not done.stdout and all(

@@ -12,6 +12,7 @@ import re
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
 
@@ -123,10 +124,12 @@ def judge_words(name):
 def judge_derived(name, hows):
     """What a plug-in supplies, and how the rest is found."""
     path = os.path.join(FOLDER, name + ".so")
-    derived = json.loads(call("kernel", path, "--dim", "1", "--json", "-")[1])["derived"]
+    with tempfile.NamedTemporaryFile() as file:
+        code, out, err = call("kernel", path, "--dim", "1", "--color", "never", "--json", file.name)
+        with open(file.name) as f:
+            derived = json.load(f)["derived"]
     if derived != [what for what, how in zip(("constant", "dw_dh", "knots", "class"), hows) if how]:
         return "derived: %s" % derived
-    code, out, err = call("kernel", path, "--dim", "1", "--color", "never")
     lines = ["  %-28s %s" % (what, "supplied and checked" if not how else "not supplied: found " + how)
              for what, how in zip(("constant", "dW/dh", "knots", "class"), hows)]
     return None if code == 0 and out.endswith(" bounds\n%s\n\n" % "\n".join(lines)) else "exit status %d: %r%r" % (code, out, err)
