@@ -11,6 +11,7 @@
 
 #define RATIO_LEAST 0.8
 #define RATIO_MOST  4.6
+#define SAME        1e-9 /* precision of a search: residuals below it, as on a lattice, are equal */
 enum { RATIO_STEPS = 60, GOLDEN_STEPS = 44, NEIGHBOURS_MAX = 4096 };
 
 /* A particle of the sample and its neighbours, each with distance over h and mass. */
@@ -155,7 +156,7 @@ static struct convention fit(const struct sample *sample, const struct kernel *k
     double a = hi - golden * (hi - lo), b = lo + golden * (hi - lo);
     double at_a = residual(sample, kernel, sum, a, INFINITY),
            at_b = residual(sample, kernel, sum, b, INFINITY);
-    for (int k = 0; k < GOLDEN_STEPS; k++) {
+    for (int k = 0; k < GOLDEN_STEPS && fabs(at_a - at_b) > SAME * at_a; k++) {
         if (at_a < at_b) {
             hi = b, b = a, at_b = at_a, a = hi - golden * (hi - lo);
             at_a = residual(sample, kernel, sum, a, INFINITY);
@@ -173,7 +174,7 @@ static void insert(struct conventions *found, const struct convention *candidate
 {
     size_t at = found->count;
     if (found->count == CONVENTIONS_CANDIDATES || !isfinite(candidate->residual)) return;
-    for (; at > 0 && found->candidate[at - 1].residual > candidate->residual; at--)
+    for (; at > 0 && found->candidate[at - 1].residual > fmax(candidate->residual, SAME); at--)
         found->candidate[at] = found->candidate[at - 1];
     found->candidate[at] = *candidate;
     found->count++;
@@ -206,12 +207,18 @@ static const struct convention *second(const struct conventions *found, int dim,
     return NULL;
 }
 
+/* True if this candidate misses the density so much more that the best is the right one. */
+static bool is_worse(const struct convention *other, double best)
+{
+    return other->residual >= CONVENTIONS_BETTER * fmax(best, SAME);
+}
+
 static void decide(struct conventions *found, int dim, bool forced)
 {
     const struct convention *best = &found->candidate[0];
     const struct convention *other = found->count ? second(found, dim, false) : NULL;
     const struct convention *sum = found->count ? second(found, dim, true) : NULL;
-    found->any_sum = sum && !(sum->residual >= CONVENTIONS_BETTER * best->residual);
+    found->any_sum = sum && !is_worse(sum, best->residual);
     if (found->count == 0) {
         snprintf(found->why, sizeof found->why, "no sum is finite");
         return;
@@ -226,7 +233,7 @@ static void decide(struct conventions *found, int dim, bool forced)
         snprintf(found->why, sizeof found->why,
                  "no kernel's sum agrees with the density: the best, %s, misses by %.2g",
                  best->kernel.member.name, best->residual);
-    else if (other && !(other->residual >= CONVENTIONS_BETTER * best->residual))
+    else if (other && !is_worse(other, best->residual))
         snprintf(found->why, sizeof found->why,
                  "%s misses the density by %.2g, %s by %.2g: not %g times more",
                  best->kernel.member.name, best->residual, other->kernel.member.name,
