@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "list.h"
 #include "output.h"
 #include "process.h"
 
@@ -46,7 +47,7 @@ static void keep_range(struct movie_range *range, struct plot_panel *panel, stru
 {
     if (panel->heat) {
         *heat = *panel->heat;
-        plot_range(heat->z, heat->nx * heat->ny, &range->low, &range->high);
+        list_range(heat->z, heat->nx * heat->ny, &range->low, &range->high);
         const double reach = fmax(fabs(range->low), fabs(range->high));
         panel->heat = heat;
         if (!(range->high - range->low > 1e-6 * reach)) return; /* uniform: default range */
@@ -54,7 +55,7 @@ static void keep_range(struct movie_range *range, struct plot_panel *panel, stru
         heat->high = heat->diverging ? reach : range->high;
     } else if (panel->y_min == panel->y_max) {
         for (size_t k = 0; k < panel->series_count; k++)
-            plot_range(panel->series[k].y, panel->series[k].n, &range->low, &range->high);
+            list_range(panel->series[k].y, panel->series[k].n, &range->low, &range->high);
         const double margin = 0.05 * (range->high - range->low);
         if (!(margin > 1e-6 * fmax(fabs(range->low), fabs(range->high)))) return;
         panel->y_min = range->low - margin, panel->y_max = range->high + margin;

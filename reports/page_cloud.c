@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "html.h"
+#include "list.h"
 #include "value.h"
 
 enum { MAPS = 3, QUANTITIES = 4, MAP_PIXELS = 300 };
@@ -123,7 +124,7 @@ static void plot_each(struct page_writer *writer, const char *case_name, const j
     size_t n = 0;
     for (size_t r = 0; r < count; r++) {
         n += maps[r].z[k] != NULL;
-        plot_range(maps[r].z[k], maps[r].cells, &low, &high);
+        list_range(maps[r].z[k], maps[r].cells, &low, &high);
     }
     if (n < 2) return;
     buffer_format(&writer->to,

@@ -8,6 +8,7 @@
 #include "base64.h"
 #include "case_state.h"
 #include "html.h"
+#include "list.h"
 #include "page_part.h"
 #include "value.h"
 
@@ -62,7 +63,7 @@ static bool varies(struct buffer *to, const json_t *curve, const char *name)
     size_t n;
     double *y = page_numbers(to, json_object_get(curve, name), &n);
     double low = (double)INFINITY, high = -(double)INFINITY;
-    plot_range(y, n, &low, &high);
+    list_range(y, n, &low, &high);
     free(y);
     return high - low > 1e-9 * fmax(fabs(low), fabs(high));
 }
@@ -100,13 +101,13 @@ static bool profile(struct buffer *to, const json_t *run)
     const size_t n = particles.n, exact_n = curve.n;
     struct frame f = {(double)INFINITY, -(double)INFINITY, (double)INFINITY, -(double)INFINITY};
     if (n && exact_n) {
-        plot_range(x, n, &f.x0, &f.x1);
-        plot_range(y, n, &f.y0, &f.y1);
+        list_range(x, n, &f.x0, &f.x1);
+        list_range(y, n, &f.y0, &f.y1);
         for (size_t i = 0; i < exact_n; i++) {
             if (!(exact_x[i] >= f.x0 && exact_x[i] <= f.x1))
                 exact_x[i] = (double)NAN;
             else
-                plot_range(&exact_y[i], 1, &f.y0, &f.y1);
+                list_range(&exact_y[i], 1, &f.y0, &f.y1);
         }
         /* do not enlarge noise around a constant to the full height */
         if (!varies(to, exact, name)) {
@@ -149,7 +150,7 @@ static void bitmap(struct buffer *to, const double *z, size_t nx, size_t ny)
     unsigned char *bytes = page_allocate(to, size, 1);
     double low = (double)INFINITY, high = -(double)INFINITY;
     if (!bytes) return;
-    plot_range(z, nx * ny, &low, &high);
+    list_range(z, nx * ny, &low, &high);
     bytes[0] = 'B', bytes[1] = 'M';
     put(bytes + 2, 4, size), put(bytes + 10, 4, HEAD + PALETTE), put(bytes + 14, 4, 40);
     put(bytes + 18, 4, nx), put(bytes + 22, 4, ny), put(bytes + 26, 2, 1), put(bytes + 28, 2, 8);
@@ -177,7 +178,7 @@ static bool map(struct buffer *to, const json_t *run)
     const bool there = cells && cells == nx * ny;
     if (there) {
         double low = (double)INFINITY, high = -(double)INFINITY;
-        plot_range(rho, cells, &low, &high);
+        list_range(rho, cells, &low, &high);
         const bool flat = speeds == cells && high - low < 0.02 * fabs(high);
         const double scale = fmin((double)WIDTH / (double)nx, (double)HEIGHT / (double)ny);
         const double w = scale * (double)nx, h = scale * (double)ny;

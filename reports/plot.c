@@ -162,15 +162,6 @@ static enum plot_status svg_document(const struct plot *plot, struct buffer *pic
     return PLOT_FAILED;
 }
 
-void plot_range(const double *values, size_t n, double *low, double *high)
-{
-    for (size_t i = 0; values && i < n; i++) {
-        if (!isfinite(values[i])) continue;
-        *low = fmin(*low, values[i]);
-        *high = fmax(*high, values[i]);
-    }
-}
-
 enum plot_status plot_draw(const struct plot *plot, enum plot_format format, char **bytes,
                            size_t *size, char *message, size_t n)
 {

@@ -112,9 +112,6 @@ void plot_pen_free(struct plot_pen *pen);
 enum plot_status plot_svg(struct plot_pen *pen, const struct plot *plot, char **svg, char *message,
                           size_t n);
 
-/* Widens low..high so that it contains all finite values. */
-void plot_range(const double *values, size_t n, double *low, double *high);
-
 enum plot_format { PLOT_SVG, PLOT_PNG };
 
 /* A standalone picture of size bytes, malloced. On failure *bytes is NULL. */

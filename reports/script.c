@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "layout.h"
+#include "list.h"
 #include "style.h"
 
 /* Writes a string in single quotes, in which gnuplot interprets nothing; a quote is doubled. */
@@ -302,7 +303,7 @@ static void color_scale(struct buffer *to, const struct plot_heat *heat,
 {
     const char *ink = style_colors[STYLE_plot_ink].light;
     double low = (double)INFINITY, high = -(double)INFINITY;
-    plot_range(heat->z, heat->nx * heat->ny, &low, &high);
+    list_range(heat->z, heat->nx * heat->ny, &low, &high);
     if (heat->diverging) high = fmax(-low, high), low = -high;
     if (heat->high > heat->low) low = heat->low, high = heat->high;
     buffer_add(to, heat->diverging ? blue_to_red : viridis);

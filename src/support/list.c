@@ -2,6 +2,7 @@
 #include "list.h"
 
 #include <stdint.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,4 +32,13 @@ void list_sort(double *values, size_t n)
             qsort(values, n, sizeof *values, ascending);
             return;
         }
+}
+
+void list_range(const double *values, size_t n, double *low, double *high)
+{
+    for (size_t i = 0; values && i < n; i++) {
+        if (!isfinite(values[i])) continue;
+        *low = fmin(*low, values[i]);
+        *high = fmax(*high, values[i]);
+    }
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Growing lists, for items whose number depends on a family or on the user, and sorting of numbers.
- */
+ * Growing lists, for items whose number depends on a family or on the user; order and range of
+ * numbers. */
 #pragma once
 
 #include <stdbool.h>
@@ -13,3 +13,6 @@ bool list_grow(void *list, size_t count, size_t size);
 
 /* Sorts n numbers in ascending order. */
 void list_sort(double *values, size_t n);
+
+/* Widens low..high so that it contains all finite values of n; values may be NULL. */
+void list_range(const double *values, size_t n, double *low, double *high);

@@ -22,4 +22,4 @@ struct check_run {
 };
 
 /* Frees what the run still owns. */
-void check_run_free(struct check_run *run);
+void suite_run_free(struct check_run *run);

@@ -48,7 +48,7 @@ static bool take_figures(struct suite *suite, struct check_run *run)
     return true;
 }
 
-void check_run_free(struct check_run *run)
+void suite_run_free(struct check_run *run)
 {
     for (size_t i = 0; i < run->subject_count; i++) free(run->subjects[i].copy);
     free(run->subjects);
@@ -89,7 +89,7 @@ static bool run_subjects(struct suite *suite, const struct check *check)
     }
     refuse_silence(&run);
     const bool sound = !run.no_memory && take_figures(suite, &run);
-    check_run_free(&run);
+    suite_run_free(&run);
     return sound;
 }
 
@@ -121,13 +121,13 @@ static bool run_mutants(struct suite *suite, const struct check *check)
         any = any || outcome.detected;
         sound = !run.no_memory && list_grow(&suite->outcomes, suite->outcome_count, sizeof outcome);
         if (sound) suite->outcomes[suite->outcome_count++] = outcome;
-        check_run_free(&run);
+        suite_run_free(&run);
     }
     if (sound && !any) {
         struct check_run run = {.check = check, .began = clock_wall()};
         check_measure(&run, 1, 0, 0, "harness: the check is vacuous, it rejects no mutant");
         sound = !run.no_memory && take_figures(suite, &run);
-        check_run_free(&run);
+        suite_run_free(&run);
     }
     return sound;
 }

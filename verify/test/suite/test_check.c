@@ -36,7 +36,7 @@ TEST(figures_of_a_check)
         /* the time of a figure begins at the end of the previous figure */
         near_inside(f->seconds, k ? 0 : 1000, k ? 100 : 1100);
     }
-    check_run_free(&run);
+    suite_run_free(&run);
 }
 
 /* A mutant that has failed once is decided; the correct subject never is. */
@@ -51,6 +51,6 @@ TEST(mutants_that_are_decided)
         check_measure(&run, 0, 1, 0, "well again");
         check_skip(&run, "skipped");
         assert_int_equal(check_decided(&run), mutant);
-        check_run_free(&run);
+        suite_run_free(&run);
     }
 }
