@@ -69,9 +69,12 @@ void bench_scaling_print(const struct scaling *scaling, const struct table_style
            "ns/particle", "set-up CPU s", "spread", "run CPU s", "steps", "peak MB", style->end);
     for (size_t i = 0; i < scaling->level_count; i++) {
         const struct scaling_level *level = &scaling->levels[i];
-        printf("%10zu %12.3e %12.3g %12.3e %6.0f%%", level->n, level->step_cpu_s,
-               1e9 * level->step_cpu_s / (double)level->n, level->set_up_cpu_s,
-               100 * level->spread);
+        printf("%10zu", level->n);
+        if (isfinite(level->step_cpu_s))
+            printf(" %12.3e %12.3g", level->step_cpu_s, 1e9 * level->step_cpu_s / (double)level->n);
+        else
+            printf(" %12s %12s", "-", "-");
+        printf(" %12.3e %6.0f%%", level->set_up_cpu_s, 100 * level->spread);
         if (isfinite(level->run_cpu_s))
             printf(" %12.3e %9llu", level->run_cpu_s, (unsigned long long)level->run_steps);
         else

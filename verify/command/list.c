@@ -130,10 +130,11 @@ static struct {
 };
 enum { LISTS = sizeof lists / sizeof *lists };
 
-static void make_families(void)
+/* Makes the families that are listed; chosen < 0: all. */
+static void make_families(int chosen)
 {
-    for (size_t i = 0; i < LISTS; i++) {
-        if (lists[i].family) continue;
+    for (int i = 0; i < LISTS; i++) {
+        if (lists[i].family || (chosen >= 0 && i != chosen)) continue;
         lists[i].add(&lists[i].made);
         lists[i].family = &lists[i].made;
     }
@@ -202,35 +203,34 @@ static json_t *where(bool speak)
     return list;
 }
 
-static enum status choose(const char *word, const struct family **chosen, struct error *error)
+static enum status choose(const char *word, int *chosen, struct error *error)
 {
     const char *names[LISTS];
-    for (size_t i = 0; i < LISTS; i++) {
-        const struct family *family = lists[i].family;
-        names[i] = family->name;
-        if (strcmp(word, family->name) == 0) *chosen = family;
+    for (int i = 0; i < LISTS; i++) {
+        names[i] = lists[i].family ? lists[i].family->name : lists[i].made.name;
+        if (strcmp(word, names[i]) == 0) *chosen = i;
     }
-    return *chosen ? STATUS_OK : text_unknown(error, "list", "family", word, names, LISTS);
+    return *chosen < 0 ? text_unknown(error, "list", "family", word, names, LISTS) : STATUS_OK;
 }
 
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
-    const struct family *chosen = NULL;
+    int chosen = -1;
     const struct table_style style = table_style(options->color);
     const bool markdown = options_value(options, "markdown"),
                places = options_value(options, "where");
     if (n > 1) return command_usage(options, error, "one family at a time");
-    make_families();
-    if (no_memory) return error_set(error, STATUS_ENVIRONMENT, "list: no memory");
     if (n == 1 && choose(arguments[0], &chosen, error)) return error->status;
-    const bool only_keys = chosen && strcmp(chosen->name, "keys") == 0;
+    if (!places) make_families(chosen);
+    if (no_memory) return error_set(error, STATUS_ENVIRONMENT, "list: no memory");
+    const bool only_keys = n == 1 && strcmp(arguments[0], "keys") == 0;
     if (markdown && !only_keys)
         return command_usage(options, error, "--markdown goes with `list keys` only");
     if (places && n) return command_usage(options, error, "--where stands alone");
     json_t *families = json_object(), *installed = places ? where(options->speak) : NULL;
-    for (size_t i = 0; i < LISTS && !places; i++) {
+    for (int i = 0; i < LISTS && !places; i++) {
         const struct family *family = lists[i].family;
-        if (chosen && chosen != family) continue;
+        if (chosen >= 0 && i != chosen) continue;
         if (options->speak && !only_keys) print_family(family, &style);
         json_object_set_new(families, family->name, family_json(family));
     }

@@ -13,6 +13,7 @@
 #include "bench_scaling.h"
 #include "bench_skips.h"
 #include "precision.h"
+#include "printed.h"
 #include "worst.h"
 
 /* The limit of CPU time that this test sets stays for the rest of the process. */
@@ -600,6 +601,16 @@ TEST(scaling)
     assert_true(scaling.threads[0].gain_of_processes > 0 &&
                 isfinite(scaling.threads[0].gain_of_processes));
     assert_int_equal(scaling.run.n, 4);
+    /* a step whose time is lost in the machine's noise is printed as a dash */
+    char text[4096];
+    for (int lost = 0; lost < 2; lost++) {
+        scaling.levels[0].step_cpu_s = lost ? (double)NAN : 1e-6;
+        const struct printed printed = printed_begin();
+        bench_scaling_print(&scaling, &(struct table_style){"", "", "", "", ""});
+        printed_end(&printed, text, sizeof text);
+        assert_true(strstr(text, lost ? "\n        90            -            - "
+                                      : "\n        90    1.000e-06         11.1 "));
+    }
     /* numbers of threads are only compared with as many particles as the ladder has */
     assert_int_equal(
         bench_scaling_measure(&given, (size_t[2]){801, 900}, 2, 2, &brief, &scaling, &error), 0);
