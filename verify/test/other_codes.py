@@ -31,7 +31,7 @@ thicker) key=noise=4 ;;
 viscous) key=alpha=2; [ "$2" != gresho ] || key=noise=2 ;;
 gas) key=gamma=1.5 ;;
 nothing) exit ;;
-*) exec %s -IS %s "$@" ;;
+*) exec %s -IS "${0%%/*}/other_code.py" "$@" ;;
 esac
 exec %s run "$2" "n=$3" "t_end=$4" $key --quiet --snapshot "$6_1.csv"
 """
@@ -728,7 +728,7 @@ def lay():
     work = os.getcwd()
     os.mkdir("tmp")
     os.environ["TMPDIR"] = os.path.abspath("tmp")
-    write("code.py", CODE % (*map(shlex.quote, (sys.executable, os.path.join(work, "other_code.py"), program)),))
+    write("code.py", CODE % (shlex.quote(sys.executable), shlex.quote(program)))
     write("other_code.py", OTHERS % (program, work, work, work, work))
     os.chmod("code.py", 0o700)
     write("good.ini", GOOD)
