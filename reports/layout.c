@@ -186,7 +186,7 @@ void layout_make(struct layout *layout, const struct plot *plot)
         x->min = fmin(x->min, above->min);
         x->max = fmax(x->max, above->max);
     }
-    for (size_t k = n - 1; k > 0 && !plot->beside; k--)
+    for (size_t k = n; k-- > 1 && !plot->beside;)
         if (!plot->panels[k].own_x) layout->panels[k - 1].x = layout->panels[k].x;
 }
 

@@ -38,9 +38,9 @@ struct candidates {
     int32_t *slots; /* 2D: of the points of the surrounding cells */
 };
 
-/* Bounding box of a cell's points, their largest squared radius, and whether the nearest image of
- * each candidate counts; side: then the periods in units, HUGE_VALF along axes without; otherwise
- * HUGE_VALF. */
+/* Bounding box of a cell's points and their largest squared radius. images: the nearest image of
+ * each candidate counts. side: the periods in units; HUGE_VALF along axes that are not periodic,
+ * and along all axes without images. */
 struct surroundings {
     float lo[3], hi[3], radius2;
     bool images;

@@ -161,7 +161,7 @@ static struct surroundings find_surroundings(const struct grid *grid, size_t cel
         around.side[a] =
             images && grid_wraps(grid, a) ? (float)(grid->side[a] / grid->unit) : HUGE_VALF;
     }
-    if (grid->box.dim == 2) return around; /* where all points around the cell are candidates */
+    if (grid->box.dim == 2) return around; /* in 2D all points around a cell are candidates */
     for (uint32_t s = begin; s < grid->start[cell + 1]; s++) {
         for (int a = 0; a < 3; a++) {
             lo[a] = grid->in_cell[a][s] < lo[a] ? grid->in_cell[a][s] : lo[a];

@@ -18,9 +18,8 @@ ALWAYS_INLINE float around_axis(float d, float side)
     return one_way < other_way ? one_way : other_way;
 }
 
-/* candidates->near[k] = 1 if candidate k is near the point at `at`, otherwise 0; count a multiple
- * of
- * 16. images: the nearest image of each candidate counts. */
+/* candidates->near[k] = 1 if candidate k is near the point at `at`, otherwise 0; count: a multiple
+ * of 16. images: the nearest image of each candidate counts. */
 ALWAYS_INLINE void near_body(int dim, bool images, const struct candidates *candidates,
                              size_t count, const float at[3], float radius2, const float side[3])
 {

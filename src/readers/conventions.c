@@ -11,7 +11,8 @@
 
 #define RATIO_LEAST 0.8
 #define RATIO_MOST  4.6
-#define SAME        1e-9 /* precision of a search: residuals below it, as on a lattice, are equal */
+/* Of a search for a ratio; residuals below it, as on a lattice, are equal. */
+#define PRECISION 1e-9
 enum { RATIO_STEPS = 60, GOLDEN_STEPS = 44, NEIGHBOURS_MAX = 4096 };
 
 /* A particle of the sample and its neighbours, each with distance over h and mass. */
@@ -156,7 +157,7 @@ static struct convention fit(const struct sample *sample, const struct kernel *k
     double a = hi - golden * (hi - lo), b = lo + golden * (hi - lo);
     double at_a = residual(sample, kernel, sum, a, INFINITY),
            at_b = residual(sample, kernel, sum, b, INFINITY);
-    for (int k = 0; k < GOLDEN_STEPS && fabs(at_a - at_b) > SAME * at_a; k++) {
+    for (int k = 0; k < GOLDEN_STEPS && fabs(at_a - at_b) > PRECISION * at_a; k++) {
         if (at_a < at_b) {
             hi = b, b = a, at_b = at_a, a = hi - golden * (hi - lo);
             at_a = residual(sample, kernel, sum, a, INFINITY);
@@ -174,7 +175,7 @@ static void insert(struct conventions *found, const struct convention *candidate
 {
     size_t at = found->count;
     if (found->count == CONVENTIONS_CANDIDATES || !isfinite(candidate->residual)) return;
-    for (; at > 0 && found->candidate[at - 1].residual > fmax(candidate->residual, SAME); at--)
+    for (; at > 0 && found->candidate[at - 1].residual > fmax(candidate->residual, PRECISION); at--)
         found->candidate[at] = found->candidate[at - 1];
     found->candidate[at] = *candidate;
     found->count++;
@@ -210,7 +211,7 @@ static const struct convention *second(const struct conventions *found, int dim,
 /* True if this candidate misses the density so much more that the best is the right one. */
 static bool is_worse(const struct convention *other, double best)
 {
-    return other->residual >= CONVENTIONS_BETTER * fmax(best, SAME);
+    return other->residual >= CONVENTIONS_BETTER * fmax(best, PRECISION);
 }
 
 static void decide(struct conventions *found, int dim, bool forced)

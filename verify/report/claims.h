@@ -9,7 +9,7 @@
 #include "pool.h"
 #include "run.h"
 
-/* A run with these keys, which claim_run_add adds to a pool; it must outlive it. */
+/* A run with these keys. claim_run_add adds it to a pool, which the run must outlive. */
 struct claim_run {
     char keys[256];
     struct run run;

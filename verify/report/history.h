@@ -42,5 +42,5 @@ struct trend_change {
 
 /* value: n nights, oldest first, all finite (logarithms of figures with relative noise). At a
  * change point the medians differ by more than noise plus three times the scatter (1.4826 median
- * |residual|) about them. Writes them in rising order, less than n; returns their number. */
+ * |residual|) about them. Writes them in rising order, fewer than n; returns their number. */
 size_t trend_changes(size_t n, const double *value, double noise, struct trend_change *changes);
