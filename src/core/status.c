@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "status.h"
 
-#include <stddef.h>
-
-/* Length of the UTF-8 character at text if it is printable, otherwise 0. */
-static size_t printable(const unsigned char *text)
+size_t status_printable(const char *at)
 {
+    const unsigned char *text = (const unsigned char *)at;
     static const struct {
         unsigned char first, last; /* range of the leading byte */
         unsigned char low, high;   /* range of the second byte */
@@ -28,7 +26,7 @@ static size_t printable(const unsigned char *text)
 void status_clean(char *text)
 {
     for (char *c = text; *c;) {
-        const size_t length = printable((unsigned char *)c);
+        const size_t length = status_printable(c);
         if (!length) *c = *c == '\n' ? ' ' : '?';
         c += length ? length : 1;
     }

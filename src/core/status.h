@@ -3,6 +3,8 @@
 #ifndef SPHPROOF_STATUS_H
 #define SPHPROOF_STATUS_H
 
+#include <stddef.h>
+
 #define STATUS_LIST(STATUS)                                                                        \
     STATUS(OK, 0, "ok")                                                                            \
     STATUS(CHECK_FAILED, 1, "a check or a gate failed; the run itself was sound")                  \
@@ -21,6 +23,10 @@ struct error {
     enum status status;
     char message[512];
 };
+
+/* Length in bytes of the UTF-8 character at text if it is printable, otherwise 0. Reads no further
+ * than the first byte that cannot belong to it. */
+size_t status_printable(const char *text);
 
 /* Turns untrusted text into one line of valid UTF-8: unprintable characters become '?'. This keeps
  * escape sequences from terminals, and JSON requires it. */

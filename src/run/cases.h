@@ -45,7 +45,7 @@ struct case_gate {
 struct case_file {
     char name[64];   /* "sod", also for .../sod.ini */
     char asked[256]; /* name or path given to case_load */
-    char title[128];
+    char title[INI_TEXT_LINE + 1];
     int dimension;
     struct settings settings; /* defaults overridden by the file */
     bool fields[FIELDS];      /* fields to show in tables */

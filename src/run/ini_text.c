@@ -12,6 +12,8 @@
 
 enum { SIZE_MAX_FILE = 65536 };
 
+static const char byte_order_mark[] = "\xef\xbb\xbf"; /* some editors begin a file with it */
+
 enum status ini_text_fail(struct ini_text *text, const char *what, const char *allowed)
 {
     text->failed = true;
@@ -93,7 +95,7 @@ static char *take_line(char *line, int size, void *context)
 }
 
 /* Rejects what inih would truncate or misread: long lines, NUL and other bytes that are not
- * text. */
+ * printable UTF-8. */
 static bool check_text(struct ini_text *text)
 {
     char what[64];
@@ -106,13 +108,18 @@ static bool check_text(struct ini_text *text)
             continue;
         }
         const bool line_end = *c == '\r' && c + 1 < text->end && c[1] == '\n';
-        if (((*c < ' ' || *c > '~') && *c != '\t' && !line_end)) {
-            snprintf(what, sizeof what, "byte 0x%02x is not ASCII text", (unsigned)(*c & 0xff));
-            ini_text_fail(text, what, "printable ASCII");
+        char next[5] = ""; /* a character has four bytes at most, and the text has no end mark */
+        memcpy(next, c, text->end - c < 4 ? (size_t)(text->end - c) : 4);
+        const size_t bytes = *c == '\t' || line_end ? 1 : status_printable(next);
+        if (!bytes) {
+            snprintf(what, sizeof what, "byte 0x%02x is not text", (unsigned)(*c & 0xff));
+            ini_text_fail(text, what, "printable UTF-8");
             return false;
         }
-        if (++length > INI_TEXT_LINE) {
-            snprintf(what, sizeof what, "a line of more than %d characters", INI_TEXT_LINE);
+        c += bytes - 1;
+        length += (int)bytes;
+        if (length > INI_TEXT_LINE) {
+            snprintf(what, sizeof what, "a line of more than %d bytes", INI_TEXT_LINE);
             ini_text_fail(text, what, "");
             return false;
         }
@@ -154,6 +161,9 @@ enum status ini_text_read(struct ini_text *text, ini_text_pair *pair, void *cont
     if (text->rest == text->end)
         return error_set(text->error, STATUS_BAD_INPUT, "%.200s: the %s is empty", text->path,
                          text->kind);
+    const size_t mark = strlen(byte_order_mark);
+    if ((size_t)(text->end - text->rest) > mark && !memcmp(text->rest, byte_order_mark, mark))
+        text->rest += mark;
     if (!check_text(text)) return text->error->status;
     const int line = ini_parse_stream(next_line, &receiver, hand_over, &receiver);
     if (text->failed) return text->error->status;

@@ -9,7 +9,7 @@
 
 #include "status.h"
 
-enum { INI_TEXT_LINE = 180 }; /* longest line, in characters */
+enum { INI_TEXT_LINE = 180 }; /* longest line, in bytes */
 
 /* The caller sets all members except `line` and `failed`, which start as 0. */
 struct ini_text {

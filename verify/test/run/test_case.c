@@ -286,10 +286,10 @@ TEST(bad_lines)
     refused("[case]\nwhat is this\n",
             AT("2") "not a line of a case file; allowed: [section], key = value, ; comment");
     refused("[case]\ntitle = \x01\n",
-            AT("2") "byte 0x01 is not ASCII text; allowed: printable ASCII");
-    refused("[case]\ntitle = \xc3\xa9\n",
-            AT("2") "byte 0xc3 is not ASCII text; allowed: printable ASCII");
-    refused("[case]\n\r \n", AT("2") "byte 0x0d is not ASCII text; allowed: printable ASCII");
+            AT("2") "byte 0x01 is not text; allowed: printable UTF-8");
+    refused("[case]\ntitle = \xe9\n", AT("2") "byte 0xe9 is not text; allowed: printable UTF-8");
+    refused("[case]\ntitle = \xc3", AT("2") "byte 0xc3 is not text; allowed: printable UTF-8");
+    refused("[case]\n\r \n", AT("2") "byte 0x0d is not text; allowed: printable UTF-8");
 }
 
 TEST(whole_files)
@@ -325,16 +325,23 @@ TEST(whole_files)
     refused("[case]\ntitle = a\ndimension = 1\nreference = simple_wave\n[initial]\nkind = riemann\n"
             "left = 1 0 1\nright = 1 0 2\n[run]\nt_end = 1\n",
             AT("4") "reference = simple_wave; allowed: riemann");
-    /* a line may have 180 characters, also with other line ends, and not one more */
+    /* a line may have 180 bytes, also with other line ends, and not one more */
     memset(line, 'x', sizeof line);
     line[180 - strlen("title = ")] = '\0';
     const char *rest = strstr(HEAD, "dimension");
     snprintf(text, sizeof text, "[case]\r\n \ttitle = %s\n%s", line, rest);
-    refused(text, AT("2") "a line of more than 180 characters");
+    refused(text, AT("2") "a line of more than 180 bytes");
     line[178 - strlen("title = ")] = '\0';
     snprintf(text, sizeof text, "[case]\r\n \ttitle = %s\n%s", line, rest);
     assert_int_equal(parse(&file, text, &error), STATUS_OK);
-    assert_true(strncmp(file.title, line, 100) == 0);
+    assert_string_equal(file.title, line);
+    strcpy(line + strlen(line) - 1, "\xc3\xa9x"); /* an e with an accent: two bytes */
+    snprintf(text, sizeof text, "\xef\xbb\xbf[case]\ntitle = %s\n%s", line, rest);
+    assert_int_equal(parse(&file, text, &error), STATUS_OK);
+    assert_string_equal(file.title, line);
+    memmove(line + 1, line, strlen(line) + 1);
+    snprintf(text, sizeof text, "[case]\ntitle = x%s\n%s", line, rest);
+    refused(text, AT("2") "a line of more than 180 bytes");
 }
 
 TEST(built_in_cases_are_sound)
