@@ -50,6 +50,7 @@ struct snapshot_file {
     int dim;                          /* from the file, or from the variation of the positions */
     double *column[SNAPSHOT_COLUMNS]; /* n each; NULL: missing */
     double precision[2];              /* relative precision of positions and of other quantities */
+    int digits; /* decimal digits of the other quantities, if a text has fewer than a double */
     struct snapshot_value time, gamma;
     bool impossible; /* refused for an impossible value: not finite, or not positive */
     bool boxed;      /* the file gives the size of the box */

@@ -163,9 +163,32 @@ static enum status no_number(const struct text_table *table, size_t line, size_t
                              table->source->path, line, column + 1, table->names[column]);
 }
 
+/* Significant digits of a number as written. */
+static int digits_of(const char *word)
+{
+    int digits = 0;
+    for (; *word && !strchr("eEdD", *word); word++)
+        if (*word >= '0' && *word <= '9') digits += digits > 0 || *word != '0';
+    return digits;
+}
+
+/* Numbers are meant to half of their last digit; the one with the most digits tells where all were
+ * rounded. Up to four digits are taken for short exact numbers, such as a lattice has. */
+static void set_precision(struct snapshot_file *file, const int digits[2])
+{
+    bool fewer = false;
+    for (int k = 0; k < 2; k++) {
+        fewer = digits[k] > 4 && digits[k] <= DBL_DIG;
+        file->precision[k] = fewer ? 0.5 * pow(10, 1 - digits[k]) : DBL_EPSILON / 2;
+    }
+    file->digits = fewer ? digits[1] : 0;
+}
+
+/* Fills columns, types and the precision. */
 static enum status take_rows(const struct text_table *table, size_t from, size_t line,
                              struct snapshot_file *file, double *type, struct error *error)
 {
+    int digits[2] = {0, 0}; /* of positions, of fields */
     const char *at = (const char *)table->source->bytes + from,
                *end = (const char *)table->source->bytes + table->source->size;
     for (size_t row = 0; at < end; line++) {
@@ -179,10 +202,11 @@ static enum status take_rows(const struct text_table *table, size_t from, size_t
                 if (!take_number(&at, stop, table->separator, c == 0, word, &value))
                     return no_number(table, line, c, word, file, error);
                 const int meaning = table->meaning[c];
-                if (meaning == TABLE_TYPE)
-                    type[row] = value;
-                else if (meaning >= 0)
-                    file->column[meaning][row] = value;
+                if (meaning == TABLE_TYPE) type[row] = value;
+                if (meaning < 0 || meaning == TABLE_TYPE) continue;
+                file->column[meaning][row] = value;
+                int *most = &digits[meaning >= SNAPSHOT_VX];
+                if (*most <= DBL_DIG && digits_of(word) > *most) *most = digits_of(word);
             }
             if (!blank(at, stop))
                 return error_set(error, STATUS_BAD_INPUT, "%.200s:%zu: more than %zu numbers",
@@ -191,6 +215,7 @@ static enum status take_rows(const struct text_table *table, size_t from, size_t
         }
         at = next;
     }
+    set_precision(file, digits);
     return STATUS_OK;
 }
 
@@ -246,6 +271,5 @@ enum status text_table_read(const struct text_table *table, size_t from, size_t 
     }
     free(type);
     note_unit(table, file);
-    file->precision[0] = file->precision[1] = DBL_EPSILON / 2;
     return status;
 }

@@ -456,10 +456,16 @@ static void note_precision(struct judged *judged)
 {
     struct snapshot_file *file = &judged->file;
     const bool single = file->precision[1] > 1e-9;
-    snapshot_note(&file->notes, "precision", single ? "float32" : "float64",
+    char value[24];
+    snprintf(value, sizeof value, "%d digits", file->digits);
+    snapshot_note(&file->notes, "precision",
+                  file->digits ? value
+                  : single     ? "float32"
+                               : "float64",
                   "%s; nothing below %.0e of a value is meant",
-                  single && file->precision[0] < 1e-9 ? "positions float64, the rest float32"
-                                                      : "as stored",
+                  file->digits                          ? "as written"
+                  : single && file->precision[0] < 1e-9 ? "positions float64, the rest float32"
+                                                        : "as stored",
                   file->precision[1]);
 }
 

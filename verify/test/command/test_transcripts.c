@@ -10,9 +10,10 @@
  * sends standard output there, and not into the transcript. "$ compute report FOLDER" puts random
  * results for all that a quick report computes (drawn_pieces.h) into that cache. "$ damage FROM TO
  * vx=vy 1 2 9" exchanges two columns of the snapshot FROM in every second row from the first to
- * the ninth (all rows by default); "u*2" doubles one, "x+1" adds to it, "u!" gives it a name that
- * nobody reads. With SPHPROOF_KEEP=FOLDER the correct transcripts are written there, and the whole
- * outputs as NAME.whole, to be compared with those of another build. */
+ * the ninth (all rows by default); "u*2" doubles one, "x+1" adds to it, "x.6" writes all columns
+ * with six digits, "u!" gives one a name that nobody reads. With SPHPROOF_KEEP=FOLDER the correct
+ * transcripts are written there, and the whole outputs as NAME.whole, to be compared with those of
+ * another build. */
 #include "test.h"
 
 #include <ctype.h>
@@ -306,8 +307,9 @@ static void damage(char **words, int n)
 {
     const long first = n > 3 ? atol(words[3]) : 1, stride = n > 4 ? atol(words[4]) : 1,
                last = n > 5 ? atol(words[5]) : 1L << 30;
-    const size_t length = strcspn(words[2], "=*+!");
+    const size_t length = strcspn(words[2], "=*+!.");
     const char how = words[2][length], *by = words[2] + length + 1;
+    const int digits = how == '.' ? atoi(by) : 17;
     char *text = read_all(words[0]);
     struct buffer to = {0};
     assert_non_null(text);
@@ -330,10 +332,11 @@ static void damage(char **words, int n)
             continue;
         }
         const double old = values[column];
-        values[column] = how == '=' ? values[other] : how == '*' ? old * atof(by) : old + atof(by);
+        values[column] = how == '=' ? values[other] : how == '*' ? old * atof(by) : old;
+        if (how == '+') values[column] += atof(by);
         if (how == '=') values[other] = old;
         for (size_t k = 0; k < columns; k++)
-            buffer_format(&to, "%.17g%s", values[k], k + 1 < columns ? "," : "\n");
+            buffer_format(&to, "%.*g%s", digits, values[k], k + 1 < columns ? "," : "\n");
     }
     free(text);
     text = buffer_take(&to);

@@ -151,6 +151,42 @@ TEST(values)
     snapshot_file_free(&file);
 }
 
+/* The number with the most digits decides, of positions and of fields; zeros behind it count, those
+ * before it and the exponent do not. Up to four digits are exact, and more than 15 are a double. */
+TEST(digits)
+{
+    static const char *const written[] = {"1.5",
+                                          "-0.00250",
+                                          "1.2500e+10",
+                                          ".001234",
+                                          "12345",
+                                          "-0.123450",
+                                          "1.234567d-07",
+                                          "1.00000000000000",
+                                          "1.000000000000000",
+                                          "0.12345678901234567"};
+    static const int digits[] = {2, 3, 5, 4, 5, 6, 7, 15, 16, 17};
+    enum { WRITTEN = sizeof digits / sizeof *digits };
+    char text[400];
+    for (int a = 0; a < WRITTEN; a++)
+        for (int b = 0; b < WRITTEN; b++) {
+            const int n = snprintf(text, sizeof text,
+                                   "x,vx,m,rho,u,other\n0.1,0,1,1,1,1.2345678\n"
+                                   "%s,0,1,1,1,1\n0.2,0,1,1,%s,1\n0.3,0,1,1,1,1\n",
+                                   written[a], written[b][0] == '-' ? written[b] + 1 : written[b]);
+            struct snapshot_file file = file_of(text, (size_t)n, NULL);
+            for (int k = 0; k < 2; k++) {
+                const int most = digits[k ? b : a];
+                const bool fewer = most > 4 && most < 16;
+                assert_true(
+                    fabs(file.precision[k] - (fewer ? 5 * pow(10, -most) : DBL_EPSILON / 2)) <=
+                    1e-12 * file.precision[k]);
+                if (k) assert_int_equal(file.digits, fewer ? most : 0);
+            }
+            snapshot_file_free(&file);
+        }
+}
+
 TEST(no_files)
 {
     static const struct snapshot_options plain;
