@@ -6,6 +6,7 @@ into a copy of the tree, which an environment variable switches on (schemata.h).
 single.py makes those that cannot be switched (numbers in initialisers, enumerators, arguments of
 macros at file scope): each is compiled separately."""
 import bisect
+import collections
 import glob
 import itertools
 import json
@@ -94,6 +95,7 @@ class Source:
         if len(self.bytes) != len(self.text):  # offsets of clang are bytes
             self.text = self.bytes.decode("latin-1")
         self.sites, self.seen, self.macros = [], set(), []
+        self.compared = collections.defaultdict(set)  # by name: whether it stands in a comparison, of all its uses
         constants = re.findall(r"^#define (\w+)\s[\s\\]*([0-9.]+(?:e-?[0-9]+)?)\b", self.text, flags=re.M)
         for line in re.findall(r"^static const double ([^;{]*);", self.text, flags=re.M):
             constants += re.findall(r"(\w+) = ([0-9.]+(?:e-?[0-9]+)?)(?:,|$)", line)
@@ -106,6 +108,11 @@ class Source:
         """The line at this offset, without its indentation."""
         start = self.text.rfind("\n", 0, offset) + 1
         return self.text[start:self.text.find("\n", offset)].strip()
+
+    def only_compares(self, site):
+        """True for a millionth more of a constant that stands in comparisons alone, as for a number there."""
+        return (site.how == "constant" and site.change.endswith("(1 + 1e-6)")
+                and self.compared[site.change.split(" =")[0]] == {True})
 
     def add(self, start, end, how, alternative, change, pure, function="-"):
         key = (start, end, alternative)
@@ -126,7 +133,7 @@ class Walker:
         self.c, self.tree, self.sources, self.done = cindex, tree, sources, done
         self.kind = cindex.CursorKind
         self.returns = self.spans = None
-        self.either, self.in_allocation, self.compared = set(), False, False
+        self.either, self.in_allocation, self.compared, self.printed = set(), False, False, False
         self.decimals = set().union(*(source.decimals for name, source in sources.items() if name.endswith(".h")))
 
     def file_of(self, cursor):
@@ -487,16 +494,20 @@ class Walker:
                     self.expression(child)
             return
         elif cursor.kind == k.INIT_LIST_EXPR:
-            for child in children:
+            for child in children if self.code(cursor) != "{0}" else ():  # {0} clears all members
                 a, b = self.span(child)
                 if self.text[a - 1] == "[" and re.match(r"\]\s*=[^=]", self.text[b:b + 4]):
                     continue
                 self.initialised(child)
             return
-        outer = self.in_allocation, self.compared
+        if cursor.kind == k.DECL_REF_EXPR:
+            self.source.compared[cursor.spelling].add(self.compared)
+        outer = self.in_allocation, self.compared, self.printed
         if cursor.kind == k.CALL_EXPR:
             self.in_allocation = self.in_allocation or cursor.spelling in ALLOCATIONS
             self.compared = self.compared and cursor.spelling in PURE
+            self.printed = cursor.spelling != "result_add" and any(
+                re.match('"[^"]*%', self.code(a)) for a in cursor.get_arguments())
         elif cursor.kind == k.BINARY_OPERATOR:
             self.compared = self.compared or self.operator(cursor)[0] in ("<", ">", "<=", ">=")
         if cursor.kind == k.CALL_EXPR and cursor.spelling in WAITS:
@@ -505,7 +516,7 @@ class Walker:
         for child in children:
             if child.kind.is_expression() and not (handle and self.code(child) == "0"):
                 self.expression(child)
-        self.in_allocation, self.compared = outer
+        self.in_allocation, self.compared, self.printed = outer
 
     def initialised(self, cursor):
         """A member of a compound literal: clang has .name = value as an expression around the value."""
@@ -539,7 +550,7 @@ class Walker:
         elif self.compared:  # a limit that is off by a millionth affects only values at the limit
             self.add(cursor, ("%s + 1" if float(code.rstrip("fFlL")) % 1 == 0 else "%s * 2") % code, pure=True)
         else:
-            self.add(cursor, "%s * %s" % (code, "1.1" if self.source.name.startswith(SAID) else "(1 + 1e-6)"), pure=True)
+            self.add(cursor, "%s * %s" % (code, "1.1" if self.printed or self.source.name.startswith(SAID) else "(1 + 1e-6)"), pure=True)
 
     def binary(self, cursor):
         op, left, right = self.operator(cursor)
@@ -687,6 +698,7 @@ def find(tree, build, judged=JUDGED):
     kept = []
     for name in sorted(sources):
         source = sources[name]
+        source.sites = [s for s in source.sites if not source.only_compares(s)]
         source.sites.sort(key=lambda s: (s.start, -s.end))
         for site in nested(source.sites):
             number += 1

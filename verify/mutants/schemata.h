@@ -5,14 +5,16 @@
  * it (1) and whether the mutant would have computed another value there (2). */
 #pragma once
 
-/* No headers are included here, because a source may define feature macros before it includes them.
+/* No headers are included here, because a source may define feature macros before it includes them;
+ * and functions have names of their own, because headers give some of them other symbols.
  */
 char *getenv(const char *name);
 int atoi(const char *text);
-int open(const char *name, int flags, ...);
-int sphproof_close(int file) __asm__("close"); /* another name, because a source may define close */
-long lseek(int file, long offset, int whence);
-void *mmap(void *at, unsigned long size, int protection, int flags, int file, long offset);
+int sphproof_open(const char *name, int flags, ...) __asm__("open");
+int sphproof_close(int file) __asm__("close");
+long sphproof_lseek(int file, long offset, int whence) __asm__("lseek");
+void *sphproof_mmap(void *at, unsigned long size, int protection, int flags, int file,
+                    long offset) __asm__("mmap");
 
 #define SCHEMATA_GLOBAL __attribute__((weak, visibility("hidden")))
 
@@ -25,9 +27,9 @@ SCHEMATA_GLOBAL __attribute__((constructor(101))) void sphproof_schemata(void)
     const char *number = getenv("SPHPROOF_MUTANT"), *name = getenv("SPHPROOF_REACH");
     sphproof_mutant = number ? atoi(number) : 0;
     /* O_RDWR; SEEK_END; PROT_READ | PROT_WRITE, MAP_SHARED: as Linux has them */
-    const int file = name ? open(name, 2) : -1;
+    const int file = name ? sphproof_open(name, 2) : -1;
     if (file < 0) return;
-    sphproof_reach = mmap((void *)0, (unsigned long)lseek(file, 0, 2), 3, 1, file, 0);
+    sphproof_reach = sphproof_mmap((void *)0, (unsigned long)sphproof_lseek(file, 0, 2), 3, 1, file, 0);
     if (sphproof_reach != (void *)-1) sphproof_mutant = -1;
     sphproof_close(file); /* so that a test that counts descriptors finds the usual number */
 }

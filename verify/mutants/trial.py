@@ -106,11 +106,12 @@ def checks_of(folder):
 # --- running ------------------------------------------------------------------------------------------
 
 
-def limits(cpu):
+def limits(cpu, sanitized):
     def set_limits():
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 28, 1 << 28))
-        resource.setrlimit(resource.RLIMIT_AS, (6 << 30, 6 << 30))
+        if not sanitized:  # the address sanitizer reserves terabytes
+            resource.setrlimit(resource.RLIMIT_AS, (6 << 30, 6 << 30))
         resource.setrlimit(resource.RLIMIT_CPU, (cpu, cpu + 1))
     return set_limits
 
@@ -125,7 +126,7 @@ def run_unit(unit, place, scratch, environment, usual):
     words = [w.replace("@SCRATCH@", scratch).replace(built, here) for w in unit.command]
     process = subprocess.Popen(words, cwd=unit.folder.replace(built, here), stdin=subprocess.DEVNULL,
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
-                               preexec_fn=limits(int(2 + 2 * usual)),
+                               preexec_fn=limits(int(2 + 2 * usual), "ASAN_OPTIONS" in environment),
                                env=dict(os.environ, TMPDIR=scratch, XDG_CACHE_HOME=os.path.join(scratch, "cache"),
                                         OMP_WAIT_POLICY="passive", **environment))
     end, pause = time.time() + 30 + 30 * usual, 0.001
@@ -163,9 +164,10 @@ def in_threads(function, workers):
 
 class Table:
     """Measurements of the units without a mutant: CPU-s, the mutants that they reach, and the reached mutants
-    that change a value there. Stored in reach.json."""
+    that change a value there. Stored in reach.json. environment: further variables for tests with and without mutants."""
 
-    def __init__(self, work, drawn, shard):
+    def __init__(self, work, drawn, shard, environment=None):
+        self.environment = environment or {}
         self.work, self.build, self.shard = work, os.path.join(work, "build"), shard
         self.count = 1 + max((m.number for m in drawn), default=0)
         self.drawn = hashlib.sha256(repr(sorted((m.number, m.key) for m in drawn)).encode()).hexdigest()
@@ -244,7 +246,7 @@ class Table:
         """True if the unit passes without a mutant. Tested when it notices its first mutant."""
         entry = self.units[unit.name]
         if "sound" not in entry:
-            failed, seconds = run_unit(unit, place, scratch, {}, max(10, 3 * entry["seconds"]))
+            failed, seconds = run_unit(unit, place, scratch, self.environment, max(10, 3 * entry["seconds"]))
             with self.lock:
                 entry["sound"], entry["failed"], entry["seconds"] = not failed, failed, round(seconds, 3)
                 if failed:
@@ -317,7 +319,8 @@ class Judge:
             if tried >= LEAST and spent + usual > self.patience:
                 continue
             spent, tried = spent + usual + START, tried + 1
-            how, _ = run_unit(unit, place, scratch, {"SPHPROOF_MUTANT": str(mutant.number)}, usual)
+            how, _ = run_unit(unit, place, scratch, {"SPHPROOF_MUTANT": str(mutant.number), **self.table.environment},
+                              usual)
             # a copy of the build lacks the mutant that is compiled in place
             if how and not self.table.sound(unit, self.table.place(worker)[0], scratch):
                 how = ""

@@ -30,6 +30,7 @@ int tiny_first(const void *a, const void *b);
 int tiny_least(int n, int m);
 void tiny_clear(char **texts, int n);
 double tiny_rules(double a, double b);
+double tiny_heap(int n);
 """,
     "src/tiny.c": """#include "tiny.h"
 static const double close = 1e-9;
@@ -82,6 +83,8 @@ void tiny_clear(char **texts, int n)
 #include <poll.h>
 #include <stdio.h>
 enum { WIDE = 40, COUNT = 3, MANY = 31 };
+static const double limit = 3.5;
+static const double used = 4.25;
 static double mean(double p, double q)
 {
     return fabs(p - q) * (p + q);
@@ -92,14 +95,22 @@ static double slope(double p, double q)
 }
 double tiny_rules(double a, double b)
 {
-    double x[COUNT], sum = slope(a, b) + mean(b, a);
+    double x[COUNT] = {0}, y[COUNT] = {0, 0}, sum = slope(a, b) + mean(b, a) + y[1];
+    if (a > limit && b < used) sum += used;
     char word[WIDE], words[MANY][WIDE] = {"4"};
     for (int all = 0; all < COUNT; all++) x[all] = a;
     for (int some = 0; some < COUNT; some++)
         if (a > b) sum += x[some];
     poll(NULL, 0, 77);
-    if (snprintf(word, WIDE, "at %g", sum) > 0) sum += words[1][0];
+    if (snprintf(word, WIDE, "at %g", 1.75 * sum) > 0) sum += words[1][0];
     return snprintf(word, WIDE, "%s", words[0]) > 0 ? sum : 0;
+}
+double tiny_heap(int n)
+{
+    double *x = calloc(n, sizeof *x), all = 0;
+    for (int each = 0; each < n; each++) all += x[each];
+    free(x);
+    return all >= 0;
 }
 """,
     "test_tiny.c": """#include "tiny.h"
@@ -107,7 +118,7 @@ int main(void)
 {
     int set = 0;
     if (tiny_area(3, 4) != 12 || tiny_sum(5) != 10 || tiny_set(&set) != 0 || set != 7 ||
-        tiny_weight(0) != 0.5) return 1;
+        tiny_weight(0) != 0.5 || !tiny_heap(3)) return 1;
     return tiny_close(3e-9) > 0 ? 0 : 2;
 }
 """,
@@ -167,8 +178,13 @@ def main(score, work):
     expect("but not the greater of two", "n < m -> >" in survivors)
     for change, wanted in (("mean(b, a) -> exchanged", False), ("slope(a, b) -> exchanged", True), ("all < COUNT -> <=", False),
                            ("some < COUNT -> <=", True), ("77 -> ", False), ("NULL, 0, 77); -> ;", False),
-                           ("sum) > 0 -> >=", False), ("words[0]) > 0 -> >=", True), ("40 -> ", False), ("31 -> ", True)):
+                           ("sum) > 0 -> >=", False), ("words[0]) > 0 -> >=", True), ("40 -> ", False), ("31 -> ", True), ("0 -> 1e-6 (", True), ("limit = 3.5 -> * 1.1", True),
+                           ("limit = 3.5 -> * (1", False), ("used = 4.25 -> * (1", True), ("1.75 -> 1.75 * 1.1", True),
+                           ("1.75 -> 1.75 * (1", False)):
         expect("what can change nothing is not generated, and all else is: '%s'" % change, (change in said) == wanted)
+    line = 1 + TREE["src/tiny.c"][:TREE["src/tiny.c"].index("x[COUNT] = {0}")].count("\n")
+    expect("of lists of zeros only longer ones are changed", 
+           len(re.findall("^ *\\d+/.*tiny.c:%d: 0 -> 1e-6" % line, said, flags=re.M)) == 2)
     expect("a factor of 10 the other way is noticed by nobody",
            survivors.get("close = 1e-9 -> / 10", {}).get("why") == "no test fails: 1 of 1 that come by")
     expect("a constant in an initialiser is compiled singly and noticed",
@@ -177,6 +193,12 @@ def main(score, work):
            survivors.get("2.5 -> (2.5 * (1 + 1e-6))", {}).get("why") == "no test fails: 1 of 1 that come by")
     expect("what is 5 where 10 is more", any(s["line"] == 12 for s in first["survivors"]))
 
+    if shutil.which("clang"):
+        expect("no test alone sees what is read beyond a block of memory", "each < n -> <=" in survivors)
+        shutil.copytree(os.path.join(work, "work"), os.path.join(work, "work.copy"), symlinks=True)
+        said, third = run("--sanitize", "--work", os.path.join(work, "work.copy"))
+        gone = survivors.keys() - {s["change"] for s in third["survivors"]}
+        expect("the sanitizers do, of this and nothing else: %s" % gone, gone == {"each < n -> <=", "[each] -> + 1"})
     again, second = run()
     expect("what stands in the record is not run again", not re.search(r"^ *\d+/\d+ ", again, flags=re.M))
     expect("and the score is the same", second["files"] == first["files"])
@@ -276,7 +298,7 @@ def sound_without(expect):
     tried in a copy of the build made before."""
     import trial
     asked = []
-    table = types.SimpleNamespace(build="/build", units={"t": {"seconds": 1, "failed": "", "reached": [], "differs": []}},
+    table = types.SimpleNamespace(build="/build", environment={}, units={"t": {"seconds": 1, "failed": "", "reached": [], "differs": []}},
                                   place=lambda worker: (("/build", "/copy"), "/scratch"),
                                   sound=lambda unit, place, scratch: asked.append(place) or True)
     judge = trial.Judge(table, {}, 9)
