@@ -154,7 +154,7 @@ void page_claims(struct page_writer *writer, const json_t *results)
     size_t i;
     buffer_add(to, "<section id=\"claims\"><h2>Claims, measured</h2>\n<p>Two schemes that differ "
                    "in one key on the same problem. A claim holds in a row if it makes the error "
-                   "smaller by a factor of at least 1.25. Runs are small in the quick report; the "
+                   "smaller by a factor of more than 1.25. Runs are small in the quick report; the "
                    "nightly one has runs of real size.</p>\n");
     json_array_foreach(json_object_get(results, "claims"), i, claim) {
         if (json_object_get(claim, "ladders"))

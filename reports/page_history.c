@@ -80,13 +80,13 @@ static double amount(const json_t *entry)
  * already written for them. *others: number of other entries in the row. */
 static const json_t *spokesman(const json_t *list, size_t i, size_t *others)
 {
-    const json_t *most = json_array_get(list, i), *entry = most;
+    const json_t *most = json_array_get(list, i), *entry = most, *other;
+    size_t k;
     *others = 0;
-    for (size_t k = 0; k < json_array_size(list); k++) {
-        const json_t *other = json_array_get(list, k);
-        if (k == i || !together(entry, other)) continue;
+    json_array_foreach(list, k, other) {
+        if (!together(entry, other)) continue;
         if (k < i) return NULL;
-        ++*others;
+        *others += k > i;
         if (amount(other) > amount(most)) most = other;
     }
     return most;
@@ -251,7 +251,8 @@ static void change_row(struct buffer *to, const json_t *change, size_t others)
 
 static void change_table(struct buffer *to, const json_t *changes)
 {
-    size_t rows = 0, others;
+    size_t rows = 0, i, others;
+    const json_t *entry;
     buffer_add(to, "<h3>Where figures moved</h3>\n");
     if (!json_array_size(changes)) {
         buffer_add(to, "<p>No error and no order by which a case is judged has moved beyond "
@@ -259,8 +260,9 @@ static void change_table(struct buffer *to, const json_t *changes)
         return;
     }
     html_table(to, "changes", "|figure|#before|#after|#change|first night|revision");
-    for (size_t i = 0; i < json_array_size(changes) && rows < SHOWN; i++) {
+    json_array_foreach(changes, i, entry) {
         const json_t *change = spokesman(changes, i, &others);
+        if (rows == SHOWN) break;
         if (!change) continue;
         change_row(to, change, others);
         rows++;
@@ -305,8 +307,7 @@ static void read_marks(struct curves *curves, const json_t *changes, const char 
             path[8 + length] != ',')
             continue;
         char *name = curves->mark_names[curves->mark_count];
-        strncpy(name, value_text(change, "git"), 7);
-        name[7] = '\0';
+        snprintf(name, sizeof *curves->mark_names, "%.7s", value_text(change, "git"));
         curves->marks[curves->mark_count++] = (struct plot_mark){.at = night, .label = name};
     }
 }

@@ -25,7 +25,7 @@ fma isfinite isnan lround largest least power labs abs""".split())
 SWAPPED_CALLS = {"fmin": "fmax", "fmax": "fmin", "fminl": "fmaxl", "fmaxl": "fminl", "least": "largest", "largest": "least"}
 # Comparisons of strings are taken as tests of equality.
 COMMUTE = {"fmin", "fmax", "fminl", "fmaxl", "least", "largest", "hypot", "strcmp", "strncmp", "memcmp", "json_equal",
-           "calloc", "fwrite", "swap"}
+           "calloc", "page_allocate", "fwrite", "swap"}
 ALLOCATIONS = {"malloc", "calloc", "realloc"}  # a larger block changes nothing
 WAITS = {"poll", "nanosleep"}  # the last argument of poll is a time; how long a process waits changes no result
 SAID = ("reports/", "verify/command/")  # numbers are printed with three digits, or drawn

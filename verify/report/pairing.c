@@ -114,7 +114,6 @@ static struct ladder ladder_read(const struct pairing_run *runs, size_t most,
         ladder.sound += sound;
         ladder.count++;
     }
-    ladder.first = 0;
     while (ladder.first < ladder.count && !(ladder.paired[ladder.first] > bound)) ladder.first++;
     json_array_foreach(kernels, i, kernel) {
         if (strcmp(value_text(kernel, "kernel"), runs->kernel) != 0 ||

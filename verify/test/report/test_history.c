@@ -263,6 +263,36 @@ TEST(which_way_is_better)
     }
 }
 
+/* The newest change comes first, and of one night the largest. */
+TEST(order_of_changes)
+{
+    static const struct {
+        int error_at, order_at;
+        double error, order; /* afterwards; before: 1e-3 and 0.95 */
+        const char *first;
+    } rows[] = {{4, 8, 9e-3, 1.9, order_path},  {8, 4, 2e-3, 9.5, error_path},
+                {6, 6, 9e-3, 1.9, error_path},  {6, 6, 2e-3, 9.5, order_path},
+                {6, 6, 1e-4, 1.9, error_path},  {6, 6, 2e-3, 0.095, order_path},
+                {6, 6, 9e-3, 0.19, error_path}, {6, 6, 5e-4, 0.095, order_path}};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        FILE *file = fopen(path_of("history"), "w");
+        struct night night;
+        for (int i = 0; i < 12; i++) {
+            night = usual_night(i);
+            if (i >= rows[r].error_at) night.error = rows[r].error;
+            if (i >= rows[r].order_at) night.order = rows[r].order;
+            if (i < 11) write_night(file, &night);
+        }
+        fclose(file);
+        json_t *history = reported(&night);
+        const json_t *changes = json_object_get(history, "changes");
+        assert_int_equal(json_array_size(changes), 2);
+        assert_string_equal(value_text(json_array_get(changes, 0), "path"), rows[r].first);
+        json_decref(history);
+    }
+    unlink(path_of("history"));
+}
+
 /* Faults come first, then the largest changes, up or down, and figures without a ratio; counts of
  * work are last; equal changes are in the order of their paths. */
 static void in_order_of_since(const json_t *figures)
@@ -328,6 +358,8 @@ TEST(verdicts_since_last_night)
                 if (!isnan(last.error))
                     near_relative(value_member(figure, "old"), last.error, 1e-12);
                 near_relative(value_member(figure, "new"), now.error, 1e-12);
+                if (!isnan(last.error))
+                    near_relative(value_member(figure, "ratio"), now.error / last.error, 1e-12);
             }
             if (strcmp(path, order_path) == 0) of_order = value_text(figure, "verdict");
             assert_string_not_equal(value_text(figure, "verdict"), "same");

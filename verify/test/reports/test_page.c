@@ -4,7 +4,9 @@
 
 #include "markup.h"
 #include "page.h"
+#include "page_part.h"
 #include "result.h"
+#include "style.h"
 #include "verdict.h"
 
 /* The whole page of these results, which it takes over. */
@@ -20,6 +22,18 @@ static char *page_of(json_t *results)
     page_free(&made);
     json_decref(results);
     return whole;
+}
+
+/* The page begins with all parts of the style sheet, then the colours of plots. */
+TEST(style_sheet)
+{
+    char *whole = page_of(json_object());
+    const char *at = strstr(whole, "<style>") + strlen("<style>");
+    for (size_t k = 0; page_styles[k]; at += strlen(page_styles[k++]))
+        assert_int_equal(strncmp(at, page_styles[k], strlen(page_styles[k])), 0);
+    assert_int_equal(strncmp(at, style_css(), strlen(style_css())), 0);
+    assert_int_equal(strncmp(at + strlen(style_css()), "</style>", 8), 0);
+    free(whole);
 }
 
 /* For a failed check the page shows the worst figure and 20 more, then the number of figures. */
