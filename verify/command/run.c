@@ -71,7 +71,7 @@ static void describe_window(const struct window *window, char *text, size_t size
 {
     int used = 0;
     if (window->radius > 0) used = snprintf(text, size, "|x - centre| <= %g in ", window->radius);
-    for (int d = 0; d < window->dim && used < (int)size; d++)
+    for (int d = 0; d < window->dim; d++)
         used += snprintf(text + used, size - (size_t)used, "%s[%g, %g]", d ? " x " : "",
                          window->lo[d], window->hi[d]);
 }

@@ -189,7 +189,6 @@ static void map_size(struct plot *plot, const struct map *map)
  * case, for circular flows the non-zero component of the velocity. Arrays are owned. */
 struct scatter {
     struct plot_series series[2];
-    double *arrays[4];
     char label[64];
     const char *over;
 };
@@ -211,31 +210,25 @@ static bool scatter_fill(struct scatter *scatter, const struct run_result *resul
     json_t *profile = profile_json(result);
     const json_t *exact = json_object_get(profile, "exact");
     const char *name = names[field];
-    size_t n[4];
+    bool there = true;
     if (field == FIELD_VELOCITY && !json_object_get(profile, name))
         name = moves(exact, "azimuthal") ? "azimuthal" : "radial";
-    const json_t *from[4] = {json_object_get(exact, "x"), json_object_get(exact, name),
-                             json_object_get(profile, "x"), json_object_get(profile, name)};
-    for (int k = 0; k < 4; k++) scatter->arrays[k] = value_numbers(from[k], &n[k]);
-    const bool there = n[0] && n[0] == n[1] && n[2] && n[2] == n[3];
+    const json_t *from[2] = {profile, exact};
+    scatter->series[0] =
+        (struct plot_series){.label = "particles", .kind = PLOT_POINTS, .color = 1, .size = 0.4};
+    scatter->series[1] =
+        (struct plot_series){.label = "exact", .kind = PLOT_LINES, .color = PLOT_NEUTRAL};
+    for (int s = 0; s < 2; s++) {
+        struct plot_series *one = &scatter->series[s];
+        one->x = value_numbers(json_object_get(from[s], "x"), &one->n);
+        one->y = value_numbers(json_object_get(from[s], name), &one->n);
+        there = there && one->x && one->y; /* of equal lengths */
+    }
     snprintf(scatter->label, sizeof scatter->label, "%s%s", name,
              field == FIELD_VELOCITY && name != names[field] ? " velocity" : "");
     scatter->over = !strcmp(value_text(profile, "over"), "R") ? "distance from the middle [length]"
                                                               : "x [length]";
     json_decref(profile);
-    scatter->series[0] = (struct plot_series){.label = "particles",
-                                              .kind = PLOT_POINTS,
-                                              .n = n[2],
-                                              .x = scatter->arrays[2],
-                                              .y = scatter->arrays[3],
-                                              .color = 1,
-                                              .size = 0.4};
-    scatter->series[1] = (struct plot_series){.label = "exact",
-                                              .kind = PLOT_LINES,
-                                              .n = n[0],
-                                              .x = scatter->arrays[0],
-                                              .y = scatter->arrays[1],
-                                              .color = PLOT_NEUTRAL};
     return there;
 }
 
@@ -312,7 +305,8 @@ static enum status draw_maps(const struct run_settings *settings, const struct r
     map_size(&plot, &map);
     enum status status = movie ? movie_add(movie, &plot, error) : picture_write(&plot, path, error);
     if (!status && !movie) status = picture_source(&plot, path, error);
-    for (int k = 0; k < 4; k++) free(scatter.arrays[k]);
+    for (int k = 0; k < 2; k++)
+        free((void *)scatter.series[k].x), free((void *)scatter.series[k].y);
     free(values);
     map_free(&map);
     return status;

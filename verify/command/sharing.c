@@ -14,7 +14,7 @@ static enum status take_share(struct pool_share *share, const struct options *op
                               struct error *error)
 {
     const char *text = options_value(options, "shard");
-    int end = 0;
+    int end;
     if (text && (sscanf(text, "%6d/%7d%n", &share->number, &share->of, &end) != 2 || text[end] ||
                  share->number < 1 || share->number > share->of || share->of > SHARES_MAX))
         return error_set(error, STATUS_BAD_INPUT,

@@ -327,7 +327,7 @@ static enum status be_patient(struct array *array, const struct error *trouble, 
 static enum status step(struct array *array, struct error *error)
 {
     struct slurm_task *tasks = NULL;
-    size_t count = 0;
+    size_t count;
     const int lock = open(array->folder, O_RDONLY | O_CLOEXEC);
     if (lock >= 0) flock(lock, LOCK_EX);
     struct error trouble;

@@ -30,6 +30,7 @@ static struct call {
     struct progress progress;
     struct slurm_work work;
     struct error error;
+    bool reports;    /* its progress */
     char said[8000]; /* standard error */
 } call;
 
@@ -51,11 +52,11 @@ static inline int begin(void **state)
     call.options.arguments = call.arguments;
     call.options.count = 1;
     call.work = (struct slurm_work){.options = &call.options,
-                                     .pool = &call.pool,
-                                     .cache = &call.folder.cache,
-                                     .jobs = 1,
-                                     .tasks = SHARES,
-                                     .progress = &call.progress};
+                                    .pool = &call.pool,
+                                    .cache = &call.folder.cache,
+                                    .jobs = 1,
+                                    .tasks = SHARES,
+                                    .progress = &call.progress};
     return 0;
 }
 
@@ -81,7 +82,7 @@ static inline enum status compute_all(void)
     const int usual = dup(STDERR_FILENO), file = open(path, O_RDWR | O_CREAT | O_TRUNC, 0600);
     assert_true(usual >= 0 && file >= 0);
     dup2(file, STDERR_FILENO);
-    progress_begin(&call.progress, "converge", true);
+    progress_begin(&call.progress, "converge", !call.reports);
     call.error = (struct error){0};
     const enum status status = slurm_compute(&call.work, &call.error);
     fflush(stderr);

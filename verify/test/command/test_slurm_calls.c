@@ -4,6 +4,8 @@
 #define _GNU_SOURCE /* nftw */
 #include "test.h"
 
+#include <sys/file.h>
+
 #include "fake_slurm_call.h"
 
 /* ---- commands that fail or hang ---- */
@@ -388,6 +390,49 @@ TEST(logs_of_completed_shares_are_removed)
         if (slurm.tasks[k].fate == STAYS) slurm.tasks[k].fate = COMPLETES;
     assert_int_equal(compute_all(), STATUS_OK);
     all_is_left_behind_in_order();
+}
+
+/* Progress: tasks in the queue, results in the cache, and these as a share of the work. A task of
+ * an older array, which had more shares, does not count. */
+TEST(reported_progress)
+{
+    int shares[N];
+    char text[100];
+    double left = 0, whole = 0;
+    again();
+    call.reports = true;
+    slurm.fates[2][0] = STAYS, slurm.fates[3][0] = HELD;
+    slurm.tasks[slurm.count++] = (struct fake_task){.job = 6, .index = 1000000, .fate = STAYS};
+    slurm.refuses_cancel = true;
+    slurm.interrupt = 120;
+    assert_int_equal(pool_divide(&call.pool, SHARES, shares, &call.error), STATUS_OK);
+    for (int i = 0; i < N; i++) {
+        whole += call.pool.jobs[i].weight;
+        left += shares[i] > 1 ? call.pool.jobs[i].weight : 0;
+    }
+    assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+    snprintf(text, sizeof text, "converge, slurm: 1 run, 1 wait: %zu of %d (%.0f %%), 10 s",
+             shares_computations(1), N, 100 * (1 - left / whole));
+    says(text);
+}
+
+static void is_locked(void)
+{
+    char path[200];
+    snprintf(path, sizeof path, "%s/slurm", call.folder.cache_folder);
+    const int folder = open(path, O_RDONLY);
+    assert_true(folder >= 0);
+    assert_int_equal(flock(folder, LOCK_EX | LOCK_NB), -1);
+    close(folder);
+}
+
+/* No other call acts on the study between a look into the queue and the submission after it. */
+TEST(one_call_acts_at_a_time)
+{
+    again();
+    slurm.meanwhile = slurm.submitting = is_locked;
+    assert_int_equal(compute_all(), STATUS_OK);
+    assert_int_equal(slurm.submissions, 1);
 }
 
 /* The engine polls ever less often, from every half second to every quarter of a minute. */
