@@ -78,17 +78,21 @@ static int start(struct process *child, char *const argv[], int file, const sigs
     return code;
 }
 
+static void shut(int *descriptor)
+{
+    close(*descriptor);
+    *descriptor = -1;
+}
+
 /* Reads the available data, which takes no time; closes the descriptor at the end of the file. */
 static void drain(int *descriptor, struct buffer *into)
 {
     char buffer[65536];
     ssize_t n = read(*descriptor, buffer, sizeof buffer);
-    if (n > 0) {
+    if (n > 0)
         buffer_add_bytes(into, buffer, (size_t)n);
-    } else {
-        close(*descriptor);
-        *descriptor = -1;
-    }
+    else
+        shut(descriptor);
 }
 
 /* Removes the mark from the end of the output; false: not there yet. */
@@ -109,34 +113,29 @@ static enum turn converse(struct process *child, const char *input, size_t size,
                           double end_time, struct buffer *output, struct buffer *errors)
 {
     fcntl(child->in, F_SETFL, O_NONBLOCK);
-    while (child->in >= 0 || child->out >= 0 || child->err >= 0) {
-        const int in = size || !mark ? child->in : -1;
-        struct pollfd polled[3] = {{.fd = in, .events = POLLOUT},
+    for (;;) {
+        if (mark ? child->out < 0 : !size)
+            shut(&child->in); /* it will not answer; all is written */
+        if (child->in < 0 && child->out < 0 && child->err < 0) return ENDED;
+        struct pollfd polled[3] = {{.fd = size ? child->in : -1, .events = POLLOUT},
                                    {.fd = child->out, .events = POLLIN},
                                    {.fd = child->err, .events = POLLIN}};
         double left = end_time - clock_wall();
         if (left <= 0) return OUT_OF_TIME;
         if (poll(polled, 3, (int)(1000 * left) + 1) < 0 && errno != EINTR) return OUT_OF_TIME;
         if (polled[0].revents) {
-            ssize_t n = size ? write(child->in, input, size) : 0;
-            if (n > 0) {
+            const ssize_t n = write(child->in, input, size);
+            if (n < 0) {
+                shut(&child->in);
+            } else {
                 input += n;
                 size -= (size_t)n;
-            }
-            if ((!size && !mark) || n < 0) {
-                close(child->in);
-                child->in = -1;
             }
         }
         if (polled[2].revents) drain(&child->err, errors);
         if (polled[1].revents) drain(&child->out, output);
         if (mark && marked(output, mark)) return ANSWERED;
-        if (mark && child->out < 0 && child->in >= 0) { /* it will not answer */
-            close(child->in);
-            child->in = -1;
-        }
     }
-    return ENDED;
 }
 
 /* Waits for the process to end; returns its wait status. */

@@ -121,9 +121,9 @@ static size_t object_length(const char *path)
 {
     size_t end = 0;
     int depth = 0;
-    for (size_t i = 0; path[i]; i++) {
-        depth += (path[i] == '[') - (path[i] == ']');
-        if (path[i] == '.' && depth == 0) end = i;
+    for (const char *c = path; *c; c++) {
+        depth += (*c == '[') - (*c == ']');
+        if (*c == '.' && depth == 0) end = (size_t)(c - path);
     }
     return end;
 }
