@@ -179,8 +179,8 @@ static void plot_convergence(struct page_writer *writer, const char *case_name,
     struct plot_panel panels[PLOTTED];
     char labels[PLOTTED][64], name[96];
     const struct study *ladder = studies;
-    for (size_t k = 1; k < count; k++)
-        if (studies[k].levels > ladder->levels) ladder = &studies[k];
+    for (const struct study *study = studies; study < studies + count; study++)
+        if (study->levels > ladder->levels) ladder = study;
     if (!ladder->levels || !ladder->plotted) return;
     for (int q = 0; q < ladder->plotted; q++) {
         const bool scalar = is_scalar(order_of(ladder->document, ladder->names[q]));

@@ -99,7 +99,7 @@ static void log_ticks(struct buffer *to, const struct layout_axis *axis, const d
         for (int m = 1; m < 10; m++) {
             double value = m * pow(10, e);
             if (value < 0.999 * axis->min || value > 1.001 * axis->max) continue;
-            bool few = decades < 1.6 && (m == 2 || m == 5 || (decades < 0.5 && m < 10));
+            bool few = decades < 1.6 && (m == 2 || m == 5 || decades < 0.5);
             char power[64];
             if (m > 1 && !few && decades > 5) continue;
             buffer_format(to, "%s'", comma);

@@ -394,7 +394,9 @@ TEST(one_gnuplot_for_many_plots)
         free(alone);
         free(svg);
     }
+    const int last = pen.gnuplot.pid;
     plot_pen_free(&pen);
+    assert_true(last > 0 && kill(last, 0) == -1);
     /* without /dev/fd/0 there is no file for the script */
     char *alone, *svg, message[512];
     const int input = dup(0);

@@ -3,6 +3,7 @@
  * (test_page_drawn.c tests whole verdicts, JUnit files and summaries.) */
 #include "test.h"
 
+#include "result.h"
 #include "verdict.h"
 
 /* Results that suffice for a verdict: one figure that passed, one order, one run; faults alone do
@@ -44,6 +45,8 @@ TEST(least_results_for_a_verdict)
          "'group': 'g', 'check': 'c', 'mutant': 'm'}]}}",
          "fail", "1 failure: detection c, m"},
         {"{'trouble': [{'name': 'a', 'message': 'b'}]}", "fail", "1 failure: harness a"},
+        {"{'studies': [{'case': 'c', 'label': 'l', 'floors': [{}, {'suspicion': 'equal'}]}]}",
+         "fail", "1 failure: suspicion c, l"},
         {"{'runs': [{'status': 'ok'}], 'stress': {'failures': [{'name': 'far', 'command': "
          "'sphproof stress', 'detail': 'worse'}]}}",
          "fail", "1 failure: stress far"},
@@ -58,6 +61,30 @@ TEST(least_results_for_a_verdict)
         json_t *made = verdict_make(results);
         assert_string_equal(json_string_value(json_object_get(made, "status")), rows[k].status);
         assert_string_equal(json_string_value(json_object_get(made, "headline")), rows[k].headline);
+        json_decref(made);
+        json_decref(results);
+    }
+}
+
+/* By how much a failed figure exceeds its bound; an equal one that failed is given as it is. */
+TEST(words_on_an_excess)
+{
+    static const struct {
+        double value, floor;
+        const char *detail;
+    } rows[] = {{2, 0, "s: 2 is not <= 1 (2 times the bound)"},
+                {1, 0, "s: 1 is not <= 1"},
+                {0.5, 1.5, "s: the floor 1.5 is not <= 1 (1.5 times the bound)"},
+                {3, 1.5, "s: 3 is not <= 1 (3 times the bound)"},
+                {(double)INFINITY, 0, "s: ∞ is not <= 1"}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        json_t *results =
+            json_pack("{s:{s:[{s:s, s:s, s:s, s:s, s:o, s:i, s:f}]}}", "verify", "checks", "group",
+                      "g", "name", "c", "subject", "s", "status", "fail", "value",
+                      result_number(rows[k].value), "bound", 1, "floor", rows[k].floor);
+        json_t *made = verdict_make(results);
+        const json_t *failure = json_array_get(json_object_get(made, "failures"), 0);
+        assert_string_equal(json_string_value(json_object_get(failure, "detail")), rows[k].detail);
         json_decref(made);
         json_decref(results);
     }
