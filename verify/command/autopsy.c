@@ -82,6 +82,11 @@ static void print_parts(const struct autopsy *autopsy, const struct table_style 
         "smooth error by their smooth parts along it.\nThe first order is that of the size, the "
         "last that of the share of the error.%s\n",
         style->faint, finest->acceleration, style->end);
+    if (!autopsy->theirs && finest->error[2] > 1.01 * finest->error[0])
+        printf(
+            "With a quarter of the time step the error is %.2f times as large: what the step costs "
+            "cancels part of\nthe rest, and has no share.\n",
+            finest->error[2] / finest->error[0]);
 }
 
 static void print_row(const char *what, double size, const struct order_fit *order)
