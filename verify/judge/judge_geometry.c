@@ -223,7 +223,7 @@ static enum status take_box(const struct judge_request *request, struct judged *
         double lo, hi;
         const double length = file->box[d];
         extent(file, file->n, d, &lo, &hi);
-        if (!(length > 0 && hi - lo <= length * (1 + 1e-6)))
+        if (!(hi - lo <= length * (1 + 1e-6))) /* positions differ, so no length of 0 is enough */
             return error_set(error, STATUS_BAD_INPUT,
                              "%.200s: the header's box is %g long along %s, but positions reach "
                              "from %g to %g",
@@ -281,8 +281,7 @@ static const char *case_ends(struct settings *settings)
 {
     struct setting_value *value = &settings->value[SETTING_boundary];
     if (value->automatic) return NULL;
-    const char *word =
-        scheme_boundary_family.members[settings_choice_along(settings, SETTING_boundary, 0)]->name;
+    const char *word = scheme_boundary_family.members[value->choices[0]]->name;
     value->automatic = true;
     return word;
 }
@@ -423,7 +422,7 @@ static enum status take_keys(struct judged *judged, struct settings *settings, s
 {
     struct snapshot_file *file = &judged->file;
     char keys[sizeof file->keys], *rest = keys;
-    struct error reason = {0};
+    struct error reason;
     enum status status = STATUS_OK;
     strcpy(keys, file->keys);
     for (char *word; !status && (word = strtok_r(rest, ";", &rest));) {
@@ -537,7 +536,7 @@ enum status judge_geometry(const struct judge_request *given, struct judged *jud
         snapshot_note(&judged->file.notes, "size", "not the case's",
                       "the case's box is %.6g long, the file's %.6g", case_hi - case_lo,
                       box.hi[0] - box.lo[0]);
-    struct error reason = {0};
+    struct error reason;
     if (run_resolve(&judged->run, &asked, &reason))
         return error_set(error, reason.status, "%.200s: %.280s", judged->path, reason.message);
     judged->run.settings.value[SETTING_n].real[0] = n; /* not a key beside a file of particles */
