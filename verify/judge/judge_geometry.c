@@ -357,8 +357,9 @@ static enum status set_window(const struct judge_request *request, struct judged
                       "the case's box is %.6g long, the file's %.6g", case_length, length);
         return settings_set(settings, SETTING_window, "auto", SOURCE_USER, NULL, error);
     }
-    snprintf(text, sizeof text, "%.17g %.17g", window->real[0] - case_middle + middle,
-             window->real[1] - case_middle + middle);
+    snprintf(text, sizeof text, "%.17g %.17g",
+             fmax(window->real[0] - case_middle + middle, box->lo[0]),
+             fmin(window->real[1] - case_middle + middle, box->hi[0]));
     return settings_set(settings, SETTING_window, text, SOURCE_USER, NULL, error);
 }
 

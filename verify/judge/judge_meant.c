@@ -125,6 +125,12 @@ static void find_meant(const char *path, const struct judge_request *request, st
     snprintf(meant + used, JUDGE_MEANT - (size_t)used, ")");
 }
 
+static void append(char *text, size_t size, const char *meant)
+{
+    const size_t used = strlen(text);
+    snprintf(text + used, size - used, "; %s", meant);
+}
+
 enum status judge_snapshot(const char *path, const struct judge_request *request,
                            struct judged *judged, struct error *error)
 {
@@ -136,9 +142,9 @@ enum status judge_snapshot(const char *path, const struct judge_request *request
                                    : status || !other || judged->of_start.explained)
         return status;
     find_meant(path, request, judged, !status, meant);
-    char *text = status ? error->message : judged->verdict;
-    const size_t size = status ? sizeof error->message : sizeof judged->verdict,
-                 used = strlen(text);
-    if (meant[0]) snprintf(text + used, size - used, "; %s", meant);
+    if (meant[0] && status)
+        append(error->message, sizeof error->message, meant);
+    else if (meant[0])
+        append(judged->verdict, sizeof judged->verdict, meant);
     return status;
 }
