@@ -59,12 +59,12 @@ static void limit_reach(struct sample *sample, struct near *near)
 }
 
 /* True if the particle is more than margin h from non-periodic ends. */
-static bool inside(const struct snapshot_file *file, const double box[3], const double ends[3][2],
-                   size_t i, double margin)
+static bool inside(const struct snapshot_file *file, const double box[3], const double lo[3],
+                   const double hi[3], size_t i, double margin)
 {
     for (int d = 0; d < file->dim; d++) {
         const double x = file->column[d][i], gap = margin * file->column[SNAPSHOT_H][i];
-        if (box[d] == 0 && !(x - ends[d][0] > gap && ends[d][1] - x > gap)) return false;
+        if (box[d] == 0 && !(x - lo[d] > gap && hi[d] - x > gap)) return false;
     }
     return true;
 }
@@ -73,20 +73,19 @@ static bool inside(const struct snapshot_file *file, const double box[3], const 
 static void choose(const struct snapshot_file *file, const double box[3], struct sample *sample)
 {
     static const double margins[] = {3, 1, 0};
-    double ends[3][2];
+    double lo[3], hi[3];
     for (int d = 0; d < file->dim; d++) {
-        ends[d][0] = INFINITY, ends[d][1] = -INFINITY;
+        lo[d] = INFINITY, hi[d] = -INFINITY;
         for (size_t i = 0; i < file->n; i++) {
-            ends[d][0] = fmin(ends[d][0], file->column[d][i]);
-            ends[d][1] = fmax(ends[d][1], file->column[d][i]);
+            lo[d] = fmin(lo[d], file->column[d][i]);
+            hi[d] = fmax(hi[d], file->column[d][i]);
         }
     }
     for (size_t m = 0; m < sizeof margins / sizeof *margins && !sample->n; m++)
         for (size_t k = 0; k < 8 * CONVENTIONS_SAMPLE && sample->n < CONVENTIONS_SAMPLE; k++) {
             const size_t i =
                 (size_t)((double)file->gas * fmod(0.5 + (double)k * 0.6180339887498949, 1));
-            if (margins[m] > 0 && !inside(file, box, (const double(*)[2])ends, i, margins[m]))
-                continue;
+            if (margins[m] > 0 && !inside(file, box, lo, hi, i, margins[m])) continue;
             sample->near[sample->n++] = (struct near){.rho = file->column[SNAPSHOT_RHO][i],
                                                       .m = file->column[SNAPSHOT_M][i],
                                                       .h = file->column[SNAPSHOT_H][i],

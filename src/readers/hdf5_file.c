@@ -81,7 +81,6 @@ void hdf5_names(const struct snapshot_source *source, const char *group, char *t
     *text = '\0';
     h5.Literate_by_name(file_of(source), group, H5_INDEX_NAME, H5_ITER_INC, &at, add_name, &names,
                         H5P_DEFAULT);
-    status_clean(text);
 }
 
 bool hdf5_last(const struct snapshot_source *source, const char *group, const char *prefix,
@@ -121,14 +120,14 @@ static bool open_entry(const struct snapshot_source *source, const char *group, 
                        struct entry *e)
 {
     char path[256];
-    *e = (struct entry){false, -1, -1, -1, 0};
     snprintf(path, sizeof path, "%s/%s", group, name);
     if (!hdf5_has(source, group)) return false;
     e->attribute = h5.Aexists_by_name(file_of(source), group, name, H5P_DEFAULT) > 0;
+    if (!e->attribute && !hdf5_has(source, path)) return false;
     if (e->attribute) {
         e->self = h5.Aopen_by_name(file_of(source), group, name, H5P_DEFAULT, H5P_DEFAULT);
         e->type = h5.Aget_type(e->self), e->space = h5.Aget_space(e->self);
-    } else if (hdf5_has(source, path)) {
+    } else {
         e->self = h5.Dopen2(file_of(source), path, H5P_DEFAULT);
         e->type = h5.Dget_type(e->self), e->space = h5.Dget_space(e->self);
     }
@@ -193,7 +192,7 @@ static void close_dataset(struct dataset *d)
 
 static bool open_dataset(const struct snapshot_source *source, const char *path, struct dataset *d)
 {
-    *d = (struct dataset){-1, -1, -1, {0, 1}};
+    d->shape[1] = 1;
     d->self = h5.Dopen2(file_of(source), path, H5P_DEFAULT);
     d->type = h5.Dget_type(d->self), d->space = h5.Dget_space(d->self);
     const int rank = h5.Sget_simple_extent_ndims(d->space);

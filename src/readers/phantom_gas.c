@@ -50,12 +50,12 @@ static void sort_rows(struct snapshot_file *file, const double *type, size_t *ro
 static void take_box(const struct phantom_header *header, struct snapshot_file *file)
 {
     if (!header->boxed) return;
-    for (int d = 0; d < 3; d++)
+    for (int d = 0; d < 3; d++) {
         if (!isfinite(header->hi[d] - header->lo[d])) return;
-    for (int d = 0; d < 3; d++)
         for (size_t i = 0; i < file->n; i++)
             if (!(file->column[d][i] >= header->lo[d] && file->column[d][i] <= header->hi[d]))
                 return;
+    }
     file->boxed = file->placed = true;
     for (int d = 0; d < 3; d++)
         file->corner[d] = header->lo[d], file->box[d] = header->hi[d] - header->lo[d];

@@ -133,7 +133,7 @@ static enum status read_hdf5(struct snapshot_source *source, const struct snapsh
     enum status status = guard_run(run_errand, &errand, SECONDS, &verdict, error);
     if (!status)
         status = take_results(source->path, errand.results, file, error);
-    else if (!verdict.ended && verdict.reason[0])
+    else if (verdict.reason[0])
         status = error_set(error, STATUS_BAD_INPUT,
                            "%.200s: damaged or hostile: the HDF5 library %.200s", source->path,
                            verdict.reason);
@@ -218,7 +218,7 @@ static enum status append(struct snapshot_file *file, const struct snapshot_file
             return error_set(error, STATUS_BAD_INPUT, "%.200s: has %s %s than the other parts",
                              path, more->column[c] ? "more" : "less", snapshot_column_names[c]);
         if (!file->column[c]) continue;
-        double *longer = realloc(file->column[c], (file->n + more->n + 1) * sizeof *longer);
+        double *longer = realloc(file->column[c], (file->n + more->n) * sizeof *longer);
         if (!longer) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
         memcpy(longer + file->n, more->column[c], more->n * sizeof *longer);
         file->column[c] = longer;

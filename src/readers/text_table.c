@@ -152,7 +152,6 @@ static size_t count_rows(const struct text_table *table, size_t from)
 static enum status no_number(const struct text_table *table, size_t line, size_t column,
                              char word[WORD], struct snapshot_file *file, struct error *error)
 {
-    status_clean(word);
     file->impossible = *word && !isfinite(strtod(word, NULL)); /* "nan", "-inf" */
     return *word ? error_set(error, STATUS_BAD_INPUT,
                              "%.200s:%zu: column %zu, '%s': no number: '%s'; allowed: such as 1, "

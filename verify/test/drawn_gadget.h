@@ -161,7 +161,7 @@ static void is_noted(const struct binary *b, const struct snapshot_file *file)
     noted(file, "positions", file->precision[0] < file->precision[1] ? "float64" : NULL,
           "24 bytes a particle");
     snprintf(value, sizeof value, "%s from record %zu on", b->there[MASS] ? "masses" : "energies",
-             5 + b->extra);
+             4 + b->there[ID] + b->extra);
     snprintf(words, sizeof words, "of %zu records only these", records);
     noted(file, "blocks", b->tagged ? NULL : value, words);
     if (b->tagged) return;

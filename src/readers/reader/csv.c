@@ -61,11 +61,8 @@ struct remarks {
 static enum status refuse(const struct remarks *remarks, const char *text, const char *allowed,
                           struct error *error)
 {
-    char copy[100];
-    snprintf(copy, sizeof copy, "%.99s", text);
-    status_clean(copy);
-    return error_set(error, STATUS_BAD_INPUT, "%.200s:%zu: '%s'; allowed: %s", remarks->path,
-                     remarks->line, copy, allowed);
+    return error_set(error, STATUS_BAD_INPUT, "%.200s:%zu: '%.99s'; allowed: %s", remarks->path,
+                     remarks->line, text, allowed);
 }
 
 /* Refuses a line that contradicts an earlier one. */
@@ -215,7 +212,7 @@ static enum status take_names(struct text_table *table, const char *line, size_t
     const char stops[] = {separator, blanks ? '\t' : separator, '\0'};
     for (size_t at = 0; at < length;) {
         size_t n = 0;
-        while (at < length && (line[at] == ' ' || line[at] == '\t')) at++;
+        at += strspn(line + at, " \t");
         if (blanks && table->columns && at < length && strchr("[(", line[at])) { /* unit */
             const size_t unit = strcspn(line + at, line[at] == '[' ? "]\n" : ")\n") + 1;
             snprintf(table->unit, sizeof table->unit, "%.*s", (int)unit, line + at);
@@ -236,7 +233,6 @@ static enum status take_names(struct text_table *table, const char *line, size_t
                              table->source->path, TABLE_COLUMNS_MAX, sizeof table->names[0] - 1);
         char *name = table->names[table->columns++];
         memcpy(name, line + at, size); /* the rest is 0 */
-        status_clean(name);
         if (text_real(name, &number))
             return error_set(error, STATUS_BAD_INPUT,
                              "%.200s: '%.40s' is a number; the first line, or the last comment "
@@ -280,7 +276,7 @@ static enum status read(const struct snapshot_source *source,
     const char *text = (const char *)source->bytes;
     size_t at = 0, line = 1, remark = 0, remark_length = 0;
     if (strncmp(text, "\xef\xbb\xbf", 3) == 0) at = 3;
-    for (; at < source->size && (!table.columns || text[at] == '#'); line++) {
+    for (; text[at] && (!table.columns || text[at] == '#'); line++) {
         const size_t length = strcspn(text + at, "\n");
         const size_t begin = strspn(text + at, " \t\r");
         if (text[at + begin] == '#') {
@@ -296,7 +292,6 @@ static enum status read(const struct snapshot_source *source,
             if (!named) break; /* first row */
         }
         at += length + (text[at + length] == '\n');
-        if (text[at] == '\0') break;
     }
     if (!table.columns)
         return error_set(error, STATUS_BAD_INPUT,

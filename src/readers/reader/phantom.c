@@ -146,7 +146,6 @@ static void note_array(struct dump *dump, const unsigned char *tag)
     const size_t used = strlen(dump->arrays);
     snprintf(name, sizeof name, "%.*s", TAG, (const char *)tag);
     name[strcspn(name, " ")] = '\0';
-    status_clean(name);
     snprintf(dump->arrays + used, sizeof dump->arrays - used, " %s", name);
 }
 

@@ -23,7 +23,7 @@ static enum status take_names(struct text_table *table, const char *line, size_t
 {
     size_t at = 1;
     while (at < length) {
-        while (at < length && (line[at] == ' ' || line[at] == '\r')) at++;
+        at += strspn(line + at, " \r");
         size_t n = 0;
         while (at + n < length && line[at + n] != '\r' &&
                !(line[at + n] == ' ' && (at + n + 1 == length || line[at + n + 1] == ' ')))
@@ -33,9 +33,7 @@ static enum status take_names(struct text_table *table, const char *line, size_t
             return error_set(error, STATUS_BAD_INPUT, "%.200s: too many names, or too long ones",
                              table->source->path);
         char *name = table->names[table->columns++];
-        memcpy(name, line + at, n);
-        name[n] = '\0';
-        status_clean(name);
+        memcpy(name, line + at, n); /* the rest is 0 */
         at += n;
     }
     return STATUS_OK;

@@ -47,7 +47,6 @@ static const char *next_word(struct vtk *vtk, char word[WORD])
         vtk->at++;
     }
     word[n] = '\0';
-    status_clean(word);
     return word;
 }
 
@@ -261,7 +260,6 @@ static enum status read_vtk(const struct snapshot_source *source,
     char word[WORD];
     enum part part = WHOLE;
     (void)options;
-    error->status = STATUS_OK;
     skip_line(&vtk), skip_line(&vtk); /* version and title */
     next_word(&vtk, word);
     vtk.binary = !strcmp(word, "BINARY");

@@ -92,9 +92,7 @@ static const char *value_of(const struct tag *tag, const char *key, char value[W
         while (from > at && isspace((unsigned char)from[-1])) from--;
         if ((size_t)(from - at) > n && !strncmp(from - n, key, n) &&
             isspace((unsigned char)from[-(long)n - 1]) && stop - equals - 2 < WORD) {
-            memcpy(value, equals + 2, (size_t)(stop - equals - 2));
-            value[stop - equals - 2] = '\0';
-            status_clean(value);
+            snprintf(value, WORD, "%.*s", (int)(stop - equals - 2), equals + 2);
             return value;
         }
         at = stop + 1;
@@ -194,7 +192,7 @@ static bool unpack(const struct vtk *vtk, struct array array, size_t blocks, uns
 static bool take_bytes(const struct vtk *vtk, const struct array *array, unsigned char *to,
                        size_t want)
 {
-    unsigned char head[sizeof(uint64_t)] = {0};
+    unsigned char head[sizeof(uint64_t)];
     if (!fetch(array, vtk->head, head, NULL)) return false;
     const uint64_t size = size_at(vtk, head);
     if (vtk->compressed) return unpack(vtk, *array, size, to + vtk->head, want);

@@ -357,6 +357,39 @@ TEST(as_columns)
     snapshot_file_free(&file);
 }
 
+/* Names of columns become ours, unless the file has ours too; as many unknown ones as fit are
+ * listed. */
+TEST(names_of_columns)
+{
+#define LONG "a_name_of_forty_letters_with_the_number_"
+    static const struct {
+        const char *head, *names, *unknown;
+    } rows[] = {{"x,Density,Mass", "x,rho,m", ""},
+                {"rho,Density,foo,pos,bar", "rho,Density,foo,x,bar", "foo bar"},
+                {LONG "1," LONG "2," LONG "3," LONG "4," LONG "5",
+                 LONG "1," LONG "2," LONG "3," LONG "4," LONG "5",
+                 LONG "1 " LONG "2 " LONG "3 " LONG "4 a_name_of_forty_letters_with_th"}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct snapshot_file file;
+        struct csv csv = {0};
+        struct error error = {0};
+        char unknown[200] = "nothing", names[300] = "";
+        FILE *out = fopen(path_of("n.csv"), "w");
+        assert_non_null(out);
+        fprintf(out, "%s\n1,2,3%s\n", rows[k].head, k ? ",4,5" : "");
+        fclose(out);
+        if (snapshot_csv_named(path_of("n.csv"), &file, &csv, unknown, &error))
+            fail_msg("%s", error.message);
+        for (size_t c = 0; c < csv.columns; c++)
+            snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", c ? "," : "",
+                     csv.names[c]);
+        assert_string_equal(names, rows[k].names);
+        assert_string_equal(unknown, rows[k].unknown);
+        csv_free(&csv);
+        snapshot_file_free(&file);
+    }
+}
+
 /* ---- notes ---- */
 
 TEST(notes)
@@ -375,9 +408,11 @@ TEST(notes)
         assert_null(strchr(notes.note[k].evidence, '\n'));
         assert_non_null(strstr(notes.note[k].evidence, "evidence"));
     }
-    struct snapshot_file file = {.n = SNAPSHOT_ROWS_MAX + (size_t)1, .box = {7, 7, 7}};
+    struct snapshot_file file = {
+        .n = SNAPSHOT_ROWS_MAX + (size_t)1, .box = {7, 7, 7}, .corner = {7, 7, 7}, .placed = true};
     assert_true(snapshot_take_box("2 1", &file) && !file.placed);
     assert_true(file.box[0] == 2 && file.box[1] == 1 && file.box[2] == 7);
+    for (int d = 0; d < 3; d++) assert_true(file.corner[d] == 0);
     assert_int_equal(snapshot_file_make(&file, SNAPSHOT_X, "a", NULL), STATUS_ENVIRONMENT);
     assert_null(file.column[SNAPSHOT_X]);
 }

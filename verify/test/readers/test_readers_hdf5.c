@@ -41,14 +41,19 @@ TEST(missing_items)
         for (size_t k = 0; k < l->count && !a; k++)
             if (l->fields[k].meaning == MASS) items[k].values[0] = 0;
         if (!a)
-            refuses(l, items, "a table of no mass", "Header/MassTable[0] = 0; allowed: above 0");
+            refuses(l, items, "a table of no mass",
+                    "no PartType0/Masses, and Header/MassTable[0] = 0; allowed: above 0");
         items_of(l, items);
         bool named = false;
         for (size_t k = 0; k < l->count; k++)
             if (l->fields[k].column == SNAPSHOT_M) items[k].path[0] = '\0', named = true;
         for (size_t k = 0; k < l->count; k++)
             if (l->fields[k].meaning == MASS) items[k].path[0] = '\0';
-        if (named) refuses(l, items, "no masses", "no masses");
+        if (named)
+            refuses(
+                l, items, "no masses",
+                a < 2 ? "no masses: no PartType0/Masses, and no Header/MassTable; allowed: above 0"
+                      : "no masses: neither Step#10/m nor its attribute particleMass");
         /* both of two alternatives are missing */
         items_of(l, items);
         for (size_t k = 0; k < l->count; k++)
@@ -192,7 +197,10 @@ TEST(damaged_columns)
         const struct layout *l = &layouts[a];
         for (size_t k = 0; k < l->count; k++) {
             const struct field *f = &l->fields[k];
-            const bool first = f->column == SNAPSHOT_X && f->meaning == COLUMN;
+            const bool first = f->column == SNAPSHOT_X && f->meaning == COLUMN,
+                       vector = f->meaning == COLUMN &&
+                                (f->column == SNAPSHOT_X || f->column == SNAPSHOT_VX ||
+                                 f->column == SNAPSHOT_AX);
             struct item items[ITEMS_MAX];
             char says[80];
             if (!is_column(f) || f->meaning == IGNORED) continue;
@@ -202,18 +210,16 @@ TEST(damaged_columns)
                 /* the number of rows differs from that of the positions, or from the count in the
                  * header */
                 snprintf(says, sizeof says, "%s has %d x %d numbers; allowed: %d x %s", f->path,
-                         N + more, f->width, N,
-                         f->meaning == COLUMN &&
-                                 (f->column == SNAPSHOT_X || f->column == SNAPSHOT_VX ||
-                                  f->column == SNAPSHOT_AX)
-                             ? "1 to 3"
-                             : "1");
+                         N + more, f->width, N, vector ? "1 to 3" : "1");
                 refuses(l, items, f->path, first ? "allowed: 1" : says);
             }
             items_of(l, items);
             items[k].rank = 2;
             items[k].shape[1] = 4;
             refuses(l, items, f->path, "12 x 4");
+            items[k].shape[1] = 2;
+            if (!vector) refuses(l, items, f->path, "12 x 2");
+            items[k].shape[1] = 4;
             items[k].shape[0] = 0;
             refuses(l, items, f->path, first ? "no particles" : "0 x 4");
             items[k].shape[0] = N, items[k].shape[1] = 0;

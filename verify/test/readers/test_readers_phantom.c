@@ -6,6 +6,7 @@
 
 #include <float.h>
 
+#include "cut_records.h"
 #include "draw.h"
 #include "expected_snapshot.h"
 
@@ -327,6 +328,9 @@ TEST(names)
         refuses(put_all(&d), "no snapshot that is read");
     }
     d = made();
+    d.name[99] = '\0';
+    refuses(put_all(&d), "damaged: record 2 at byte 32, the name, has 99 bytes; allowed: 100");
+    d = made();
     d.rows = 0;
     refuses(put_all(&d), "0 particles");
     d.rows = 1;
@@ -343,8 +347,11 @@ TEST(damaged)
         struct dump d = made();
         d.swapped = swapped;
         const size_t size = put_all(&d);
-        for (size_t cut = 1; cut < size - 30; cut += 7) /* no record is shorter */
-            refuses(size - cut, "cut off: record");
+        for (size_t cut = 1; cut < size - 31; cut += 7) { /* the first record is whole */
+            char says[120];
+            say_cut(bytes, size - cut, d.swapped, says);
+            refuses(size - cut, *says ? says : "cut off: record");
+        }
         for (size_t k = 0; k < size; k += 1 + k / 60) {
             struct snapshot_file file;
             struct error error;

@@ -114,6 +114,7 @@ TEST(values_in_comments)
         /* in the free text of a comment */
         {"# Sod at t = 0.25, Gamma: 3/2\n", true, true, false, 0.25, 1.5, {0}},
         {"#Time: 0.25  gamma=1.5 #\n# dt = 3; my_t = 4\n", true, true, false, 0.25, 1.5, {0}},
+        {"# box = 2.0000000005e9\n# box = 2e9\n", false, false, true, 0, 0, {2e9, 2e9, 2e9}},
         {"# n = 7,TIME=0.25;T=0.25\n# t_end = 9\n", true, false, false, 0.25, 0, {0}},
         {"# at t = 0.25 s, gamma = 5/0\n# time = 1/2/3, gamma = /2\n",
          false,
@@ -161,6 +162,7 @@ TEST(values_in_comments)
     } ends[] = {{"-1:3", 1, {-1}, {4}},
                 {"-1:3 0:0.5", 2, {-1, 0}, {4, 0.5}},
                 {"-1:3, 0:0.5,\t2:2.25", 3, {-1, 0, 2}, {4, 0.5, 0.25}},
+                {"-1.000000001:2.999999999\n# box = -1:3", 1, {-1}, {4}},
                 {":", 0, {0}, {0}}};
     for (size_t k = 0; k < sizeof ends / sizeof *ends; k++)
         for (int behind = 0; behind < 2; behind++) {
@@ -232,6 +234,9 @@ TEST(values_in_comments)
         {"# box = 2 3 4\n# box = 2 5 4\n", ":2: '# box = 2 5 4'; allowed: one value, but line 1"},
         {"# box = 0:2 0:2 0:2\n# box = 0:2 0:2 1:3\n", ":2: '# box = 0:2 0:2 1:3'; allowed: one"},
         {"# box = 0:2 0:2 0:2\n# box = 0:2 1:3 0:2\n", ":2: '# box = 0:2 1:3 0:2'; allowed: one"},
+        {"# box = 2\n# box = 2.0000001\n", ":2: '# box = 2.0000001'; allowed: one value"},
+        {"# box = 0:2\n# box = 1e-7:2.0000001\n", ":2: '# box = 1e-7:2.0000001'; allowed: one"},
+        {"# box = 0:1 0:1e9\n# box = 0.5:1.5 0:1e9\n", ":2: '# box = 0.5:1.5 0:1e9'; allowed"},
         {"# box = 0:2 0:1\n# box = 2 1\n", ":2: '# box = 2 1'; allowed: one value, but line 1"},
         {"# case = sod\n# case = lax\n", ":2: '# case = lax'; allowed: one value, but line 1"},
         {"# boundary = open\n# boundary = fixed\n", ":2: '# boundary = fixed'; allowed: one value"},

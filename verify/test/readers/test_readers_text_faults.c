@@ -235,6 +235,8 @@ TEST(wrong_headers)
         {"x,vx\n1,2,\n", ":2: more than 2 numbers"},
         {"x,vx,m,rho,u\n", "0 gas particles"},
         {"x,vx,m,rho,u\n1,2,3,4,5\n2,2,3,4,5\n3,2,3,4,5\n", "3 gas particles; allowed: at least 4"},
+        {"x,z,vx,m,rho,u\n1,2,3,4,5,6\n2,2,3,4,5,6\n3,2,3,4,5,6\n4,2,3,4,5,6\n",
+         "has z but no y; found: x z vx"},
         {"x,vx,m,rho,u\n1,2,3,4,5\n1,2,3,4,5\n1,2,3,4,5\n1,2,3,4,5\n",
          "all particles are at one place"},
         {"x\x01,vx\n1,2\n", "no snapshot that is read"},

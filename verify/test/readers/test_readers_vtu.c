@@ -124,7 +124,7 @@ static const struct {
     int count;
 } fields[] = {{"boundary", "111 112 101 110", 4},
               {"keys", "110 61 51", 3},
-              {"case", "115 31 111 32 100 255 256 31 31", 9},
+              {"case", "115 31 111 256 32 100 255 31 31", 9},
               {"box", "-1 4000 -1 4000 -1 4000", 6},
               {"ndims", "3", 1},
               {"gamma", "1.5", 1},
@@ -290,6 +290,7 @@ static const struct {
     const char *old, *new, *says;
 } faults[] = {
     {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"1e8\"", "NumberOfPoints = '1e8'; allowed: 1"},
+    {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"1e5\"", "NumberOfPoints = '1e5'; allowed: 1"},
     {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"0\"", "NumberOfPoints = '0'; allowed: 1"},
     {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"2.5\"", "NumberOfPoints = '2.5'"},
     {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"1\"", "1 gas particles; allowed: at least 4"},
@@ -367,6 +368,22 @@ TEST(one_fault)
             fail_msg("fault %zu does not apply", k);
         refuses(d.text, d.length, NULL, faults[k].says);
     }
+}
+
+/* Compressed points may be more than bytes, by a factor of 1032. */
+TEST(numbers_of_points)
+{
+    for (int more = 0; more < 2; more++) {
+        char text[300];
+        const int n = sprintf(text,
+                              "<VTKFile compressor='vtkZLibDataCompressor'><Piece NumberOfPoints="
+                              "'%d'><Points><DataArray format='ascii' type='Float64' Name='p'/>"
+                              "</Points></Piece></VTKFile>",
+                              more ? 200000 : 100000);
+        refuses(text, (size_t)n, NULL,
+                more ? "NumberOfPoints = '200000'; allowed" : "'p' has '' as number 1 of the");
+    }
+    refuses("<VTKFile></VTKFile>", 19, NULL, "VTK: has no Piece; allowed: one, with points");
 }
 
 /* Text is cut where it would not fit. */
