@@ -11,6 +11,7 @@
 #include "output.h"
 #include "snapshot_file.h"
 #include "source.h"
+#include "text.h"
 
 #ifdef HAVE_HDF5
 #include "h5.h"
@@ -259,8 +260,7 @@ static enum status read_parts(const char *path, const struct snapshot_options *o
 static void list_columns(const struct snapshot_file *file, char *text, size_t size)
 {
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++)
-        if (file->column[c])
-            snprintf(text + strlen(text), size - strlen(text), " %s", snapshot_column_names[c]);
+        if (file->column[c]) text_add(text, size, " %s", snapshot_column_names[c]);
 }
 
 /* ---- checks of values ---- */

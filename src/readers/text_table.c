@@ -50,8 +50,7 @@ static enum status apply_map(struct text_table *table, const char *map, struct e
         if (column < 0) {
             char there[240] = "";
             for (size_t c = 0; c < table->columns; c++)
-                snprintf(there + strlen(there), sizeof there - strlen(there), " '%s'",
-                         table->names[c]);
+                text_add(there, sizeof there, " '%s'", table->names[c]);
             return error_set(
                 error, STATUS_BAD_INPUT, "--map %.80s: %.100s has no column '%.*s'; it has%s", map,
                 table->source->path, (int)(length - ours - 1 < 40 ? length - ours - 1 : 40),

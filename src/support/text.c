@@ -5,6 +5,7 @@
 #include <limits.h>
 #include <locale.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -134,6 +135,15 @@ void text_printable(const char *word, char *copy, size_t size)
     size_t i = 0;
     for (; word[i] && i + 1 < size; i++) copy[i] = word[i] < ' ' || word[i] > '~' ? '?' : word[i];
     copy[i] = '\0';
+}
+
+void text_add(char *text, size_t size, const char *format, ...)
+{
+    const size_t used = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text + used, size - used, format, arguments);
+    va_end(arguments);
 }
 
 enum status text_unknown(struct error *error, const char *where, const char *kind, const char *word,

@@ -32,6 +32,10 @@ const char *text_nearest(const char *word, const char *const *names, size_t n);
 /* Copies word for a message: shortened, with '?' for unprintable characters. */
 void text_printable(const char *word, char *copy, size_t size);
 
+/* Appends to the text as far as the size allows. */
+void text_add(char *text, size_t size, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
 /* STATUS_BAD_INPUT with "where: no KIND 'word'; did you mean 'near'? allowed: a b c". where may be
  * NULL. */
 enum status text_unknown(struct error *error, const char *where, const char *kind, const char *word,

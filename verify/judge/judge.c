@@ -10,6 +10,7 @@
 #include "list.h"
 #include "mode.h"
 #include "plugin_kernel.h"
+#include "text.h"
 
 enum { SINC_ORDER = 5 };
 
@@ -554,8 +555,8 @@ static void write_verdict(struct judged *judged)
         char errors[120] = "";
         for (int f = 0; f < FIELD_INTERNAL_ENERGY; f++)
             if (problem_knows(r->problem.problem, (enum field)f))
-                snprintf(errors + strlen(errors), sizeof errors - strlen(errors), "%s %s %.3g",
-                         *errors ? "," : "", field_family.members[f]->name, r->errors[f].l1);
+                text_add(errors, sizeof errors, "%s %s %.3g", *errors ? "," : "",
+                         field_family.members[f]->name, r->errors[f].l1);
         snprintf(judged->verdict, sizeof judged->verdict, "%s%sL1 of%s; %s", gas,
                  judged->far ? "far from the solution of this case: " : "", errors, kernel);
     }

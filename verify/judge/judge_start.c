@@ -9,9 +9,8 @@
 #include "list.h"
 #include "problem_list.h"
 #include "start_gas.h"
+#include "text.h"
 
-/* A relative difference above this is more than rounding. */
-#define WRONG    1e-4
 #define MASS_OFF 0.02 /* total masses that differ by less count as equal */
 
 static const char *const names[START_FIELDS] = {"velocity", "internal energy", "mass", "pressure"};
@@ -49,8 +48,8 @@ static double least_off(const struct start_gas *gas, enum start_field field, siz
     static const double steps[] = {0.25, 0.5, 1};
     const struct prepared *p = gas->problem;
     double least = start_off(gas, field, i, &gas->exact[i]);
-    if (field == START_MASS && least > WRONG && fills_space(gas, i)) return 0;
-    if (p->problem->smooth || least <= WRONG) return least;
+    if (field == START_MASS && least > START_WRONG && fills_space(gas, i)) return 0;
+    if (p->problem->smooth || least <= START_WRONG) return least;
     for (int d = 0; d < p->domain.dim; d++)
         for (int k = 0; k < 6; k++) {
             struct problem_state beside;
@@ -70,7 +69,7 @@ static double median(double *values, size_t n)
 static size_t near(const double *values, size_t n, double value)
 {
     size_t count = 0;
-    for (size_t i = 0; i < n; i++) count += fabs(values[i] / value - 1) <= WRONG;
+    for (size_t i = 0; i < n; i++) count += fabs(values[i] / value - 1) <= START_WRONG;
     return count;
 }
 
@@ -186,10 +185,9 @@ static void say(const struct start_gas *gas, unsigned fields, const char *what, 
     char share[60], place[120];
     start_share(wrong, gas->snapshot->n, share, sizeof share);
     start_where(gas, fields, place, sizeof place);
-    snprintf(text + strlen(text), size - strlen(text),
-             "%s%s of the particles (%zu of %zu) %s the wrong %s%s%s%s", *text ? "; " : "", share,
-             wrong, gas->snapshot->n, wrong == 1 ? "has" : "have", what, place, *cause ? ": " : "",
-             cause);
+    text_add(text, size, "%s%s of the particles (%zu of %zu) %s the wrong %s%s%s%s",
+             *text ? "; " : "", share, wrong, gas->snapshot->n, wrong == 1 ? "has" : "have", what,
+             place, *cause ? ": " : "", cause);
 }
 
 /* Describes the cause of each wrong field; false if some field has no known cause. */
@@ -244,7 +242,7 @@ static bool are_moved(const struct start_gas *gas)
                                                : start_off(gas, START_ENERGY, i, &gas->exact[i]),
             gas->wrong[i] & 1u << START_MASS ? start_off(gas, START_MASS, i, &gas->exact[i]) : 0};
         bool is_moved = gas->wrong[i];
-        for (int k = 0; k < 3; k++) is_moved = is_moved && off[k] <= most[k] + WRONG;
+        for (int k = 0; k < 3; k++) is_moved = is_moved && off[k] <= most[k] + START_WRONG;
         wrong += gas->wrong[i] != 0;
         moved += is_moved;
     }
@@ -273,7 +271,7 @@ static void look(struct start_gas *gas, double precision, double mass_ratio, dou
         start->worst[f] = known[f] ? 0 : (double)NAN;
         for (size_t i = 0; known[f] && i < s->n; i++) {
             const double off = least_off(gas, (enum start_field)f, i);
-            if (off > WRONG) gas->wrong[i] |= 1u << f;
+            if (off > START_WRONG) gas->wrong[i] |= 1u << f;
             start->worst[f] = fmax(start->worst[f], off);
         }
     }

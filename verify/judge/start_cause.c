@@ -7,8 +7,13 @@
 #include <string.h>
 
 #include "list.h"
+#include "text.h"
 
-enum { PER_CENT = 100 };
+/* A cause may leave a few particles unexplained. */
+static bool nearly_all(size_t explained, size_t wrong)
+{
+    return 100 * explained >= 95 * wrong;
+}
 
 /* ---- number of particles in words ---- */
 
@@ -21,7 +26,7 @@ void start_share(size_t part, size_t n, char *text, size_t size)
                  {1. / 3, "a third"},        {1. / 4, "a quarter"},  {1. / 5, "a fifth"},
                  {1. / 8, "an eighth"},      {1. / 10, "a tenth"}};
     const double share = (double)part / (double)n;
-    snprintf(text, size, "%.2g %%", PER_CENT * share);
+    snprintf(text, size, "%.2g %%", 100 * share);
     for (size_t k = 0; k < sizeof usual / sizeof *usual; k++)
         if (fabs(share / usual[k].share - 1) <= 0.03) snprintf(text, size, "%s", usual[k].words);
     if (part == n) snprintf(text, size, "all");
@@ -78,9 +83,8 @@ static bool name_stride(const struct start_gas *gas, unsigned fields, char *text
     while (!(gas->wrong[first] & fields)) first++;
     while (first + stride < n && !(gas->wrong[first + stride] & fields)) stride++;
     if (stride < 2) return false;
-    for (size_t i = 0; i < n; i++)
-        if (((gas->wrong[i] & fields) != 0) != (i >= first && (i - first) % stride == 0))
-            return false;
+    for (size_t i = first; i < n; i++)
+        if (((gas->wrong[i] & fields) != 0) != ((i - first) % stride == 0)) return false;
     snprintf(text, size, ", each %zuth in the file", stride);
     if (stride < 4) snprintf(text, size, ", each %s in the file", stride == 2 ? "second" : "third");
     return true;
@@ -125,22 +129,18 @@ void start_where(const struct start_gas *gas, unsigned fields, char *text, size_
 
 typedef double expected(const struct start_gas *gas, size_t i, double factor);
 
-/* Mean relative difference of the wrong particles from the expected value; INFINITY unless nearly
- * all are within a thousandth of it. */
-static double misfit(const struct start_gas *gas, enum start_field field, const double *value,
-                     expected *value_of, double factor)
+/* True if nearly all wrong particles would be right if these were the case's values. */
+static bool fits(const struct start_gas *gas, enum start_field field, const double *value,
+                 expected *value_of, double factor)
 {
     size_t wrong = 0, near = 0;
-    double sum = 0;
     for (size_t i = 0; i < gas->snapshot->n; i++) {
         if (!(gas->wrong[i] & 1u << field)) continue;
+        const double want = value_of(gas, i, factor);
         wrong++;
-        const double want = value_of(gas, i, factor),
-                     off = fabs(value[i] - want) / (fabs(want) + 1e-9);
-        near += off <= 1e-3;
-        sum += fmin(off, 1e-3);
+        near += fabs(value[i] - want) <= START_WRONG * fabs(want);
     }
-    return PER_CENT * near >= 95 * wrong ? sum / (double)wrong : (double)INFINITY;
+    return nearly_all(near, wrong);
 }
 
 static double exact_energy(const struct start_gas *gas, size_t i, double factor)
@@ -199,9 +199,10 @@ static double factor_of(const struct start_gas *gas, enum start_field field, con
 {
     double *factors = malloc(gas->snapshot->n * sizeof *factors), found = (double)NAN;
     size_t n = 0;
-    for (size_t i = 0; factors && i < gas->snapshot->n; i++)
-        if (gas->wrong[i] & 1u << field && fabs(value_of(gas, i, 1)) > 0)
-            factors[n++] = value[i] / value_of(gas, i, 1);
+    for (size_t i = 0; factors && i < gas->snapshot->n; i++) {
+        const double want = value_of(gas, i, 1);
+        if (gas->wrong[i] & 1u << field && want != 0) factors[n++] = value[i] / want;
+    }
     if (n) {
         list_sort(factors, n);
         found = factors[n / 2];
@@ -210,24 +211,19 @@ static double factor_of(const struct start_gas *gas, enum start_field field, con
     return found;
 }
 
-static bool scalar_cause(const struct start_gas *gas, enum start_field field, char *text,
+static void scalar_cause(const struct start_gas *gas, enum start_field field, char *text,
                          size_t size)
 {
     const struct snapshot *s = gas->snapshot;
     const double *value = field == START_ENERGY ? s->u : field == START_MASS ? s->m : s->P;
     expected *exact = field == START_ENERGY ? exact_energy : field == START_MASS ? exact_mass : law;
     const char *should = field == START_PRESSURE ? "(gamma - 1) rho u" : "the case's";
-    const double factor = factor_of(gas, field, value, exact),
-                 scaled = misfit(gas, field, value, exact, factor);
-    *text = '\0';
-    for (size_t k = 0; k < sizeof usual / sizeof *usual; k++) {
-        if (usual[k].field != field) continue;
-        const double off = misfit(gas, field, value, usual[k].value, 1);
-        if (isfinite(off) && off <= 2 * scaled + 1e-6) /* single precision decides nothing */
-            snprintf(text + strlen(text), size - strlen(text), "%s%s", *text ? ", or " : "it is ",
-                     usual[k].words);
-    }
-    if (!*text && isfinite(scaled)) snprintf(text, size, "it is %.6g times %s", factor, should);
+    const double factor = factor_of(gas, field, value, exact);
+    for (size_t k = 0; k < sizeof usual / sizeof *usual; k++)
+        if (usual[k].field == field && fits(gas, field, value, usual[k].value, 1))
+            text_add(text, size, "%s%s", *text ? ", or " : "it is ", usual[k].words);
+    if (!*text && fits(gas, field, value, exact, factor))
+        snprintf(text, size, "it is %.6g times %s", factor, should);
     double more = 0; /* at the first wrong particle; an offset if it is constant */
     size_t all = 0, near = 0;
     for (size_t i = 0; i < s->n; i++) {
@@ -235,14 +231,13 @@ static bool scalar_cause(const struct start_gas *gas, enum start_field field, ch
         if (!all++) more = value[i] - exact(gas, i, 1);
         near += fabs(value[i] - exact(gas, i, 1) - more) <= 1e-3 * fabs(more);
     }
-    if (*text || all < 2) return *text; /* any offset or multiple fits one value */
+    if (*text || all < 2) return; /* any offset or multiple fits one value */
     const double multiple = factor_of(gas, field, value, exact_density);
-    if (PER_CENT * near >= 95 * all)
+    if (nearly_all(near, all))
         snprintf(text, size, "it is %.4g %s than %s", fabs(more), more > 0 ? "more" : "less",
                  should);
-    else if (field == START_ENERGY && isfinite(misfit(gas, field, value, exact_density, multiple)))
+    else if (field == START_ENERGY && fits(gas, field, value, exact_density, multiple))
         snprintf(text, size, "it is the mass, or another multiple of the density");
-    return *text;
 }
 
 /* True if nearly all wrong velocities are the case's with axes `from`, times the factor (and the
@@ -263,12 +258,12 @@ static bool fits_velocity(const struct start_gas *gas, const int from[3], double
             squares += off * off;
         }
         wrong++;
-        near += sqrt(squares) <= 1e-3 * gas->speed;
+        near += sqrt(squares) <= START_WRONG * gas->speed;
     }
-    return PER_CENT * near >= 95 * wrong;
+    return nearly_all(near, wrong);
 }
 
-static bool velocity_cause(const struct start_gas *gas, char *text, size_t size)
+static void velocity_cause(const struct start_gas *gas, char *text, size_t size)
 {
     static const int same[] = {0, 1, 2};
     static const int turns[][3] = {{1, 0, 2}, {2, 1, 0}, {0, 2, 1}};
@@ -288,27 +283,32 @@ static bool velocity_cause(const struct start_gas *gas, char *text, size_t size)
     }
     const double factor =
         product / square; /* NaN, which fits nothing, if the exact gas is at rest */
-    if (fits_velocity(gas, same, 0, none, false)) return snprintf(text, size, "it is 0") > 0;
-    for (int k = 0; k < dim * (dim - 1) / 2; k++)
-        if (fits_velocity(gas, turns[k], 1, none, false))
-            return snprintf(text, size, "%s are exchanged", turned[k]) > 0;
-    if (fits_velocity(gas, same, factor, none, false))
-        return factor > -1.0005 && factor < -0.9995
-                   ? snprintf(text, size, "it has the other sign") > 0
-                   : snprintf(text, size, "it is %.4g times the case's", factor) > 0;
-    if (fits_velocity(gas, same, 1, none, true))
-        return snprintf(text, size, "it is rho v, a momentum") > 0;
-    if (!fits_velocity(gas, same, 1, more, false)) return false;
-    snprintf(text, size, "it is the case's and");
-    for (int d = 0; d < dim; d++)
-        snprintf(text + strlen(text), size - strlen(text), "%s%.4g", d ? ", " : " ", more[d]);
-    return true;
+    int turn = 0;
+    while (turn < dim * (dim - 1) / 2 && !fits_velocity(gas, turns[turn], 1, none, false)) turn++;
+    if (fits_velocity(gas, same, 0, none, false))
+        snprintf(text, size, "it is 0");
+    else if (turn < dim * (dim - 1) / 2)
+        snprintf(text, size, "%s are exchanged", turned[turn]);
+    else if (fits_velocity(gas, same, factor, none, false) && fabs(factor + 1) <= START_WRONG)
+        snprintf(text, size, "it has the other sign");
+    else if (fits_velocity(gas, same, factor, none, false))
+        snprintf(text, size, "it is %.6g times the case's", factor);
+    else if (fits_velocity(gas, same, 1, none, true))
+        snprintf(text, size, "it is rho v, a momentum");
+    else if (fits_velocity(gas, same, 1, more, false)) {
+        snprintf(text, size, "it is the case's and");
+        for (int d = 0; d < dim; d++) text_add(text, size, "%s%.4g", d ? ", " : " ", more[d]);
+    }
 }
 
 bool start_cause(const struct start_gas *gas, enum start_field field, char *text, size_t size)
 {
-    return field == START_VELOCITY ? velocity_cause(gas, text, size)
-                                   : scalar_cause(gas, field, text, size);
+    *text = '\0';
+    if (field == START_VELOCITY)
+        velocity_cause(gas, text, size);
+    else
+        scalar_cause(gas, field, text, size);
+    return *text;
 }
 
 /* ---- states of other positions ---- */
@@ -352,7 +352,7 @@ static double miss(const struct trial *trial, const double by[3], size_t *near)
         if (!gas->problem->problem->mean_energy)
             off = fmax(off, start_off(gas, START_ENERGY, i, &there));
         sum += fmin(off, 1);
-        *near += off <= 1e-3;
+        *near += off <= START_WRONG;
     }
     return sum / (double)trial->n;
 }
@@ -383,14 +383,13 @@ static size_t settle(const struct trial *trial, double by[3], double step)
 /* Finds the shift that explains the particles best; true if it explains nearly all of them. */
 static bool find_shift(const struct trial *trial, double by[3])
 {
-    enum { SIDE_LINE = 480, SIDE_PLANE = 40, SIDE_SPACE = 12, KEPT = 3 };
+    enum { SIDE_LINE = 480, SIDE_PLANE = 40, SIDE_SPACE = 12 };
     const struct domain *box = &trial->gas->problem->domain;
     const int side = box->dim == 1 ? SIDE_LINE : box->dim == 2 ? SIDE_PLANE : SIDE_SPACE;
     int cells = 1;
-    double best[KEPT], at[KEPT][3] = {{0}};
+    double best = INFINITY;
     for (int d = 0; d < box->dim; d++) cells *= side;
-    for (int k = 0; k < KEPT; k++) best[k] = INFINITY;
-    for (int c = 1; c < cells; c++) {
+    for (int c = 0; c < cells; c++) {
         const int position[3] = {c % side, c / side % side, c / side / side};
         double to[3] = {0};
         size_t near;
@@ -398,22 +397,11 @@ static bool find_shift(const struct trial *trial, double by[3])
             to[d] =
                 domain_length(box, d) * (position[d] - (position[d] > side / 2 ? side : 0)) / side;
         const double now = miss(trial, to, &near);
-        int k = KEPT - 1;
-        if (now >= best[k]) continue;
-        for (; k > 0 && now < best[k - 1]; k--) {
-            best[k] = best[k - 1];
-            memcpy(at[k], at[k - 1], sizeof at[k]);
-        }
-        best[k] = now;
-        memcpy(at[k], to, sizeof at[k]);
+        if (now >= best) continue;
+        best = now;
+        memcpy(by, to, sizeof to);
     }
-    for (int k = 0; k < KEPT; k++) {
-        const size_t near = settle(trial, at[k], 0.5 * domain_length(box, 0) / side);
-        if (PER_CENT * near < 95 * trial->n) continue;
-        memcpy(by, at[k], sizeof at[k]);
-        return true;
-    }
-    return false;
+    return nearly_all(settle(trial, by, 0.5 * domain_length(box, 0) / side), trial->n);
 }
 
 /* True if nearly all wrong particles have the exact state of the position with x and y exchanged,
@@ -433,10 +421,10 @@ static bool turned(const struct start_gas *gas, int mirror)
             x[mirror] = box->lo[mirror] + box->hi[mirror] - x[mirror];
         problem_sample(gas->problem, x, 0, &there);
         wrong++;
-        near += start_off(gas, START_VELOCITY, i, &there) <= 1e-3 &&
-                start_off(gas, START_ENERGY, i, &there) <= 1e-3;
+        near += start_off(gas, START_VELOCITY, i, &there) <= START_WRONG &&
+                start_off(gas, START_ENERGY, i, &there) <= START_WRONG;
     }
-    return PER_CENT * near >= 95 * wrong;
+    return nearly_all(near, wrong);
 }
 
 bool start_cause_positions(const struct start_gas *gas, char *text, size_t size)
@@ -444,6 +432,10 @@ bool start_cause_positions(const struct start_gas *gas, char *text, size_t size)
     const int dim = gas->problem->domain.dim;
     struct trial trial = {.gas = gas};
     double by[3] = {0};
+    size_t near;
+    take(&trial, false);
+    miss(&trial, by, &near);
+    if (nearly_all(near, trial.n)) return false; /* their places are right; masses may be wrong */
     if (dim > 1 && turned(gas, -1))
         return snprintf(text, size, "x and y of their places are exchanged") > 0;
     for (int d = 0; d < dim; d++)
@@ -452,14 +444,13 @@ bool start_cause_positions(const struct start_gas *gas, char *text, size_t size)
     for (int all = 1; all >= 0; all--) {
         take(&trial, all);
         if (!find_shift(&trial, by)) continue;
-        size_t near;
         take(&trial, false); /* a sample of all particles may consist mostly of right ones */
         miss(&trial, by, &near);
-        if (PER_CENT * near < 95 * trial.n) continue;
+        if (!nearly_all(near, trial.n)) continue;
         snprintf(text, size,
                  all ? "all particles of the file are shifted by" : "they are shifted by");
         for (int d = 0; d < dim; d++)
-            snprintf(text + strlen(text), size - strlen(text), "%s%.4g", d ? ", " : " ",
+            text_add(text, size, "%s%.4g", d ? ", " : " ",
                      fabs(by[d]) < 1e-6 * domain_length(&gas->problem->domain, d) ? 0 : by[d]);
         return true;
     }

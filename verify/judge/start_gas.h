@@ -6,6 +6,9 @@
 
 enum { START_GASES_MAX = 4 };
 
+/* A relative difference above this is more than rounding. */
+#define START_WRONG 1e-4
+
 struct start_gas {
     const struct prepared *problem;
     const struct snapshot *snapshot;

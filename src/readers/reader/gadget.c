@@ -12,6 +12,7 @@
 
 #include "fortran.h"
 #include "snapshot_file.h"
+#include "text.h"
 
 enum { HEADER = 256, RECORDS_MAX = 64, TYPES = 6 };
 
@@ -253,7 +254,7 @@ static enum status refuse_block(const struct binary *b, const char *tag, struct 
     enum { NAMES = 28, LENGTH = 7 };
     char names[NAMES * LENGTH + 1] = "";
     for (size_t r = 1; r < b->count && r <= NAMES; r++)
-        snprintf(names + strlen(names), sizeof names - strlen(names), " '%s'", b->record[r].tag);
+        text_add(names, sizeof names, " '%s'", b->record[r].tag);
     return error_set(error, STATUS_BAD_INPUT, "%.200s: no block '%s'; it has:%s", b->source->path,
                      tag, names);
 }

@@ -195,3 +195,17 @@ TEST(sums_are_those_of_the_standard)
         assert_string_equal(sum, examples[k].sum);
     }
 }
+
+/* What does not fit is cut; what stands behind the text stays. */
+TEST(text_grows_to_its_size)
+{
+    for (size_t size = 1; size <= 12; size++) {
+        char text[16], whole[16] = "";
+        memset(text, '#', sizeof text);
+        *text = '\0';
+        for (int i = 0; i < 3; i++) text_add(text, size, "%d,%c", i, 'a' + i);
+        snprintf(whole, size, "0,a1,b2,c");
+        assert_string_equal(text, whole);
+        for (size_t i = size; i < sizeof text; i++) assert_int_equal(text[i], '#');
+    }
+}
