@@ -36,6 +36,14 @@ static bool make_pipe(int pair[2])
     return pair[0] >= 0 && pair[1] >= 0;
 }
 
+static sigset_t broken_pipe(void)
+{
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGPIPE);
+    return set;
+}
+
 /* posix_spawn, not fork, since this process may have OpenMP threads. Returns an errno. */
 static int start(struct process *child, char *const argv[], int file, const sigset_t *mask)
 {
@@ -49,9 +57,7 @@ static int start(struct process *child, char *const argv[], int file, const sigs
     }
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
-    sigset_t pipe_signal;
-    sigemptyset(&pipe_signal);
-    sigaddset(&pipe_signal, SIGPIPE);
+    const sigset_t pipe_signal = broken_pipe();
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, in[READ], 0);
     posix_spawn_file_actions_adddup2(&actions, out[WRITE], 1);
@@ -68,12 +74,11 @@ static int start(struct process *child, char *const argv[], int file, const sigs
     close(in[READ]);
     close(out[WRITE]);
     close(err[WRITE]);
-    *child = (struct process){pid, in[WRITE], out[READ], err[READ]};
+    *child = (struct process){code ? 0 : pid, in[WRITE], out[READ], err[READ]};
     if (code) {
         close(child->in);
         close(child->out);
         close(child->err);
-        child->pid = 0;
     }
     return code;
 }
@@ -175,9 +180,8 @@ enum process_status process_ask(struct process *process, char *const argv[], int
                                 const char *input, size_t size, const char *mark, int seconds,
                                 struct buffer *output, char *message, size_t n)
 {
-    sigset_t pipe_signal, before, pending;
-    sigemptyset(&pipe_signal);
-    sigaddset(&pipe_signal, SIGPIPE);
+    const sigset_t pipe_signal = broken_pipe();
+    sigset_t before, pending;
     sigpending(&pending);
     bool was_pending = sigismember(&pending, SIGPIPE);
     pthread_sigmask(SIG_BLOCK, &pipe_signal, &before);

@@ -22,7 +22,7 @@ static const char error_path[] = "studies[sod, ia].levels[n 400].errors.density.
 struct night {
     const char *mode;
     char git[16], date[16];
-    double error, order;
+    double error, order, half; /* of the order's interval */
 };
 
 static json_t *results_of(const struct night *night)
@@ -32,14 +32,14 @@ static json_t *results_of(const struct night *night)
     json_object_set_new(results, "date", json_string(night->date));
     json_object_set_new(results, "mode", json_string(night->mode));
     json_object_set_new(results, "verdict", json_pack("{s:s, s:[]}", "status", "pass", "failures"));
-    json_object_set_new(results, "studies",
-                        json_pack("[{s:s, s:s, s:s, s:[{s:i, s:{s:{s:f, s:f}}}], s:[{s:s, s:s, "
-                                  "s:f, s:f, s:f}], s:[s,s]}]",
-                                  "case", "sod", "label", "ia", "status", "pass", "levels", "n",
-                                  400, "errors", "density", "l1", night->error, "l2",
-                                  2 * night->error, "orders", "field", "density", "norm", "l1",
-                                  "order", night->order, "low", night->order - 0.01, "high",
-                                  night->order + 0.01, "measured", "mode_amplitude", "density"));
+    json_object_set_new(
+        results, "studies",
+        json_pack("[{s:s, s:s, s:s, s:[{s:i, s:{s:{s:f, s:f}}}], s:[{s:s, s:s, "
+                  "s:f, s:f, s:f}], s:[s,s]}]",
+                  "case", "sod", "label", "ia", "status", "pass", "levels", "n", 400, "errors",
+                  "density", "l1", night->error, "l2", 2 * night->error, "orders", "field",
+                  "density", "norm", "l1", "order", night->order, "low", night->order - night->half,
+                  "high", night->order + night->half, "measured", "mode_amplitude", "density"));
     return results;
 }
 
@@ -68,7 +68,7 @@ static json_t *reported(const struct night *now)
 
 static struct night usual_night(int number)
 {
-    struct night night = {.mode = "quick", .error = 1e-3, .order = 0.95};
+    struct night night = {.mode = "quick", .error = 1e-3, .order = 0.95, .half = 0.01};
     snprintf(night.git, sizeof night.git, "git%d", number);
     snprintf(night.date, sizeof night.date, "day%d", number);
     return night;
@@ -161,13 +161,15 @@ TEST(history_that_cannot_be_opened)
     json_decref(results);
 }
 
-/* A line is cut off where the disk is full; the next one begins on a new line. */
+/* A line is cut off where the disk is full; the next one begins on a new line. Who may read and
+ * write the file is up to the umask. */
 TEST(full_disk)
 {
     const struct night night = usual_night(1);
     json_t *results = results_of(&night), *history;
     struct error error = {0};
     struct rlimit usual, limit;
+    const mode_t mask = umask(0);
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &usual), 0);
     for (int lines = 0; lines < 2; lines++) {
         struct stat is = {0};
@@ -175,6 +177,7 @@ TEST(full_disk)
         for (int k = 0; k < lines; k++)
             assert_int_equal(history_append(results, path, &error), STATUS_OK);
         if (lines) assert_int_equal(stat(path, &is), 0);
+        if (lines) assert_int_equal(is.st_mode & 0777, 0666);
         limit = usual, limit.rlim_cur = (rlim_t)is.st_size + 20;
         signal(SIGXFSZ, SIG_IGN);
         assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
@@ -190,17 +193,20 @@ TEST(full_disk)
         json_decref(history);
         unlink(path);
     }
+    umask(mask);
     json_decref(results);
 }
 
 /* The change of one figure from `before` to `after` at night `at` of `count`, as the document has
  * it. */
-static json_t *changed(const char *path, double before, double after, int at, int count)
+static json_t *changed(const char *path, double before, double after, double half, int at,
+                       int count)
 {
     FILE *file = fopen(path_of("history"), "w");
     struct night night;
     for (int i = 0; i < count; i++) {
         night = usual_night(i);
+        night.half = half;
         *(path == error_path ? &night.error : &night.order) = i < at ? before : after;
         if (i < count - 1) write_night(file, &night);
     }
@@ -230,7 +236,7 @@ TEST(which_way_is_better)
         for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
             const int count = counts[c], at = count - (count > 2 ? 6 : 1);
             const int first = count > KEPT ? count - KEPT : 0;
-            json_t *history = changed(rows[r].path, rows[r].before, rows[r].after, at, count);
+            json_t *history = changed(rows[r].path, rows[r].before, rows[r].after, 0.01, at, count);
             const json_t *changes = json_object_get(history, "changes"),
                          *change = json_array_get(changes, 0);
             char git[32];
@@ -249,16 +255,26 @@ TEST(which_way_is_better)
             assert_string_equal(value_text(change, "git_before"), git);
             json_decref(history);
         }
-    /* changes within the noise do not count: 1 % of an error, 0.03 of an order */
-    for (int sign = -1; sign <= 1; sign += 2) {
-        json_t *history = changed(error_path, 1e-3, 1e-3 * (1 + 0.009 * sign), 6, 12);
-        assert_int_equal(json_array_size(json_object_get(history, "changes")), 0);
-        json_decref(history);
-        history = changed(order_path, 0.95, 0.95 + 0.029 * sign, 6, 12);
-        assert_int_equal(json_array_size(json_object_get(history, "changes")), 0);
-        json_decref(history);
-        history = changed(order_path, 0.95, 0.95 + 0.031 * sign, 6, 12);
-        assert_int_equal(json_array_size(json_object_get(history, "changes")), 1);
+}
+
+/* Changes within the noise do not count: 1 % of an error, 0.03 of an order or half its interval,
+ * and errors that are round-off. */
+TEST(changes_within_noise)
+{
+    static const struct {
+        const char *path;
+        double before, after, half;
+        size_t count;
+    } rows[] = {
+        {error_path, 1e-3, 1.009e-3, 0.01, 0}, {error_path, 1e-3, 0.991e-3, 0.01, 0},
+        {error_path, 1e-3, 1.011e-3, 0.01, 1}, {error_path, 1e-20, 1e-16, 0.01, 0},
+        {order_path, 0.95, 0.979, 0.01, 0},    {order_path, 0.95, 0.921, 0.01, 0},
+        {order_path, 0.95, 0.981, 0.01, 1},    {order_path, 0.95, 0.919, 0.01, 1},
+        {order_path, 0.95, 1.149, 0.20, 0},    {order_path, 0.95, 1.151, 0.20, 1},
+    };
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        json_t *history = changed(rows[r].path, rows[r].before, rows[r].after, rows[r].half, 6, 12);
+        assert_int_equal(json_array_size(json_object_get(history, "changes")), rows[r].count);
         json_decref(history);
     }
 }

@@ -354,7 +354,13 @@ TEST(reports)
     assert_int_equal(report_judge(report, NULL, &results, &error), STATUS_BAD_INPUT);
     assert_null(results);
     report_destroy(report);
-    report_destroy(planned(&kept, true)); /* judged as the daily one */
+    report = planned(&kept, true);
+    drawn_pieces(&draw, report_pool(report), 150);
+    if (report_judge(report, NULL, &results, &error)) fail_msg("%s", error.message);
+    add_document(&text, results);
+    compare(&kept, "report", 1, &text);
+    json_decref(results);
+    report_destroy(report);
     report_codes(&kept, &draw);
     digests_close(&kept);
     json_decref(template);

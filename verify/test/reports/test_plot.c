@@ -264,8 +264,13 @@ TEST(processes)
     assert_non_null(strstr(message, "no answer"));
     char missing[] = "no-such-program-anywhere";
     char *const arguments[] = {missing, NULL};
-    assert_int_equal(process_filter(arguments, "", 0, 5, &output, message, sizeof message),
-                     PROCESS_NOT_FOUND);
+    struct process none = {0};
+    for (int k = 0; k < 2; k++) {
+        assert_int_equal(
+            process_ask(&none, arguments, -1, "a", 1, "end", 5, &output, message, sizeof message),
+            PROCESS_NOT_FOUND);
+        assert_int_equal(none.pid, 0);
+    }
     buffer_free(&output);
     /* with descriptors for some of its pipes only */
     enum process_status status = PROCESS_FAILED;
@@ -280,11 +285,23 @@ TEST(processes)
         if (status) assert_string_equal(message, "sh cannot be run: Too many open files");
         assert_int_equal(open_files(&above), files);
     }
-    free(input);
-    /* this process handles a broken pipe as before */
-    sigset_t mask;
+    /* this process handles a broken pipe as before, and one that came before is still there */
+    sigset_t mask, blocked;
     sigprocmask(SIG_BLOCK, NULL, &mask);
     assert_false(sigismember(&mask, SIGPIPE));
+    sigemptyset(&blocked);
+    sigaddset(&blocked, SIGPIPE);
+    sigprocmask(SIG_BLOCK, &blocked, &mask);
+    raise(SIGPIPE);
+    assert_int_equal(shell("exit 0", input, size, 60, &output, message, sizeof message),
+                     PROCESS_OK);
+    sigset_t pending;
+    int number = 0;
+    assert_int_equal(sigpending(&pending), 0);
+    assert_true(sigismember(&pending, SIGPIPE));
+    assert_int_equal(sigwait(&blocked, &number), 0);
+    sigprocmask(SIG_SETMASK, &mask, NULL);
+    free(input);
 }
 
 static void nothing(int number)
