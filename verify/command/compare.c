@@ -297,13 +297,14 @@ static void say(char *text, size_t size, const char *format, ...)
 static void say_change(char *text, size_t size, const struct paired *of, bool sign)
 {
     const double ratio = 1 + of->change, half = of->half / ratio; /* of its logarithm */
-    const double turn = !sign && of->change < 0 ? -100 : 100;
+    const bool turned = !sign && of->change < 0;
+    const double percent = turned ? -100 : 100;
     const double step = isnan(half) ? fabs(10 * of->change) : 100 * of->half;
     const int places = step > 0 ? (int)fmax(0, fmin(6, ceil(1 - log10(step)))) : 0;
     const char *format = sign ? "%+.*f" : "%.*f";
-    const double low = turn * (ratio * exp(turn < 0 ? half : -half) - 1),
-                 high = turn * (ratio * exp(turn < 0 ? -half : half) - 1);
-    say(text, size, format, places, turn * of->change);
+    const double low = percent * (ratio * exp(turned ? half : -half) - 1),
+                 high = percent * (ratio * exp(turned ? -half : half) - 1);
+    say(text, size, format, places, percent * of->change);
     say(text, size, " %%");
     if (isnan(half)) return;
     say(text, size, " (");

@@ -135,6 +135,16 @@ def judge_derived(name, hows):
     return None if code == 0 and out.endswith(" bounds\n%s\n\n" % "\n".join(lines)) else "exit status %d: %r%r" % (code, out, err)
 
 
+def judge_printed(name):
+    """What a plug-in printed is at the end of the summary, as in the document."""
+    with tempfile.NamedTemporaryFile() as file:
+        code, out, err = call("kernel", module(name), "--dim", "1", "--json", file.name)
+        with open(file.name) as f:
+            printed = json.load(f)["printed"]
+    return None if code == 1 and "\n\nREJECTED: " in out and out.endswith(
+        "\nnote: it printed %(bytes)d bytes: %(text)s\n" % printed) else "exit status %d: %r%r" % (code, out, err)
+
+
 def processes(path):
     found = []
     for pid in filter(str.isdigit, os.listdir("/proc")):
@@ -179,6 +189,7 @@ def main():
         outcomes = [(line[0], pool.submit(judge, line)) for line in (table if MORE else by_day(table, certified))]
         outcomes += [(name, pool.submit(judge_verify, by_name[name])) for name in VERIFIED]
         outcomes += [("abort_in_dh", pool.submit(judge_words, "abort_in_dh"))]
+        outcomes += [("prints_without_end", pool.submit(judge_printed, "prints_without_end"))]
         for name, hows in (("table", ("by quadrature", "from w and dw", "by bisection", "by measurement")), ("faulty_NONE", 4 * ("",)),
                            ("wendland_c8", ("by quadrature", "from w and dw", "by bisection", ""))):
             outcomes += [(name, pool.submit(judge_derived, name, hows))]
