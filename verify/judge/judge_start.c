@@ -194,20 +194,18 @@ static void say(const struct start_gas *gas, unsigned fields, const char *what, 
 static bool explain(const struct start_gas *gas, char *text, size_t size)
 {
     bool explained = true;
-    char cause[160] = "";
-    unsigned fields = 0, several = 0;
-    for (int f = 0; f < START_FIELDS; f++)
-        if (count_wrong(gas, 1u << f)) fields |= 1u << f, several++;
-    if (several > 1 && start_cause_positions(gas, cause, sizeof cause)) {
+    char cause[160];
+    unsigned fields = 0;
+    for (size_t i = 0; i < gas->snapshot->n; i++) fields |= gas->wrong[i];
+    const bool several = fields & (fields - 1);
+    if (several && start_cause_positions(gas, cause, sizeof cause)) {
         say(gas, fields, "state for where they are", cause, text, size);
         return true;
     }
-    for (int f = 0; f < START_FIELDS; f++) {
+    for (int f = 0; fields >> f; f++) {
         if (!(fields & 1u << f)) continue;
-        cause[0] = '\0';
-        explained &=
-            start_cause(gas, (enum start_field)f, cause, sizeof cause) ||
-            (several == 1 && f <= START_ENERGY && start_cause_positions(gas, cause, sizeof cause));
+        explained &= start_cause(gas, (enum start_field)f, cause, sizeof cause) ||
+                     (!several && start_cause_positions(gas, cause, sizeof cause));
         say(gas, 1u << f, names[f], cause, text, size);
     }
     return explained;
@@ -218,15 +216,15 @@ static bool explain(const struct start_gas *gas, char *text, size_t size)
  * jumps, their whole state. */
 static bool are_moved(const struct start_gas *gas)
 {
-    enum { PER_CENT = 100 };
     const int dim = gas->problem->domain.dim;
+    const unsigned telling =
+        gas->problem->problem->smooth ? ~(1u << START_MASS) : 1u << START_PRESSURE;
     size_t wrong = 0, moved = 0;
     for (size_t i = 0; i < gas->snapshot->n; i++) {
         double most[3] = {0};
-        if (gas->wrong[i] &
-            (gas->problem->problem->smooth ? ~(1u << START_MASS) : 1u << START_PRESSURE))
-            return false;
-        for (int k = 0; gas->wrong[i] && k < 2 * dim; k++) {
+        if (!gas->wrong[i]) continue;
+        if (gas->wrong[i] & telling) return false;
+        for (int k = 0; k < 2 * dim; k++) {
             struct problem_state beside;
             double squares = 0;
             state_beside(gas, i, k / 2, (k % 2 ? -1 : 1) * gas->spacing, &beside);
@@ -241,12 +239,12 @@ static bool are_moved(const struct start_gas *gas)
             gas->problem->problem->mean_energy ? 0
                                                : start_off(gas, START_ENERGY, i, &gas->exact[i]),
             gas->wrong[i] & 1u << START_MASS ? start_off(gas, START_MASS, i, &gas->exact[i]) : 0};
-        bool is_moved = gas->wrong[i];
+        bool is_moved = true;
         for (int k = 0; k < 3; k++) is_moved = is_moved && off[k] <= most[k] + START_WRONG;
-        wrong += gas->wrong[i] != 0;
+        wrong++;
         moved += is_moved;
     }
-    return PER_CENT * moved >= 98 * wrong;
+    return 100 * moved >= 98 * wrong;
 }
 
 /* Reports masses that agree with each other but not with the total mass of the case. */
