@@ -50,8 +50,8 @@ static bool sample_make(struct trial *trial, const struct clouds_settings *setti
     *sample = (struct sample){.settings = *settings};
     const enum status status = clouds_make(settings, &sample->cloud, NULL);
     const size_t n = sample->cloud.cloud.points.n, dim = (size_t)settings->dim;
-    sample->inside = calloc(n + 1, sizeof *sample->inside);
-    sample->f = calloc((1 + 4 * dim) * n + 1, sizeof *sample->f);
+    sample->inside = calloc(n, sizeof *sample->inside);
+    sample->f = calloc((1 + 4 * dim) * n, sizeof *sample->f);
     if (status || !sample->inside || !sample->f) {
         trial->no_memory = true;
         return false;

@@ -43,7 +43,8 @@ static enum status take_boundary(const char *name, enum boundary *boundary, stru
     if (at < 0 || at == BOUNDARY_FIXED)
         return error_set(
             error, STATUS_BAD_INPUT, "boundary '%.40s': allowed: periodic open reflecting%s", name,
-            at < 0 ? "" : "; fixed layers need densities, which a setup does not have");
+            at == BOUNDARY_FIXED ? "; fixed layers need densities, which a setup does not have"
+                                 : "");
     *boundary = (enum boundary)at;
     return STATUS_OK;
 }
