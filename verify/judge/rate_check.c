@@ -47,6 +47,7 @@ struct both {
     const struct setup *setup;
     const struct rate_table *ours;
     double tolerance;
+    double open; /* relative uncertainty of the other code's eta */
 };
 
 /* Compares a column with this table; fills everything except the cause. The particle stays 0 if
@@ -124,17 +125,16 @@ static double near_enough(const struct rate_comparison *c, double tolerance)
 
 /* Names this cause for the columns that it explains and that have none yet. Of kernels the one that
  * explains most is named: left (else NULL) has the remaining difference of each column with the
- * kernel named so far, INFINITY before the first. open: relative uncertainty of the other code's
- * eta; a difference of that size also counts as explained if the cause removes nine tenths of it.
- */
+ * kernel named so far, INFINITY before the first. A difference of the size of both->open also
+ * counts as explained if the cause removes nine tenths of it. */
 static void propose(struct rate_check *check, const struct both *both,
-                    const struct rate_table *changed, double open, double *left, const char *cause)
+                    const struct rate_table *changed, double *left, const char *cause)
 {
     for (size_t k = 0; k < check->count; k++) {
         struct rate_comparison *c = &check->columns[k], now = *c;
         if (c->good || (c->cause[0] && (!left || isinf(left[k])))) continue;
         compare(&now, both, changed);
-        const double near = fmax(near_enough(c, both->tolerance), fmin(open, 0.1 * c->worst));
+        const double near = fmax(near_enough(c, both->tolerance), fmin(both->open, 0.1 * c->worst));
         if (!(now.worst <= near && (!left || now.worst < left[k]))) continue;
         if (left) left[k] = now.worst;
         snprintf(c->cause, sizeof c->cause, "%s", cause);
@@ -166,8 +166,9 @@ static double their_eta(const struct both *both, double *open)
  * eta alone. */
 static void propose_kernels(struct rate_check *check, const struct both *both)
 {
-    double open = 0, left[RATE_COLUMNS];
-    const double found = their_eta(both, &open), ours = both->setup->scheme.eta;
+    struct both scattered = *both;
+    double left[RATE_COLUMNS];
+    const double found = their_eta(both, &scattered.open), ours = both->setup->scheme.eta;
     const bool other = fabs(found - ours) > 1e-6 * ours;
     for (int k = 0; k < RATE_COLUMNS; k++) left[k] = INFINITY;
     for (int k = other ? -1 : 0; k < (int)kernel_family.n; k++) {
@@ -184,7 +185,7 @@ static void propose_kernels(struct rate_check *check, const struct both *both)
         else
             snprintf(cause, sizeof cause, "kernel: theirs is %s", name);
         if (!rate_table_make(&table, &changed, NULL))
-            propose(check, both, &table, open, left, cause);
+            propose(check, &scattered, &table, left, cause);
         rate_table_free(&table);
     }
 }
@@ -208,7 +209,7 @@ static void propose_no_grad_h(struct rate_check *check, const struct both *both)
             for (int a = 0; a < 3; a++) changed.force[a][i] = (double)oracle.particles[i].F[a];
             changed.dU[i] = (double)oracle.particles[i].dU;
         }
-        propose(check, both, &changed, 0, NULL,
+        propose(check, both, &changed, NULL,
                 "grad-h: their lagrangian formulation has no grad-h factors");
     }
     free(storage);
@@ -280,7 +281,7 @@ static void find_causes(struct rate_check *check, const struct both *both)
         struct rate_table table;
         const char *cause = make_change(&changed, k);
         if (!cause) break;
-        if (!rate_table_make(&table, &changed, NULL)) propose(check, both, &table, 0, NULL, cause);
+        if (!rate_table_make(&table, &changed, NULL)) propose(check, both, &table, NULL, cause);
         rate_table_free(&table);
     }
     propose_no_grad_h(check, both);
