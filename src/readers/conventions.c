@@ -49,13 +49,13 @@ static int nearer(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Ends the reach at the last neighbour that counts, since no code sums over more than
+/* Ends the reach at the first neighbour that no longer counts, since no code sums over more than
  * NEIGHBOURS_MAX. */
 static void limit_reach(struct sample *sample, struct near *near)
 {
     qsort(near->neighbour, near->count, sizeof *near->neighbour, nearer);
     if (near->count <= NEIGHBOURS_MAX) return;
-    sample->reach = fmin(sample->reach, near->neighbour[NEIGHBOURS_MAX - 1].s);
+    sample->reach = fmin(sample->reach, near->neighbour[NEIGHBOURS_MAX].s);
 }
 
 /* True if the particle is more than margin h from non-periodic ends. */
@@ -72,7 +72,7 @@ static bool inside(const struct snapshot_file *file, const double box[3], const 
 /* Picks particles well inside, by a golden-ratio sequence that avoids the period of a lattice. */
 static void choose(const struct snapshot_file *file, const double box[3], struct sample *sample)
 {
-    static const double margins[] = {3, 1, 0};
+    static const double margins[] = {3, 1, -INFINITY};
     double lo[3], hi[3];
     for (int d = 0; d < file->dim; d++) {
         lo[d] = INFINITY, hi[d] = -INFINITY;
@@ -85,7 +85,7 @@ static void choose(const struct snapshot_file *file, const double box[3], struct
         for (size_t k = 0; k < 8 * CONVENTIONS_SAMPLE && sample->n < CONVENTIONS_SAMPLE; k++) {
             const size_t i =
                 (size_t)((double)file->gas * fmod(0.5 + (double)k * 0.6180339887498949, 1));
-            if (margins[m] > 0 && !inside(file, box, lo, hi, i, margins[m])) continue;
+            if (!inside(file, box, lo, hi, i, margins[m])) continue;
             sample->near[sample->n++] = (struct near){.rho = file->column[SNAPSHOT_RHO][i],
                                                       .m = file->column[SNAPSHOT_M][i],
                                                       .h = file->column[SNAPSHOT_H][i],
@@ -261,6 +261,7 @@ enum status conventions_find(const struct snapshot_file *file, const double box[
                              const struct kernel *only, const struct width_meaning *meaning,
                              struct conventions *found, struct error *error)
 {
+    const size_t kernels = only ? 1 : kernel_family.n;
     struct sample *sample = calloc(1, sizeof *sample);
     *found = (struct conventions){.tried = file->column[SNAPSHOT_H] != NULL};
     if (!sample) return error_set(error, STATUS_ENVIRONMENT, "no memory for neighbours");
@@ -271,9 +272,8 @@ enum status conventions_find(const struct snapshot_file *file, const double box[
     else
         status = gather(file, box, fmax(meaning->ratio, RATIO_MOST), sample, error);
     found->sample = sample->n;
-    for (size_t k = 0; k < kernel_family.n && found->tried && !status; k++) {
+    for (size_t k = 0; k < kernels && found->tried && !status; k++) {
         struct kernel kernel;
-        if (only && k > 0) break;
         if (only)
             kernel = *only;
         else if ((status = kernel_select(&kernel, kernel_family.members[k]->name, 5, error)))

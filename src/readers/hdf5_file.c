@@ -71,7 +71,7 @@ static herr_t add_name(hid_t group, const char *name, const H5L_info_t *info, vo
     }
     names->length += (size_t)snprintf(names->text + names->length, names->size - names->length,
                                       "%s%s", names->length ? " " : "", name);
-    return names->length + 1 >= names->size; /* full: stop the iteration */
+    return names->length >= names->size; /* full: stop the iteration */
 }
 
 void hdf5_names(const struct snapshot_source *source, const char *group, char *text, size_t size)

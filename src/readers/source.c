@@ -15,13 +15,12 @@
 static const unsigned char hdf5_signature[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
 
 /* The signature of HDF5 is at byte 0 or, after a user block, at 512, 1024 ... */
-static bool is_hdf5(int file, size_t size)
+static bool is_hdf5(int file)
 {
     unsigned char start[sizeof hdf5_signature];
-    for (size_t at = 0; at + sizeof start <= size && at < (size_t)1 << 20; at = at ? 2 * at : 512)
-        if (pread(file, start, sizeof start, (off_t)at) == (ssize_t)sizeof start &&
-            memcmp(start, hdf5_signature, sizeof start) == 0)
-            return true;
+    for (off_t at = 0; pread(file, start, sizeof start, at) == (ssize_t)sizeof start;
+         at = at ? 2 * at : 512)
+        if (memcmp(start, hdf5_signature, sizeof start) == 0) return true;
     return false;
 }
 
@@ -39,8 +38,9 @@ static int gzread(gzFile from, void *to, unsigned n)
 
 static enum status read_all(struct snapshot_source *source, gzFile from, struct error *error)
 {
-    enum { FIRST = 1 << 16, MOST = 1 << 26 };
-    for (size_t chunk = FIRST;; chunk += chunk < MOST ? chunk : 0) {
+    enum { FIRST = 1 << 16 };
+    for (;;) {
+        const size_t chunk = source->size / 2 + FIRST;
         if (source->size >> 20 >= SOURCE_MEGABYTES_MAX)
             return error_set(error, STATUS_BAD_INPUT, "%.200s: too large; allowed: %d megabytes",
                              source->path, SOURCE_MEGABYTES_MAX);
@@ -75,7 +75,7 @@ enum status source_open(struct snapshot_source *source, const char *path, struct
         return error_set(error, STATUS_BAD_INPUT, "%.200s: is %s; allowed: a file", path,
                          S_ISDIR(about.st_mode) ? "a directory" : "no regular file");
     }
-    if ((source->hdf5 = is_hdf5(file, (size_t)about.st_size))) {
+    if ((source->hdf5 = is_hdf5(file))) {
         close(file);
         return STATUS_OK;
     }
@@ -101,5 +101,4 @@ enum status source_open(struct snapshot_source *source, const char *path, struct
 void source_free(struct snapshot_source *source)
 {
     free(source->bytes);
-    source->bytes = NULL;
 }

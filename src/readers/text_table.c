@@ -11,9 +11,9 @@
 
 bool text_table_is_text(const struct snapshot_source *source)
 {
-    const size_t n = source->size < 4096 ? source->size : 4096;
+    enum { BEGINNING = 4096 };
     if (source->hdf5) return false;
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < source->size && i < BEGINNING; i++) {
         const unsigned char c = source->bytes[i];
         if ((c < ' ' && c != '\n' && c != '\r' && c != '\t') || c == 127) return false;
     }
@@ -35,26 +35,26 @@ static enum status apply_map(struct text_table *table, const char *map, struct e
     bool given[SNAPSHOT_COLUMNS] = {false};
     for (const char *at = map; at && *at;) {
         const size_t length = strcspn(at, ","), ours = strcspn(at, "=");
-        const int column =
-            ours < length ? column_called(table, at + ours + 1, length - ours - 1) : -1;
-        int meaning = -1;
-        for (int k = 0; k < SNAPSHOT_COLUMNS; k++)
-            if (strlen(snapshot_column_names[k]) == ours &&
-                strncmp(snapshot_column_names[k], at, ours) == 0)
-                meaning = k;
-        if (ours >= length || meaning < 0)
+        int meaning = 0;
+        while (meaning < SNAPSHOT_COLUMNS &&
+               (strlen(snapshot_column_names[meaning]) != ours ||
+                strncmp(snapshot_column_names[meaning], at, ours) != 0))
+            meaning++;
+        if (ours >= length || meaning == SNAPSHOT_COLUMNS)
             return error_set(error, STATUS_BAD_INPUT,
                              "--map %.80s: allowed: NAME=THEIRS,..., NAME one of x y z vx vy vz m "
                              "rho u P h ax ay az du",
                              map);
+        const char *theirs = at + ours + 1;
+        const size_t size = length - ours - 1;
+        const int column = column_called(table, theirs, size);
         if (column < 0) {
             char there[240] = "";
             for (size_t c = 0; c < table->columns; c++)
                 text_add(there, sizeof there, " '%s'", table->names[c]);
-            return error_set(
-                error, STATUS_BAD_INPUT, "--map %.80s: %.100s has no column '%.*s'; it has%s", map,
-                table->source->path, (int)(length - ours - 1 < 40 ? length - ours - 1 : 40),
-                at + ours + 1, there);
+            return error_set(error, STATUS_BAD_INPUT,
+                             "--map %.80s: %.100s has no column '%.*s'; it has%s", map,
+                             table->source->path, (int)fmin((double)size, 40), theirs, there);
         }
         if (given[meaning])
             return error_set(error, STATUS_BAD_INPUT, "--map %.80s: names %s twice; allowed: once",
@@ -103,9 +103,10 @@ bool text_table_number(const char *word, double *value)
     return !word[n] && text_real(plain, value);
 }
 
-static void skip_blanks(const char **at, const char *end)
+/* A line, or the file, ends with a byte that is no blank. */
+static void skip_blanks(const char **at)
 {
-    while (*at < end && (**at == ' ' || **at == '\t' || **at == '\r')) ++*at;
+    *at += strspn(*at, " \t\r");
 }
 
 enum { WORD = 48 };
@@ -116,10 +117,10 @@ static bool take_number(const char **at, const char *end, char separator, bool f
                         char word[WORD], double *value)
 {
     size_t n = 0;
-    skip_blanks(at, end);
-    const bool separated = first || separator == ' ' || (*at < end && **at == separator);
-    if (!first && separator != ' ' && separated) ++*at;
-    skip_blanks(at, end);
+    skip_blanks(at);
+    const bool marked = !first && separator != ' ', separated = !marked || **at == separator;
+    *at += marked && separated;
+    skip_blanks(at);
     for (; *at < end && **at != separator && **at != ' ' && **at != '\t' && **at != '\r'; ++*at)
         if (n < WORD) word[n++] = **at;
     const bool whole = n < WORD;
@@ -129,7 +130,7 @@ static bool take_number(const char **at, const char *end, char separator, bool f
 
 static bool blank(const char *line, const char *end)
 {
-    skip_blanks(&line, end);
+    skip_blanks(&line);
     return line == end || *line == '#';
 }
 
@@ -142,7 +143,7 @@ static size_t count_rows(const struct text_table *table, size_t from)
         const char *stop = memchr(at, '\n', (size_t)(end - at));
         if (!stop) stop = end;
         rows += !blank(at, stop);
-        at = stop + (stop < end);
+        at = stop + 1;
     }
     return rows;
 }
@@ -191,7 +192,6 @@ static enum status take_rows(const struct text_table *table, size_t from, size_t
                *end = (const char *)table->source->bytes + table->source->size;
     for (size_t row = 0; at < end; line++) {
         const char *stop = memchr(at, '\n', (size_t)(end - at));
-        const char *next = stop ? stop + 1 : end;
         if (!stop) stop = end;
         if (!blank(at, stop)) {
             for (size_t c = 0; c < table->columns; c++) {
@@ -203,15 +203,15 @@ static enum status take_rows(const struct text_table *table, size_t from, size_t
                 if (meaning == TABLE_TYPE) type[row] = value;
                 if (meaning < 0 || meaning == TABLE_TYPE) continue;
                 file->column[meaning][row] = value;
-                int *most = &digits[meaning >= SNAPSHOT_VX];
-                if (*most <= DBL_DIG && digits_of(word) > *most) *most = digits_of(word);
+                int *most = &digits[meaning >= SNAPSHOT_VX], here = digits_of(word);
+                if (here > *most) *most = here;
             }
             if (!blank(at, stop))
                 return error_set(error, STATUS_BAD_INPUT, "%.200s:%zu: more than %zu numbers",
                                  table->source->path, line, table->columns);
             row++;
         }
-        at = next;
+        at = stop + 1;
     }
     set_precision(file, digits);
     return STATUS_OK;

@@ -164,9 +164,9 @@ static inline struct snapshot_file reads(const struct table *t, const char *map)
     return file;
 }
 
-static inline void refuses(const char *text, size_t size, const char *map, const char *says)
+static inline bool refuses(const char *text, size_t size, const char *map, const char *says)
 {
     const struct snapshot_options options = {.map = map};
     put_bytes("a.txt", text, size);
-    is_refused("a.txt", &options, text, says);
+    return is_refused("a.txt", &options, text, says);
 }

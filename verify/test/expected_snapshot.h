@@ -21,8 +21,9 @@ static inline enum status read_gas(const char *name, const struct snapshot_optio
     return status ? status : snapshot_check_gas(path_of(name), file, error);
 }
 
-/* The file of this name must be refused with these words. what: for a message. */
-static inline void is_refused(const char *name, const struct snapshot_options *options,
+/* The file of this name must be refused with these words. what: for a message. True if it has an
+ * impossible value. */
+static inline bool is_refused(const char *name, const struct snapshot_options *options,
                               const char *what, const char *says)
 {
     struct snapshot_file file;
@@ -31,6 +32,7 @@ static inline void is_refused(const char *name, const struct snapshot_options *o
     snapshot_file_free(&file);
     if (status != STATUS_BAD_INPUT || !strstr(error.message, says))
         fail_msg("%s: status %d: '%s' is not in: %s", what, (int)status, says, error.message);
+    return file.impossible;
 }
 
 /* Fails unless the file has exactly one note `what`, with this value and with evidence that

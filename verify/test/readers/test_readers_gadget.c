@@ -278,7 +278,9 @@ TEST(records)
     assert_int_equal(read_bytes(all, &file, &error), STATUS_OK);
     assert_true(file.column[SNAPSHOT_RHO][3] == b.value[RHO][3] / 2);
     snapshot_file_free(&file);
-    b = made(1); /* a message names as many blocks as it has room for */
+    assert_int_equal(read_bytes(put_count(put_count(all, &b, 0), &b, 0), &file, &error), STATUS_OK);
+    snapshot_file_free(&file); /* with an empty record at its end */
+    b = made(1);               /* a message names as many blocks as it has room for */
     b.there[MASS] = b.there[RHO] = false, b.extra = 40;
     char names[300] = "no block 'RHO '; it has: 'POS ' 'VEL ' 'ID  '";
     for (int k = 3; k < 28; k++) strcat(names, k == 3 ? " 'M  E'" : " 'MINE'");

@@ -5,10 +5,12 @@
 #include "test.h"
 
 #ifdef HAVE_HDF5
+#include <fcntl.h>
 #include <float.h>
 
 #include <signal.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "sample_layouts.h"
 
@@ -109,9 +111,14 @@ TEST(reading_in_a_process)
     fputs("\x89HDF\r\n\x1a\n and no more", junk);
     fclose(junk);
     for (int k = 0; k < 2; k++) {
+        const int next = open("/dev/null", O_RDONLY);
+        close(next);
         here.here = k;
         assert_int_equal(snapshot_read(path_of("junk.hdf5"), &here, &file, &error),
                          STATUS_BAD_INPUT);
+        const int still = open("/dev/null", O_RDONLY); /* no file stays open */
+        close(still);
+        assert_int_equal(still, next);
         if (!strstr(error.message, "begins as HDF5, but its library cannot open it"))
             fail_msg("%s", error.message);
         snapshot_file_free(&file);
@@ -235,7 +242,8 @@ TEST(damaged_columns)
                                                   "something else", "a group"};
             for (int form = TEXT; form <= GROUP; form++) {
                 items[k].stored = (enum stored)form;
-                snprintf(says, sizeof says, "no table of numbers, but %s", instead[form - TEXT]);
+                snprintf(says, sizeof says, "%s no table of numbers, but %s",
+                         first ? "no particles, or" : "is", instead[form - TEXT]);
                 refuses(l, items, f->path, says);
             }
             if (f->meaning == TYPES) continue;

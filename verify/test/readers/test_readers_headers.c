@@ -209,6 +209,28 @@ TEST(phantom)
         }
 }
 
+/* Of SPH-EXA's steps the last one is read, which may be the first; other names are no steps. */
+TEST(first_step)
+{
+    static const char *const others[] = {"Step#/x", "Step#1a/x", "Step/x", "step#7/x"};
+    struct item items[ITEMS_MAX];
+    const size_t n = items_of(&layouts[2], items);
+    size_t extra = 0;
+    for (size_t k = 0; k < n; k++) {
+        char name[40];
+        if (strncmp(items[k].path, "Step#10/", 8) != 0)
+            snprintf(items[k].path, sizeof items[k].path, "%s", others[extra++]);
+        else {
+            snprintf(name, sizeof name, "%s", items[k].path + 8);
+            snprintf(items[k].path, sizeof items[k].path, "Step#0/%s", name);
+        }
+    }
+    assert_int_equal(extra, 3);
+    struct snapshot_file file = file_of(items, n, "the first step");
+    noted(&file, "step", "Step#0", "the last one of the file");
+    snapshot_file_free(&file);
+}
+
 /* Our own snapshots have the box's corner, from which positions count, and the name of the case. */
 TEST(corner_of_the_box)
 {

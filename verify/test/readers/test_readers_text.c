@@ -357,9 +357,9 @@ TEST(compressed_files)
     FILE *in = fopen(path_of("a.txt"), "rb");
     const size_t packed = fread(bytes, 1, sizeof bytes, in);
     fclose(in);
-    refuses(bytes, packed - 3, NULL, "");
+    refuses(bytes, packed - 3, NULL, "a.txt: is cut off");
     bytes[packed / 2] = (char)(bytes[packed / 2] ^ 1);
-    refuses(bytes, packed, NULL, "");
+    refuses(bytes, packed, NULL, "cannot be read (damaged, if it is compressed)");
 #else
     refuses("\x1f\x8b...", 5, NULL, "is compressed");
 #endif
