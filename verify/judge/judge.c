@@ -379,11 +379,11 @@ static double median_error(const struct judged *judged, int f, double *errors, d
 }
 
 /* Error of a functional over its bound; above 1 it is far off. The value of mode_error is its
- * error; the error of others is relative to the exact value, and 0 where that is 0. */
+ * error; the error of others is relative to the exact value, and 0 where that is unknown. */
 static double wrong_functional(const struct run_functional *f)
 {
     const double part = strcmp(f->name, mode_error.name) == 0 ? f->value / JUDGE_FOREIGN_MODE
-                        : fabs(f->exact) > 0 ? fabs(f->value / f->exact - 1) / JUDGE_FOREIGN_PART
+                        : isfinite(f->exact) ? fabs(f->value / f->exact - 1) / JUDGE_FOREIGN_PART
                                              : 0;
     return isnan(part) ? (double)INFINITY : part;
 }

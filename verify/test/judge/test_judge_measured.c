@@ -274,8 +274,12 @@ TEST(widths_of_an_autopsy)
         }
         struct judged judged = judges(&request);
         assert_true(judged.conventions.known);
+        judged.conventions.candidate[1].kernel.member.name = "wendland_c2"; /* fits less well */
         if (judge_autopsy(&judged, &level, &used, &error)) fail_msg("%s", error.message);
         near_relative(settings_real(&used.settings, SETTING_eta), eta, 1e-8);
+        assert_string_equal(
+            kernel_family.members[settings_choice(&used.settings, SETTING_kernel)]->name,
+            judged.conventions.candidate[0].kernel.member.name);
         judge_free(&judged);
     }
     /* a width that the file's run was asked for is kept */
