@@ -347,7 +347,7 @@ static double median_error(const struct judged *judged, int f, double *errors, d
 {
     const struct snapshot *s = &judged->result.snapshot;
     const int dim = judged->run.problem.domain.dim;
-    const double *const values[FIELDS] = {s->rho, s->v[0], s->P, s->u};
+    const double *const values[FIELDS] = {s->rho, NULL, s->P, s->u};
     double least = INFINITY, most = -INFINITY, sound = -INFINITY, motion = -INFINITY;
     for (int all = 0; all < 2; all++) {
         size_t n = 0;

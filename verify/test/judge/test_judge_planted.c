@@ -536,3 +536,46 @@ TEST(limits_for_a_tube)
             judge_free(&judged);
         }
 }
+
+/* A growing mode is judged by its amplitude, which may be off by half, or by its shape if that is
+ * off by more than ten times the mode. */
+TEST(limits_for_modes)
+{
+    static const struct {
+        double amplitude, rough; /* of the mode; of rows that move up and down in turn, over it */
+    } rows[] = {{1.49, 0}, {1.51, 0}, {0.51, 0}, {0.49, 0}, {1, 9}, {1, 11}, {1.7, 11}, {9, 2}};
+    const struct run run = keyed_run("kelvin_helmholtz_mode", "");
+    const double k = 2 * M_PI * settings_real(&run.settings, SETTING_waves);
+    for (size_t row = 0; row < sizeof rows / sizeof *rows; row++) {
+        const struct judge_request request = {.kernel = -1};
+        double squares = 0;
+        plant(2, 0, "# case = kelvin_helmholtz_mode\n# time = 1\n# box = 0:1 0:1\n");
+        for (int i = 0; i < N; i++) {
+            struct problem_state s;
+            const double x[3] = {(i % 12 + 0.5) / 12, (i / 12 + 0.5) / 20};
+            problem_sample(&run.problem, x, 1, &s);
+            for (int d = 0; d < 2; d++) gas.x[d][i] = x[d], gas.v[d][i] = s.v[d];
+            gas.rho[i] = gas.m[i] = s.rho, gas.u[i] = s.u, gas.m[i] /= N;
+            squares += 2 * s.v[1] * s.v[1] / N;
+        }
+        for (int i = 0; i < N; i++)
+            gas.v[1][i] = rows[row].amplitude *
+                          (gas.v[1][i] + rows[row].rough * sqrt(squares) * (i / 12 % 2 ? 1 : -1) *
+                                             sin(k * gas.x[0][i]));
+        struct judged judged = judges(&request);
+        const struct run_result *r = &judged.result;
+        const struct run_functional *amplitude = &r->functionals[0], *shape = &r->functionals[1];
+        assert_string_equal(shape->name, "mode_error");
+        const double off = fabs(amplitude->value / amplitude->exact - 1) / 0.5;
+        const bool by_shape = shape->value / 10 > fmax(1, off);
+        near_relative(judged.wrong, 0.06 * (by_shape ? shape->value / 10 : off), 1e-12);
+        assert_true(judged.far == (judged.wrong > 0.06));
+        assert_true(by_shape == !!strstr(judged.verdict, "mode_error = "));
+        for (size_t f = 0; f < r->functional_count; f++)
+            if (strcmp(r->functionals[f].name, "growth_rate") == 0)
+                near_relative(r->functionals[f].value,
+                              r->functionals[f].exact + log(amplitude->value / amplitude->exact),
+                              1e-12);
+        judge_free(&judged);
+    }
+}
