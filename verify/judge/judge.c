@@ -168,7 +168,8 @@ static void add_to_sums(const struct prepared *problem, const double x[3], const
                         double m, double u, double c, struct conservation *sums)
 {
     const struct domain *domain = &problem->domain;
-    double p[3] = {0}, r[3] = {0}, squares = 0, distance = 0, turning = 0;
+    double p[3] = {0}, r[3] = {0};
+    double squares = 0, distance = 0, turning = 0;
     for (int d = 0; d < domain->dim; d++) {
         p[d] = m * v[d];
         r[d] = x[d] - 0.5 * (domain->lo[d] + domain->hi[d]);

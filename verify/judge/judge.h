@@ -41,7 +41,7 @@ struct judged {
     int case_dim;              /* dimension of the case file */
     double slab;  /* thickness of a planar flow given as layers in 3D; the file's masses are divided
                      by it. 0: the file has as many dimensions as the case */
-    bool altered; /* the initial state is not the case's */
+    bool altered; /* the initial state or gravity is not the case's */
     bool boxed;   /* the gas fills a known box without open ends */
     double transverse; /* rms of velocities across x, by volume, in the window; NaN in 1D */
     double wrong;      /* worst median error of a field over the range of its exact values */
@@ -93,9 +93,12 @@ json_t *judge_conservation(const struct judged *judged, size_t n, struct trace *
 /* The snapshot that gates judge: the last one of those with most particles. */
 const struct judged *judge_main(const struct judged *judged, size_t n);
 
-/* True if the last snapshots of each n are of one problem (case, dimension, gamma, initial states)
- * and at one time, without which there are no orders. Otherwise `why` names the difference and two
- * files. */
+/* True for keys of which a flow depends: of its initial state, and gravity. */
+bool judge_key_of_problem(enum setting key);
+
+/* True if the last snapshots of each n are of one problem (case, dimension, gamma, gravity, initial
+ * states) and at one time, without which there are no orders. Otherwise `why` names the difference
+ * and two files. */
 enum { JUDGE_WHY = 420 };
 bool judge_one_ladder(const struct judged *judged, size_t n, char why[JUDGE_WHY]);
 

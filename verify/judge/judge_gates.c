@@ -192,10 +192,11 @@ static enum status check_case(const struct judged *main, struct error *error)
                          "allowed: --gate",
                          file->name, t_end, main->path, main->result.time);
     if (main->altered)
-        return error_set(error, STATUS_BAD_INPUT,
-                         "--gates case: %.160s has another initial state than %.60s; allowed: "
-                         "--gate, or a case file of its own, with bounds in [converge]",
-                         main->path, file->name);
+        return error_set(
+            error, STATUS_BAD_INPUT,
+            "--gates case: %.160s has another initial state or gravity than %.60s; allowed: "
+            "--gate, or a case file of its own, with bounds in [converge]",
+            main->path, file->name);
     if (!file->gate_count)
         return error_set(error, STATUS_BAD_INPUT,
                          "--gates case: %.60s has none; in [converge] of a case file stands "

@@ -480,8 +480,8 @@ enum status judge_geometry(const struct judge_request *given, struct judged *jud
          settings_set(settings, SETTING_right, request->right, SOURCE_USER, "--right", error)))
         return error->status;
     for (int key = 0; key < SETTINGS; key++)
-        judged->altered |= settings->value[key].source == SOURCE_USER &&
-                           strcmp(setting_keys[key].section, "initial") == 0;
+        judged->altered |=
+            settings->value[key].source == SOURCE_USER && judge_key_of_problem((enum setting)key);
     const bool tube = problem_reads(problem, SETTING_left);
     if (!tube && (request->x0.known || request->left || request->right))
         return error_set(error, STATUS_BAD_INPUT,

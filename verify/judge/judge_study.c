@@ -34,8 +34,13 @@ static bool same(double a, double b)
     return fabs(a - b) <= same_number * fmax(fabs(a), fabs(b));
 }
 
-/* True if both have the same case, dimension, gamma and initial states. Otherwise `why` names the
- * difference. */
+bool judge_key_of_problem(enum setting key)
+{
+    return key == SETTING_gravity || strcmp(setting_keys[key].section, "initial") == 0;
+}
+
+/* True if both have the same case, dimension, gamma, gravity and initial states. Otherwise `why`
+ * names the difference. */
 static bool same_problem(const struct judged *a, const struct judged *b, char why[JUDGE_WHY])
 {
     const struct run_settings *one = &a->run.asked, *other = &b->run.asked;
@@ -55,7 +60,7 @@ static bool same_problem(const struct judged *a, const struct judged *b, char wh
         snprintf(theirs, sizeof theirs, "%.6g", b->result.problem.gamma);
     }
     for (int key = 0; key < SETTINGS && !what; key++) {
-        if (strcmp(setting_keys[key].section, "initial") != 0 ||
+        if (!judge_key_of_problem((enum setting)key) ||
             problem_lays_particles(problem_of(&one->settings), (enum setting)key))
             continue;
         settings_text(&one->settings, (enum setting)key, mine);

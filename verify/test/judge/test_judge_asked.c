@@ -59,21 +59,21 @@ TEST(case_and_keys_of_the_file)
     }
 }
 
-/* Keys of the initial state make it another than the case's, and no other keys do. */
+/* Keys of the initial state, and gravity, make it another flow than the case's; no other keys do.
+ */
 TEST(altered_initial_states)
 {
     static const struct {
-        const char *keys;
+        const char *name, *keys;
         bool altered;
-    } rows[] = {{"mass_ratio=2", true},
-                {"kernel=cubic_spline", false},
-                {"left=1 0 1", true},
-                {"window=0.5 1.5", false}};
+    } rows[] = {{"sod", "mass_ratio=2", true},         {"sod", "kernel=cubic_spline", false},
+                {"sod", "left=1 0 1", true},           {"sod", "boundary=open", false},
+                {"poiseuille", "gravity=0.4 0", true}, {"sod", "window=0.5 1.5", false}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct judge_request request = {.kernel = -1};
         char head[200];
-        snprintf(head, sizeof head, "# case = sod\n# keys = %s\n" TIMED, rows[k].keys);
-        plant(1, 0, head);
+        snprintf(head, sizeof head, "# case = %s\n# keys = %s\n" TIMED, rows[k].name, rows[k].keys);
+        plant(strcmp(rows[k].name, "sod") ? 2 : 1, 0, head);
         struct judged judged = judges(&request);
         assert_true(judged.altered == rows[k].altered);
         judge_free(&judged);
