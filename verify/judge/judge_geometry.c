@@ -148,13 +148,12 @@ static bool extent_of_volumes(const struct snapshot_file *file, double *lo, doub
  * it. */
 static bool fits_case(const struct snapshot_file *file, const struct settings *settings, bool ends)
 {
-    const double part = ends ? 0 : 0.8;
     for (int d = 0; d < file->dim; d++) {
         double lo, hi;
         const double from = settings_along(settings, SETTING_lo, d),
                      to = settings_along(settings, SETTING_hi, d);
         extent(file, file->n, d, &lo, &hi);
-        if (!(lo >= from && hi <= to && hi - lo >= part * (to - from))) return false;
+        if (!(lo >= from && hi <= to && (ends || hi - lo >= 0.8 * (to - from)))) return false;
     }
     return true;
 }

@@ -142,6 +142,15 @@ TEST(positions_of_tubes)
          {-0.3, 0.7},
          true,
          "about the middle of the particles"},
+        {-0.78,
+         1.02,
+         "# box = 2\n",
+         9,
+         -0.88,
+         1.12,
+         {-0.38, 0.62},
+         true,
+         "about the middle of the"},
         {0, 4, "# box = 4\n", 9, 0, 4, {1, 3}, true, "positions lie in it"},
         {0.5,
          2.4,
@@ -311,6 +320,51 @@ TEST(boxes_of_liquids)
         assert_string_equal(note(&judged, "box")->value, rows[k].value);
         if (!strstr(note(&judged, "box")->evidence, rows[k].evidence))
             fail_msg("row %zu: %s", k, note(&judged, "box")->evidence);
+        judge_free(&judged);
+    }
+}
+
+/* Layers of a flow in 2D are as thick as the box says, or else their volumes over their area. */
+TEST(slabs)
+{
+    static const struct {
+        const char *box;
+        double thick, speed, along; /* thick: 0: as the volumes say */
+    } rows[] = {{NULL, 0, 2, 0.5},
+                {"2 1", 0, 0, 0},
+                {"0:2 0:1 0:1.25", 1.25, 0.5, 1},
+                {"0:2 0:1 0:1e-20", 1e-20, 0, 0}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct judge_request request = {
+            .case_name = "shear", .time = {true, 0}, .kernel = -1, .box = rows[k].box};
+        char text[80];
+        double volume = 0;
+        plant(3, 0, "");
+        for (int i = 0; i < N; i++) {
+            gas.rho[i] = draw(1, 2);
+            volume += gas.m[i] / gas.rho[i];
+            gas.v[0][i] = rows[k].speed * (i == 7 ? -0.6 : 0.3);
+            gas.v[1][i] = rows[k].speed * (i == 7 ? 0.8 : 0.4);
+            gas.v[2][i] = i == 9 ? -rows[k].along : 0;
+        }
+        struct judged judged = judges(&request);
+        const double thick = rows[k].thick > 0 ? rows[k].thick : volume / 2;
+        const double fastest = fmax(rows[k].speed, hypot(0.5 * rows[k].speed, rows[k].along));
+        const double in_plane = N / 2. * cbrt(2 * thick / N) / thick;
+        assert_int_equal(judged.file.dim, 2);
+        near_relative(judged.slab, thick, 1e-13);
+        near_relative(judged.case_n, in_plane, 1e-12);
+        assert_true(settings_real(&judged.run.settings, SETTING_n) == fmin(1e7, round(in_plane)));
+        snprintf(text, sizeof text, "a slab in 3D, %.6g thick", thick);
+        assert_string_equal(note(&judged, "plane")->value, text);
+        snprintf(text, sizeof text, "velocities along z are at most %.2g of the greatest",
+                 rows[k].along > 0 ? rows[k].along / fastest : 0);
+        if (!strstr(note(&judged, "plane")->evidence, text))
+            fail_msg("%s: %s", text, note(&judged, "plane")->evidence);
+        for (size_t i = 0; i < N; i++) {
+            near_relative(judged.result.snapshot.m[i], gas.m[i] / thick, 1e-13);
+            near_relative(judged.result.snapshot.h[i], 2 * cbrt(gas.m[i] / gas.rho[i]), 1e-13);
+        }
         judge_free(&judged);
     }
 }
