@@ -178,14 +178,14 @@ static json_t *since_last(const json_t *nights, const struct metrics *now)
         const enum metric_verdict verdict = metric_judge(value ? &old : NULL, new, &amount, &fault);
         verdicts[verdict]++;
         if (verdict == VERDICT_SAME) continue;
-        const double ratio = new->word || !value ? (double)NAN : new->value / old.value;
+        const double ratio = new->value / old.value; /* NaN of words */
+        fault = fault && (new->kind == METRIC_ORDER || amount > DIFF_THRESHOLD);
         json_array_append_new(
             moved,
             result_object("path=%s old=%p new=%p ratio=%p verdict=%s fault=%d? work=%d?", new->path,
                           (void *)(value ? value_of(&old) : json_null()), (void *)value_of(new),
                           (void *)(isfinite(ratio) ? result_number(ratio) : json_null()),
-                          metric_verdicts[verdict], fault && amount > DIFF_THRESHOLD,
-                          new->kind == METRIC_COUNT));
+                          metric_verdicts[verdict], fault, new->kind == METRIC_COUNT));
     }
     json_t *since = result_object("date=%s git=%s figures=%p", value_text(last, "date"),
                                   value_text(last, "git"), (void *)sorted(moved, worst_first));

@@ -163,27 +163,29 @@ static json_t *ladder_json(const struct ladder *ladder, const char *verdict)
                          (void *)result_numbers(ladder->nearest, ladder->count), verdict, command);
 }
 
-/* The evidence of all ladders of a gradient for the claim. */
+/* What the ladders of a gradient say about the claim. */
 struct balance {
-    size_t kept, broken, others; /* kernels without a negative transform, without and with pairs;
-                                    others with pairs */
-    size_t unknown;              /* no negative transform and no pairs, but runs broke down */
-    char worst[TEXT];            /* the first ladder that breaks the claim */
+    bool kept, broken, others; /* kernels without a negative transform, without and with pairs;
+                                  others with pairs */
+    bool unknown;              /* no negative transform and no pairs, but runs broke down */
+    char worst[TEXT];          /* the first ladder that breaks the claim */
 };
 
 static void balance_add(struct balance *balance, const struct ladder *ladder)
 {
-    const bool pairs = ladder->first < ladder->count;
+    const bool pairs = ladder->first < ladder->count, whole = ladder->sound == ladder->count;
     if (!ladder->known) return;
     if (!isnan(ladder->negative)) {
-        balance->others += pairs;
+        balance->others |= pairs;
     } else if (!pairs) {
-        balance->kept += ladder->sound == ladder->count;
-        balance->unknown += ladder->sound < ladder->count;
-    } else if (balance->broken++ == 0)
+        balance->kept |= whole;
+        balance->unknown |= !whole;
+    } else if (!balance->broken) {
+        balance->broken = true;
         snprintf(balance->worst, TEXT, "%s in %dD has %.1f %% in pairs at %d neighbours",
                  ladder->runs->kernel, ladder->runs->crowd->dim,
                  100 * ladder->paired[ladder->first], ladder->runs[ladder->first].neighbours);
+    }
 }
 
 static json_t *judge_gradient(const struct pairing *pairing, const char *gradient,

@@ -350,6 +350,7 @@ TEST(verdicts_since_last_night)
         {1e-3, (double)NAN, "same", "new"}, {1.2e-3, 0.20, "better", "better"},
         {9e-3, 0.50, "better", "better"},   {8e-4, 4, "worse", "worse"},
         {1e-4, 1.50, "worse", "worse"},     {9e-3, -0.95, "better", "better"},
+        {1e-3, 0.98, "same", "worse"},
     };
     static const char *const words[] = {"same", "better", "worse", "new"};
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
@@ -392,6 +393,35 @@ TEST(verdicts_since_last_night)
                     count += strcmp(value_text(figure, "verdict"), words[w]) == 0;
             if (w < 3) near_absolute(value_member(since, words[w]), (double)count, 0);
         }
+        json_decref(history);
+    }
+    unlink(path_of("history"));
+}
+
+/* An error that has grown by more than 5 % is a fault. */
+TEST(faults_since_last_night)
+{
+    static const struct {
+        double now; /* last night's: 20 */
+        bool fault;
+    } rows[] = {{20.9, false}, {21, false}, {21.001, true}};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        struct night last = usual_night(0), now = usual_night(1);
+        FILE *file = fopen(path_of("history"), "w");
+        last.error = 20, now.error = rows[r].now;
+        write_night(file, &last);
+        fclose(file);
+        json_t *history = reported(&now);
+        const json_t *figures = json_object_get(json_object_get(history, "since"), "figures"),
+                     *figure;
+        bool found = false;
+        size_t i;
+        json_array_foreach(figures, i, figure) {
+            if (strcmp(value_text(figure, "path"), error_path) != 0) continue;
+            assert_int_equal(json_is_true(json_object_get(figure, "fault")), rows[r].fault);
+            found = true;
+        }
+        assert_true(found);
         json_decref(history);
     }
     unlink(path_of("history"));
