@@ -33,7 +33,7 @@ static bool make_pipe(int pair[2])
         close(pair[k]);
         pair[k] = high;
     }
-    return pair[0] >= 0 && pair[1] >= 0;
+    return pair[READ] >= 0 && pair[WRITE] >= 0;
 }
 
 static sigset_t broken_pipe(void)

@@ -274,23 +274,24 @@ static enum status add_checks(struct report *report, struct error *error)
     return status;
 }
 
-static enum status add_all(struct report *report, struct error *error)
+static enum status add_kernels(struct report *report, struct error *error)
 {
-    if (add_cases(report, error) || add_skips(report, error) || add_autopsies(report, error) ||
-        add_checks(report, error))
-        return error->status;
-    if (add_piece(report, (struct report_piece){.kind = REPORT_LEAGUE, .where = "operators"},
-                  error))
-        return error->status;
     for (size_t k = 0; k < kernel_family.n; k++)
         for (int dim = 1; dim <= 3; dim++) {
-            const char *name = kernel_family.members[k]->name;
-            if (add_piece(report,
-                          (struct report_piece){.kind = REPORT_KERNEL, .where = name, .dim = dim},
-                          error))
-                return error->status;
+            const struct report_piece kernel = {
+                .kind = REPORT_KERNEL, .where = kernel_family.members[k]->name, .dim = dim};
+            if (add_piece(report, kernel, error)) return error->status;
         }
-    if (claims_plan(&report->claims, report->nightly, &report->pool, error) ||
+    return STATUS_OK;
+}
+
+static enum status add_all(struct report *report, struct error *error)
+{
+    const struct report_piece league = {.kind = REPORT_LEAGUE, .where = "operators"};
+    if (add_cases(report, error) || add_skips(report, error) || add_autopsies(report, error) ||
+        add_checks(report, error) || add_piece(report, league, error) ||
+        add_kernels(report, error) ||
+        claims_plan(&report->claims, report->nightly, &report->pool, error) ||
         pairing_plan(&report->pairing, report->nightly, &report->pool, error))
         return error->status;
     return stress_plan(&report->stress, report->nightly, 0, NULL, &report->pool, error);

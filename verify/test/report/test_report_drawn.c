@@ -336,10 +336,12 @@ TEST(reports)
     add_document(&text, results);
     compare(&kept, "report", 0, &text);
     json_decref(results);
+    char message[200];
     struct error *said = &pool->jobs[0].error; /* without a result */
     *said = (struct error){STATUS_ENVIRONMENT, "no process"};
     assert_int_equal(report_judge(report, NULL, &results, &error), STATUS_ENVIRONMENT);
-    assert_non_null(strstr(error.message, ": no process"));
+    snprintf(message, sizeof message, "%s: no process", pool->jobs[0].name);
+    assert_string_equal(error.message, message);
     assert_null(results);
     said->status = STATUS_OK;
     refuse(pool, "league of operators"); /* the other pieces are judged */

@@ -304,6 +304,23 @@ TEST(processes)
     free(input);
 }
 
+/* A program gets no descriptors but its own three and those that any program gets. */
+TEST(descriptors_of_a_program)
+{
+    struct buffer output = {0};
+    char expected[64] = "", message[512] = "";
+    for (int k = 3; k < 10; k++) {
+        const int flags = fcntl(k, F_GETFD);
+        if (flags >= 0 && !(flags & FD_CLOEXEC))
+            snprintf(expected + strlen(expected), sizeof expected - strlen(expected), "%d\n", k);
+    }
+    assert_int_equal(shell("for k in 3 4 5 6 7 8 9; do (: >&$k) 2>/dev/null && echo $k; done; :",
+                           "", 0, 60, &output, message, sizeof message),
+                     PROCESS_OK);
+    assert_string_equal(output.data ? output.data : "", expected);
+    buffer_free(&output);
+}
+
 static void nothing(int number)
 {
     (void)number;
