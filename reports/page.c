@@ -203,5 +203,4 @@ void page_free(struct page *page)
 {
     page_plots_free(&page->plots);
     free(page->html);
-    page->html = NULL;
 }

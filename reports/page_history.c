@@ -72,8 +72,8 @@ static bool together(const json_t *a, const json_t *b)
 
 static double amount(const json_t *entry)
 {
-    const double ratio = value_member(entry, "ratio");
-    return ratio > 0 ? fabs(log(ratio)) : (double)INFINITY;
+    const double change = fabs(log(value_member(entry, "ratio")));
+    return isnan(change) ? (double)INFINITY : change;
 }
 
 /* The entry with the largest change among those that share a row with list[i]; NULL if a row was

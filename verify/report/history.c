@@ -106,7 +106,7 @@ static enum status read_nights(const char *path, const char *mode, json_t *night
     if (!file)
         return error_set(error, STATUS_ENVIRONMENT, "cannot read the history '%.200s': %s", path,
                          strerror(errno));
-    for (ssize_t length; (length = getline(&text, &room, file)) > 0;) {
+    for (ssize_t length; (length = getline(&text, &room, file)) != -1;) {
         json_t *line = json_loadb(text, (size_t)length, 0, NULL);
         if (!line || strcmp(value_text(line, "schema"), "sphproof-history/1") != 0)
             *unreadable += text[0] != '\n';
@@ -129,18 +129,24 @@ static double distance(const json_t *entry)
     return isnan(change) ? (double)INFINITY : change;
 }
 
+static bool is(const json_t *entry, const char *key)
+{
+    return json_is_true(json_object_get(entry, key));
+}
+
+static int larger_first(double a, double b)
+{
+    return (a < b) - (a > b);
+}
+
 /* Failures first, then by change; counts of work after figures of quality. */
 static int worst_first(const void *a, const void *b)
 {
-    static const char *const keys[] = {"fault", "work"};
     const json_t *x = *(json_t *const *)a, *y = *(json_t *const *)b;
-    for (int k = 0; k < 2; k++) {
-        const bool i = json_is_true(json_object_get(x, keys[k])),
-                   j = json_is_true(json_object_get(y, keys[k]));
-        if (i != j) return i == (k == 0) ? -1 : 1;
-    }
-    const double i = distance(x), j = distance(y);
-    return i != j ? (i > j ? -1 : 1) : strcmp(value_text(x, "path"), value_text(y, "path"));
+    int order = larger_first(is(x, "fault"), is(y, "fault"));
+    if (!order) order = larger_first(is(y, "work"), is(x, "work"));
+    if (!order) order = larger_first(distance(x), distance(y));
+    return order ? order : strcmp(value_text(x, "path"), value_text(y, "path"));
 }
 
 /* Replaces the list by a sorted one, or leaves it as it is if there is no memory. */
@@ -292,10 +298,9 @@ static void add_changes(const struct metric *metric, const json_t *nights, json_
 static int newest_first(const void *a, const void *b)
 {
     const json_t *x = *(json_t *const *)a, *y = *(json_t *const *)b;
-    const double i = value_member(x, "night"), j = value_member(y, "night");
-    if (i != j) return i > j ? -1 : 1;
-    const double p = distance(x), q = distance(y);
-    return p != q ? (p > q ? -1 : 1) : strcmp(value_text(x, "path"), value_text(y, "path"));
+    int order = larger_first(value_member(x, "night"), value_member(y, "night"));
+    if (!order) order = larger_first(distance(x), distance(y));
+    return order ? order : strcmp(value_text(x, "path"), value_text(y, "path"));
 }
 
 static json_t *heads(const json_t *nights)

@@ -85,8 +85,9 @@ static enum status prepare(const struct reported *of, int s, struct run_settings
     if (!other && run_prepare(settings, of->name, 0, NULL, error)) return error->status;
     if (other) *settings = scheme->other ? *scheme->other : *other;
     if (other && !scheme->other) settings->external = NULL, settings->file.gate_count = 0;
-    if (settings_apply_words(&settings->settings, of->size, error)) return error->status;
-    return settings_apply_words(&settings->settings, scheme->keys, error);
+    char words[256];
+    snprintf(words, sizeof words, "%s %s", of->size, scheme->keys);
+    return settings_apply_words(&settings->settings, words, error);
 }
 
 /* Sets the ladder of a case: its own, by day the smaller one if there is one, by night with added

@@ -233,6 +233,9 @@ TEST(processes)
     assert_int_equal(shell("cat", input, size, 60, &output, message, sizeof message), PROCESS_OK);
     assert_int_equal(output.size, size);
     buffer_free(&output);
+    assert_int_equal(shell("cat", input, 1, 60, &output, message, sizeof message), PROCESS_OK);
+    assert_string_equal(output.data, "a");
+    buffer_free(&output);
     assert_int_equal(shell("exit 0", input, size, 60, &output, message, sizeof message),
                      PROCESS_OK);
     assert_int_equal(
