@@ -34,7 +34,7 @@ static volatile sig_atomic_t interrupted;
 static void note_interrupt(int number)
 {
     (void)number;
-    interrupted = 1;
+    interrupted = true;
 }
 
 struct share {
@@ -156,10 +156,8 @@ static void look(struct array *array)
  * `count` computations; at least 1. */
 static int tasks_for(double seconds, size_t count, int jobs)
 {
-    double tasks = seconds / (least_s * jobs);
-    if (tasks > (double)count) tasks = (double)count;
-    if (tasks > SLURM_TASKS_MAX) tasks = SLURM_TASKS_MAX;
-    return tasks >= 1 ? (int)tasks : 1;
+    const double most = fmin((double)count, SLURM_TASKS_MAX);
+    return (int)fmax(1, fmin(seconds / (least_s * jobs), most));
 }
 
 static enum status divide(struct array *array, struct error *error)
@@ -207,7 +205,7 @@ static char *ranges(const struct array *array, const bool *chosen)
 
 static enum status submit(struct array *array, const bool *chosen, struct error *error)
 {
-    long job = 0;
+    long job;
     if (output_probe(array->state, error)) return error->status;
     for (int s = 1; s <= array->count; s++) array->shares[s].tries += chosen[s];
     if (save(array, error))
@@ -329,7 +327,7 @@ static enum status step(struct array *array, struct error *error)
     struct slurm_task *tasks = NULL;
     size_t count;
     const int lock = open(array->folder, O_RDONLY | O_CLOEXEC);
-    if (lock >= 0) flock(lock, LOCK_EX);
+    flock(lock, LOCK_EX); /* without a lock where the folder cannot be opened */
     struct error trouble;
     enum status status = refresh(array, error);
     const bool answers = !status && !slurm_queue(array->name, &tasks, &count, &trouble);
@@ -343,7 +341,7 @@ static enum status step(struct array *array, struct error *error)
         status = be_patient(array, &trouble, error);
     }
     free(tasks);
-    if (lock >= 0) close(lock);
+    close(lock);
     return status;
 }
 
@@ -367,7 +365,7 @@ static void show(struct array *array)
              array->running, array->waiting);
     array->work->progress->what = what;
     progress_share(array->work->progress, array->wanted - array->lacking, array->wanted,
-                   array->whole > 0 ? 1 - array->left / array->whole : 1);
+                   1 - array->left / array->whole);
 }
 
 static enum status watch(struct array *array, struct error *error)
@@ -425,14 +423,14 @@ static enum status give_up(const struct array *array, struct error *error)
 /* After an interrupt: asks whether the tasks shall continue. */
 static enum status leave(struct array *array, struct error *error)
 {
-    char answer[8] = "";
+    int answer = 'n';
     const size_t tasks = array->running + array->waiting;
     if (isatty(STDIN_FILENO)) {
         fprintf(stderr, "\r\033[KCancel the %zu tasks of %s? They go on otherwise. [y/N] ", tasks,
                 array->name);
-        if (!fgets(answer, sizeof answer, stdin)) answer[0] = '\0';
+        answer = getchar();
     }
-    if (answer[0] != 'y' && answer[0] != 'Y')
+    if (answer != 'y' && answer != 'Y')
         return error_set(error, STATUS_ENVIRONMENT,
                          "interrupted; %zu tasks go on: the same command attaches to them again, "
                          "scancel --name=%s ends them",
@@ -447,7 +445,7 @@ static enum status leave(struct array *array, struct error *error)
 static enum status finish(struct array *array, struct error *error)
 {
     if (array->lacking) return give_up(array, error);
-    if (array->running + array->waiting) slurm_cancel(array->name, NULL); /* not needed */
+    if (array->running || array->waiting) slurm_cancel(array->name, NULL); /* not needed */
     for (int s = 1; s <= array->count; s++) {
         char path[sizeof array->folder + 96];
         slurm_share_log(array->folder, array->name, array->shares[s].job, s, path, sizeof path);
