@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "sharing.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -88,7 +89,7 @@ enum status sharing_take(struct sharing *sharing, const struct options *options,
     double number = jobs;
     *sharing = (struct sharing){.list = options_value(options, "list") != NULL};
     if (options_number(options, "jobs", true, 1, JOBS_MAX, &number, error)) return error->status;
-    sharing->pool.jobs = number >= 1 ? (int)number : 1;
+    sharing->pool.jobs = (int)fmax(1, number);
     if (take_share(&sharing->pool.share, options, error) || refuse_files(sharing, options, error))
         return error->status;
     if (!folder) folder = options_value(options, "cache");
@@ -118,7 +119,7 @@ static enum status print_list(const struct sharing *sharing, const struct pool *
                               struct error *error)
 {
     const struct pool_share *share = &sharing->pool.share;
-    int *shares = calloc(pool->count + 1, sizeof *shares);
+    int *shares = calloc(pool->count, sizeof *shares);
     if (!shares) return error_set(error, STATUS_ENVIRONMENT, "no memory for the list");
     const enum status status = pool_divide(pool, share->of ? share->of : 1, shares, error);
     for (size_t i = 0; i < pool->count && !status; i++) {

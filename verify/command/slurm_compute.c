@@ -178,7 +178,7 @@ static enum status divide(struct array *array, struct error *error)
                    : work->tasks ? work->tasks
                                  : tasks_for(array->whole, lacking, work->jobs);
     array->shares = calloc((size_t)array->count + 1, sizeof *array->shares);
-    array->of = calloc(pool->count + 1, sizeof *array->of);
+    array->of = calloc(pool->count, sizeof *array->of);
     json_decref(state);
     if (!array->shares || !array->of)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %d shares", array->count);

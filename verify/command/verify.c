@@ -35,13 +35,11 @@ static const struct command_option verify_options[] = {
 /* The folder `failures` beside the program or, if that is read-only, in the working directory. */
 static void default_folder(char *folder, size_t size)
 {
-    const char *const name = "failures";
-    const ssize_t length = readlink("/proc/self/exe", folder, size - sizeof "/failures");
-    if (length > 0) folder[length] = '\0';
-    char *slash = length > 0 ? strrchr(folder, '/') : NULL;
+    char program[FOLDER_LENGTH - 10] = ""; /* stays empty without /proc */
+    (void)!readlink("/proc/self/exe", program, sizeof program - 1);
+    char *slash = strrchr(program, '/');
     if (slash) slash[1] = '\0';
-    if (!slash || access(folder, W_OK)) folder[0] = '\0';
-    strcat(folder, name);
+    snprintf(folder, size, "%sfailures", access(program, W_OK) ? "" : program);
 }
 
 /* Refuses a name: lists the groups or, if the group exists, its checks. */

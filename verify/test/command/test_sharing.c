@@ -438,6 +438,7 @@ TEST(valid_options)
     end(NULL), begin(NULL);
     assert_int_equal(sharing_take(&sharing, &call.options, 5, NULL, &call.error), STATUS_OK);
     assert_int_equal(sharing.pool.jobs, 5);
+    assert_true(sharing.pool.again); /* breakdowns are tried again where everything is computed */
     assert_true(!sharing.list && !sharing.pool.cache && !sharing.pool.share.of && !sharing.tasks);
     assert_false(sharing.slurm);
     assert_int_equal(sharing_take(&sharing, &call.options, 0, NULL, &call.error), STATUS_OK);
@@ -451,13 +452,14 @@ TEST(valid_options)
         STATUS_OK); /* the command's own folder takes precedence over --cache */
     assert_int_equal(sharing.pool.jobs, 3);
     assert_true(sharing.pool.share.number == 2 && sharing.pool.share.of == 7);
+    assert_false(sharing.pool.again);
     assert_true(sharing.pool.cache == &sharing.cache && !sharing.cache.force);
     assert_string_equal(sharing.cache.folder, call.folder.cache_folder);
     assert_int_equal(access("elsewhere", F_OK), -1);
     set("shard", NULL), set("engine", "slurm"), set("engine-tasks", "9");
     assert_int_equal(
         sharing_take(&sharing, &call.options, 5, call.folder.cache_folder, &call.error), STATUS_OK);
-    assert_true(sharing.slurm);
+    assert_true(sharing.slurm && !sharing.pool.again);
     assert_int_equal(sharing.tasks, 9);
     set("engine", NULL), set("engine-tasks", NULL), set("force", "");
     assert_int_equal(
