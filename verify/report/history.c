@@ -70,24 +70,36 @@ static json_t *line_of(const json_t *results, struct error *error)
     return line;
 }
 
+static enum status cannot_write(const char *path, int code, struct error *error)
+{
+    return error_set(error, STATUS_ENVIRONMENT, "cannot write the history '%.200s': %s", path,
+                     strerror(code));
+}
+
 /* Appends with one write, on a new line even if an earlier write was cut off. */
+static enum status append(char *body, const char *path, struct error *error)
+{
+    const int file = open(path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    if (file < 0) return cannot_write(path, errno, error);
+    char last = '\n';
+    const bool cut_off =
+        lseek(file, -1, SEEK_END) >= 0 && read(file, &last, 1) == 1 && last != '\n';
+    const struct iovec parts[] = {{"\n", cut_off}, {body, strlen(body)}, {"\n", 1}};
+    const size_t total = cut_off + parts[1].iov_len + 1;
+    errno = ENOSPC; /* of a line that was written in part */
+    const bool whole = writev(file, parts, 3) == (ssize_t)total;
+    const int code = errno;
+    close(file);
+    return whole ? STATUS_OK : cannot_write(path, code, error);
+}
+
 enum status history_append(const json_t *results, const char *path, struct error *error)
 {
     json_t *line = line_of(results, error);
     char *body = line ? json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;
     json_decref(line);
     if (!body) return error_set(error, STATUS_ENVIRONMENT, "no memory for the history");
-    char last = '\n';
-    const int file = open(path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-    enum status status = STATUS_OK;
-    if (file >= 0 && lseek(file, -1, SEEK_END) >= 0 && read(file, &last, 1) != 1) last = '\n';
-    const struct iovec parts[] = {{"\n", last != '\n'}, {body, strlen(body)}, {"\n", 1}};
-    const size_t total = parts[0].iov_len + parts[1].iov_len + 1;
-    errno = file < 0 ? errno : 0;
-    if (file < 0 || writev(file, parts, 3) != (ssize_t)total)
-        status = error_set(error, STATUS_ENVIRONMENT, "cannot write the history '%.200s': %s", path,
-                           strerror(errno ? errno : ENOSPC));
-    if (file >= 0) close(file);
+    const enum status status = append(body, path, error);
     free(body);
     return status;
 }

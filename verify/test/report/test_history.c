@@ -197,6 +197,37 @@ TEST(full_disk)
     json_decref(results);
 }
 
+/* A line is on its own behind any other, of one character too; without a standard input the file
+ * has its number. */
+TEST(lines_of_their_own)
+{
+    static const char *const before[] = {"", "x", "x\n", "\n", "long line", "long line\n"};
+    for (size_t k = 0; k < 2 * sizeof before / sizeof *before; k++) {
+        const struct night night = usual_night(1);
+        const char *text = before[k / 2], *path = path_of("history");
+        const bool ends = !*text || text[strlen(text) - 1] == '\n';
+        json_t *results = results_of(&night);
+        struct error error = {0};
+        char line[40] = "", expected[40];
+        FILE *file = fopen(path, "w");
+        fputs(text, file);
+        fclose(file);
+        const int input = k % 2 ? dup(0) : -1;
+        if (input >= 0) close(0);
+        const enum status status = history_append(results, path, &error);
+        if (input >= 0) dup2(input, 0), close(input);
+        assert_int_equal(status, STATUS_OK);
+        file = fopen(path, "r");
+        const size_t n = fread(line, 1, strlen(text) + !ends + 10, file);
+        fclose(file);
+        snprintf(expected, sizeof expected, "%s%s{\"schema\":", text, ends ? "" : "\n");
+        assert_int_equal(n, strlen(expected));
+        assert_string_equal(line, expected);
+        json_decref(results);
+        unlink(path);
+    }
+}
+
 /* The change of one figure from `before` to `after` at night `at` of `count`, as the document has
  * it. */
 static json_t *changed(const char *path, double before, double after, double half, int at,
