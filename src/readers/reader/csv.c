@@ -213,7 +213,7 @@ static enum status take_names(struct text_table *table, const char *line, size_t
     for (size_t at = 0; at < length;) {
         size_t n = 0;
         at += strspn(line + at, " \t");
-        if (blanks && table->columns && at < length && strchr("[(", line[at])) { /* unit */
+        if (blanks && table->columns && (line[at] == '[' || line[at] == '(')) { /* unit */
             const size_t unit = strcspn(line + at, line[at] == '[' ? "]\n" : ")\n") + 1;
             snprintf(table->unit, sizeof table->unit, "%.*s", (int)unit, line + at);
             at += unit;
@@ -274,21 +274,22 @@ static enum status read(const struct snapshot_source *source,
     struct text_table table = {.source = source};
     struct remarks remarks = {.file = file, .path = source->path};
     const char *text = (const char *)source->bytes;
-    size_t at = 0, line = 1, remark = 0, remark_length = 0;
-    if (strncmp(text, "\xef\xbb\xbf", 3) == 0) at = 3;
+    static const char mark[] = "\xef\xbb\xbf";
+    const char *remark = NULL; /* behind the # of the last comment */
+    size_t at = 0, line = 1;
+    if (strncmp(text, mark, strlen(mark)) == 0) at = strlen(mark);
     for (; text[at] && (!table.columns || text[at] == '#'); line++) {
         const size_t length = strcspn(text + at, "\n");
         const size_t begin = strspn(text + at, " \t\r");
         if (text[at + begin] == '#') {
             remarks.line = line;
             if (take_remark(&remarks, text + at, length, error)) return error->status;
-            remark = at + begin + 1, remark_length = length - begin - 1;
-        } else if (begin < length) {
-            const bool named = !(remark_length && begins_with_number(text + at + begin));
+            remark = text + at + begin + 1;
+        } else {
+            const bool named = !(remark && begins_with_number(text + at + begin));
+            const char *names = named ? text + at : remark;
             table.separator = separator_of(text + at, length);
-            if (take_names(&table, named ? text + at : text + remark,
-                           named ? length : remark_length, error))
-                return error->status;
+            if (take_names(&table, names, strcspn(names, "\n"), error)) return error->status;
             if (!named) break; /* first row */
         }
         at += length + (text[at + length] == '\n');

@@ -31,19 +31,14 @@ static bool begins(struct dump *dump, bool swapped)
     *dump = (struct dump){.source = dump->source, .swapped = swapped, .count = 1};
     if (dump->source->hdf5 || fortran_next(dump->source, swapped, 1, &dump->at, &record, &ignored))
         return false;
-    for (size_t i = 4; i <= 8; i += 4)
-        for (size_t r = 4; r <= 8; r += 4) {
-            const unsigned char *b = record.bytes;
-            if (record.size != 4 * i + r || fortran_integer(b, i, swapped) != MAGIC_FIRST ||
-                fortran_real(b + i, r, swapped) != MAGIC_SECOND ||
-                fortran_integer(b + i + r, i, swapped) != MAGIC_SECOND ||
-                fortran_integer(b + 3 * i + r, i, swapped) != MAGIC_THIRD)
-                continue;
-            const size_t sizes[KINDS] = {i, 1, 2, 4, 8, r, 4, 8};
-            memcpy(dump->bytes, sizes, sizeof sizes);
-            return true;
-        }
-    return false;
+    const unsigned char *b = record.bytes;
+    const size_t i = record.size > 24 ? 8 : 4, r = record.size - 4 * i;
+    const size_t sizes[KINDS] = {i, 1, 2, 4, 8, r, 4, 8};
+    memcpy(dump->bytes, sizes, sizeof sizes);
+    return (r == 4 || r == 8) && fortran_integer(b, i, swapped) == MAGIC_FIRST &&
+           fortran_real(b + i, r, swapped) == MAGIC_SECOND &&
+           fortran_integer(b + i + r, i, swapped) == MAGIC_SECOND &&
+           fortran_integer(b + 3 * i + r, i, swapped) == MAGIC_THIRD;
 }
 
 static bool recognises(const struct snapshot_source *source)
@@ -169,7 +164,7 @@ static enum status take_array(struct dump *dump, int kind, struct snapshot_file 
             fmax(*precision, (dump->bytes[kind] == 4 ? (double)FLT_EPSILON : DBL_EPSILON) / 2);
     }
     if (is_tag(tag.bytes, "itype") && !*types) {
-        to = *types = calloc(file->n + 1, sizeof *to);
+        to = *types = calloc(file->n, sizeof *to);
         if (!to)
             return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", dump->source->path);
     }

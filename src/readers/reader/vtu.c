@@ -58,14 +58,14 @@ __attribute__((format(printf, 2, 3))) static bool refuse(const struct vtk *vtk, 
 
 static bool next_tag(const char *at, const char *end, struct tag *tag)
 {
-    while (at < end && (at = memchr(at, '<', (size_t)(end - at)))) {
+    while ((at = memchr(at, '<', (size_t)(end - at)))) {
         const char *stop = memchr(at, '>', (size_t)(end - at));
         if (!stop) return false;
         tag->closes = at[1] == '/';
         tag->name = at + 1 + tag->closes;
         tag->length = (size_t)(stop - tag->name);
         tag->behind = at = stop + 1;
-        if (tag->length && isalpha((unsigned char)tag->name[0])) return true;
+        if (isalpha((unsigned char)tag->name[0])) return true;
     }
     return false;
 }
@@ -73,8 +73,7 @@ static bool next_tag(const char *at, const char *end, struct tag *tag)
 static bool is_tag(const struct tag *tag, const char *name)
 {
     const size_t n = strlen(name);
-    return tag->length >= n && !strncmp(tag->name, name, n) &&
-           !isalnum((unsigned char)tag->name[n]);
+    return !strncmp(tag->name, name, n) && !isalnum((unsigned char)tag->name[n]);
 }
 
 /* The value of a key; "" if missing or longer than a word. */
@@ -83,7 +82,7 @@ static const char *value_of(const struct tag *tag, const char *key, char value[W
     const size_t n = strlen(key);
     const char *at = tag->name, *end = at + tag->length;
     *value = '\0';
-    while (at < end) {
+    for (;;) {
         const char *equals = memchr(at, '=', (size_t)(end - at));
         if (!equals || equals + 1 >= end) break;
         const char *stop = memchr(equals + 2, equals[1], (size_t)(end - equals - 2));
@@ -150,20 +149,23 @@ static uint64_t size_at(const struct vtk *vtk, const unsigned char *at)
 static bool unpack(const struct vtk *vtk, struct array array, size_t blocks, unsigned char *to,
                    size_t want)
 {
-    if (blocks > want) return false;
+    if (!blocks || blocks > want) return false;
     const size_t sizes = (3 + blocks) * vtk->head;
     unsigned char *head = allocate(vtk, sizes);
-    bool well = head && fetch(&array, sizes, head, &array.at);
+    if (!head || !fetch(&array, sizes, head, &array.at)) {
+        free(head);
+        return false;
+    }
     const size_t left = (size_t)(array.end - array.at);
-    const uint64_t block = well ? size_at(vtk, head + vtk->head) : 0;
-    const uint64_t last = well ? size_at(vtk, head + 2 * vtk->head) : 0;
-    uint64_t *packed = well ? allocate(vtk, (blocks + 1) * sizeof *packed) : NULL;
-    well = packed != NULL;
+    const uint64_t block = size_at(vtk, head + vtk->head),
+                   last = size_at(vtk, head + 2 * vtk->head);
+    uint64_t *packed = allocate(vtk, blocks * sizeof *packed);
+    bool well = packed != NULL;
     size_t all = 0, made = 0;
     for (size_t k = 0; well && k < blocks; k++) {
         packed[k] = size_at(vtk, head + (3 + k) * vtk->head);
         well = packed[k] <= left - all;
-        all += well ? packed[k] : 0;
+        all += packed[k];
     }
     unsigned char *bytes = well ? allocate(vtk, all + 1) : NULL;
     well = bytes && fetch(&array, all, bytes, NULL);
@@ -283,7 +285,7 @@ static bool take_points(const struct vtk *vtk, const struct array *array, int co
         if (file->column[to])
             return refuse(vtk, "the array '%s' is a second one for %s; allowed: one", array->name,
                           snapshot_column_names[to]);
-    double *all = allocate(vtk, (file->n * array->components + 1) * sizeof *all);
+    double *all = allocate(vtk, file->n * array->components * sizeof *all);
     const bool well = all && take_numbers(vtk, array, all, file->n * array->components) &&
                       !vtk_columns(file, column, array->components, all, array->type,
                                    vtk->source->path, vtk->error);

@@ -388,6 +388,18 @@ TEST(names_of_columns)
         csv_free(&csv);
         snapshot_file_free(&file);
     }
+    struct snapshot_file file;
+    struct csv csv = {0};
+    struct error error = {0};
+    char unknown[200];
+    FILE *out = fopen(path_of("n.csv"), "w");
+    assert_non_null(out);
+    fprintf(out, "# time = 0.2\n#\n# time = 0.1\nx,v\n1,2\n");
+    fclose(out);
+    assert_int_equal(snapshot_csv_named(path_of("n.csv"), &file, &csv, unknown, &error),
+                     STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, ":3: '# time = 0.1'; allowed: one value, but line 1"));
+    csv_free(&csv);
 }
 
 /* ---- notes ---- */

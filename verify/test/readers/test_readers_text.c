@@ -79,6 +79,25 @@ TEST(units)
     }
 }
 
+/* A name may begin with a bracket, or with bytes like those of the mark before a text. */
+TEST(odd_names)
+{
+    static const char *const heads[] = {"(a) ", "[0] ", "\xef\xbb\xaf ", "a,(b),", "(b),a,"};
+    for (size_t k = 0; k < sizeof heads / sizeof *heads; k++) {
+        const bool marked = strchr(heads[k], ',');
+        char text[400];
+        int n =
+            snprintf(text, sizeof text, marked ? "%sx,v,m,rho,P\n" : "%sx v m rho P\n", heads[k]);
+        for (int i = 0; i < 5; i++)
+            n += snprintf(text + n, sizeof text - (size_t)n,
+                          marked ? "8,9,%d,2,3,4,5\n" : "9 %d 2 3 4 5\n", i);
+        struct snapshot_file file = file_of(text, (size_t)n, NULL);
+        assert_true(file.column[SNAPSHOT_X][4] == 4 && file.column[SNAPSHOT_RHO][4] == 4);
+        noted(&file, "units", NULL, "");
+        snapshot_file_free(&file);
+    }
+}
+
 /* ---- values in comments ---- */
 
 #define ZEROS                                                                                      \
@@ -107,6 +126,7 @@ TEST(values_in_comments)
          1.5,
          {2e9, 3e9, 4e9}},
         {"# box = 2e9 3e9 4e9\n# box = 2e9 3e9 4e9\n", false, false, true, 0, 0, {2e9, 3e9, 4e9}},
+        {"# t = 0.25 gamma : 1.5\n# t = 0.25 gamma = 1.5\n", true, true, false, 0.25, 1.5, {0}},
         {"# # time : 0.25\n# box = 2e9, 3e9\n", true, false, true, 0.25, 0, {2e9, 3e9, 0}},
         {"# time = 0.2501\n# t = 0.25\n# time 0.25\n", true, false, false, 0.25, 0, {0}},
         {"# time = 0.25 s\n# gammas = 2\n# Box = 2\n# box = a\n", false, false, false, 0, 0, {0}},
@@ -170,10 +190,10 @@ TEST(values_in_comments)
             struct table t = table_of(1, true);
             char head[300];
             t.columns -= 2;
-            snprintf(
-                head, sizeof head,
-                "# case = my tube.ini\n# boundary = open fixed\n# keys = n=3; eta=2\n# box = %s\n",
-                ends[k].box);
+            snprintf(head, sizeof head,
+                     "# case = my tube.ini\n# case = my tube.ini\n# boundary = open fixed\n# keys "
+                     "= n=3; eta=2\n# box = %s\n",
+                     ends[k].box);
             if (!behind) strcpy(t.head, head);
             size_t size = text_of(&t, text, -1, -1, NULL);
             const size_t line = (size_t)(strchr(text, '\n') + 1 - text);
@@ -236,6 +256,7 @@ TEST(values_in_comments)
         {"# box = 0:2 0:2 0:2\n# box = 0:2 1:3 0:2\n", ":2: '# box = 0:2 1:3 0:2'; allowed: one"},
         {"# box = 2\n# box = 2.0000001\n", ":2: '# box = 2.0000001'; allowed: one value"},
         {"# box = 0:2\n# box = 1e-7:2.0000001\n", ":2: '# box = 1e-7:2.0000001'; allowed: one"},
+        {"# box = 1 1e9\n# box = 1.5 1e9\n", ":2: '# box = 1.5 1e9'; allowed: one value"},
         {"# box = 0:1 0:1e9\n# box = 0.5:1.5 0:1e9\n", ":2: '# box = 0.5:1.5 0:1e9'; allowed"},
         {"# box = 0:2 0:1\n# box = 2 1\n", ":2: '# box = 2 1'; allowed: one value, but line 1"},
         {"# case = sod\n# case = lax\n", ":2: '# case = lax'; allowed: one value, but line 1"},
@@ -259,7 +280,7 @@ TEST(values_in_comments)
     }
     static const struct {
         const char *head, *line; /* NULL: no note */
-    } units[] = {{"#\n# time = 0.2 s\n", "line 2"},
+    } units[] = {{"#\n# time = 0.2 s\n# gamma = 2 g\n", "line 2"},
                  {"# Sod, gamma = 5/0\n", "line 1"},
                  {"# time = unknown\n", NULL},
                  {"# dt = 0,2 s\n", NULL}};

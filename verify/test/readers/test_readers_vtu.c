@@ -142,6 +142,9 @@ static void write_out(struct document *d)
             "format=\"ascii\">%s</DataArray>\n",
             fields[k].name, fields[k].count == 9 ? "Components" : "Tuples",
             strcmp(fields[k].name, "box") ? fields[k].count : d->ends, fields[k].numbers);
+    add(d,
+        "<DataArray type=\"String\" Name=\"case\" format=\"ascii\">9</DataArray>\n"); /* no number
+                                                                                       */
     add(d, "</FieldData><Piece NumberOfPoints=\"%d\">\n<Points>", ROWS);
     add_array(d, 0);
     add(d, "</Points><PointData>\n");
@@ -298,6 +301,8 @@ static const struct {
      "'Points' has '' as number 28 of the 30"},
     {TEXT, "format=\"ascii\">\n ", "format=\"ascii\">\n hot ",
      "'Points' has 'hot' as number 1 of the 27"},
+    {TEXT, "format=\"ascii\">\n ", "format=\"ascii\">\n " ZEROS "0000 ",
+     "'Points' has '" ZEROS "000' as number 1 of the 27"},
     {TEXT, "\"Float64\" Name=\"mass\"", "\"Float16\" Name=\"mass\"",
      "'mass' has numbers of the type 'Float16'; allowed: Float64"},
     {TEXT, "Name=\"mass\"", "Name=\"density\"", "'density' is a second one for rho; allowed: one"},
@@ -370,18 +375,30 @@ TEST(one_fault)
     }
 }
 
-/* Compressed points may be more than bytes, by a factor of 1032. */
-TEST(numbers_of_points)
+/* There may be as many points as bytes in the file, or 1032 times as many if they are compressed;
+ * appended data may begin anywhere in it. */
+TEST(limits)
 {
-    for (int more = 0; more < 2; more++) {
-        char text[300];
-        const int n = sprintf(text,
-                              "<VTKFile compressor='vtkZLibDataCompressor'><Piece NumberOfPoints="
-                              "'%d'><Points><DataArray format='ascii' type='Float64' Name='p'/>"
-                              "</Points></Piece></VTKFile>",
-                              more ? 200000 : 100000);
-        refuses(text, (size_t)n, NULL,
-                more ? "NumberOfPoints = '200000'; allowed" : "'p' has '' as number 1 of the");
+    for (int k = 0; k < 4; k++) {
+        char text[300], says[80];
+        size_t n = 0;
+        for (int pass = 0; pass < 2; pass++) /* the first for the length */
+            n = (size_t)sprintf(
+                text,
+                "<VTKFile compressor='%s'><Piece NumberOfPoints='%06zu'><Points><DataArray "
+                "format='ascii' type='Float64' Name='p'/></Points></Piece></VTKFile>",
+                k / 2 ? "vtkZLibDataCompressor" : "", (k / 2 ? 1032 * n : n) + (size_t)k % 2);
+        snprintf(says, sizeof says, "NumberOfPoints = '%06zu'; allowed",
+                 (k / 2 ? 1032 * n : n) + (size_t)k % 2);
+        refuses(text, n, NULL, k % 2 ? says : "'p' has '' as number 1 of the");
+        n = (size_t)sprintf(
+            text,
+            "<VTKFile><Piece NumberOfPoints='4'><Points><DataArray type='Float64' Name='p' "
+            "format='appended' offset='%d'/></Points></Piece><AppendedData encoding='raw'>_"
+            "</AppendedData></VTKFile>",
+            25 + k % 2);
+        refuses(text, n, NULL,
+                k % 2 ? "'p' has the offset '26'; allowed: 0 to 25" : "'p' is cut off or damaged");
     }
     refuses("<VTKFile></VTKFile>", 19, NULL, "VTK: has no Piece; allowed: one, with points");
 }
