@@ -157,7 +157,7 @@ static double their_eta(const struct both *both, double *open)
         least = fmin(least, eta), most = fmax(most, eta);
     }
     const double eta = 0.5 * (least + most);
-    if (!(eta > 0 && most - least <= eta_known * eta)) return setup->scheme.eta;
+    if (!(most - least < eta_known * eta)) return setup->scheme.eta;
     *open = (most - least) / eta;
     return eta;
 }

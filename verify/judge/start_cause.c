@@ -436,11 +436,15 @@ bool start_cause_positions(const struct start_gas *gas, char *text, size_t size)
     take(&trial, false);
     miss(&trial, by, &near);
     if (nearly_all(near, trial.n)) return false; /* their places are right; masses may be wrong */
-    if (dim > 1 && turned(gas, -1))
-        return snprintf(text, size, "x and y of their places are exchanged") > 0;
-    for (int d = 0; d < dim; d++)
-        if (turned(gas, d))
-            return snprintf(text, size, "%c of their places is mirrored", "xyz"[d]) > 0;
+    if (dim > 1 && turned(gas, -1)) {
+        snprintf(text, size, "x and y of their places are exchanged");
+        return true;
+    }
+    for (int d = 0; d < dim; d++) {
+        if (!turned(gas, d)) continue;
+        snprintf(text, size, "%c of their places is mirrored", "xyz"[d]);
+        return true;
+    }
     for (int all = 1; all >= 0; all--) {
         take(&trial, all);
         if (!find_shift(&trial, by)) continue;
