@@ -18,7 +18,7 @@ enum sphproof_status sphproof_kernels_find(const char *name, struct sphproof_ker
     *kernel = calloc(1, sizeof **kernel);
     if (!*kernel) return library_fail(error, STATUS_ENVIRONMENT, "no memory for a kernel");
     const enum status status = kernel_select(&(*kernel)->kernel, name ? name : "", ORDER, &ours);
-    (*kernel)->negative = (*kernel)->kernel.order > 0;
+    (*kernel)->negative = (*kernel)->kernel.order != 0;
     if (!status) return SPHPROOF_OK;
     sphproof_kernels_free(*kernel);
     *kernel = NULL;
@@ -119,18 +119,18 @@ enum sphproof_status sphproof_kernels_own(const struct sphproof_shape *shape,
     if (status) return status;
     struct sphproof_kernel *own = calloc(1, sizeof *own);
     if (!own) return library_fail(error, STATUS_ENVIRONMENT, "no memory for a kernel");
-    *own = (struct sphproof_kernel){
-        .kernel = {.member = {shape->name ? shape->name : "yours", "", ""},
-                   .w = shape_w,
-                   .dw = shape_dw,
-                   .plugin_w = shape->w,
-                   .plugin_dw = shape->dw,
-                   .knot_count = shape->knot_count < 0 ? -1 : shape->knot_count,
-                   .knots = shape->knots},
-        .dim = shape->dim,
-        .negative = shape->negative,
-        .single = shape->single,
-        .found_class = shape->smoothness < 0};
+    *own =
+        (struct sphproof_kernel){.kernel = {.member = {shape->name ? shape->name : "yours", "", ""},
+                                            .w = shape_w,
+                                            .dw = shape_dw,
+                                            .plugin_w = shape->w,
+                                            .plugin_dw = shape->dw,
+                                            .knot_count = shape->knot_count,
+                                            .knots = shape->knots},
+                                 .dim = shape->dim,
+                                 .negative = shape->negative,
+                                 .single = shape->single,
+                                 .found_class = shape->smoothness < 0};
     for (int dim = 1; dim <= KERNEL_DIM_MAX && !status; dim++) {
         own->kernel.constant[dim] = shape->constant[dim];
         if (!own->dim || own->dim == dim) status = complete(own, dim, shape->smoothness, error);

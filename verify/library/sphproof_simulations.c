@@ -31,10 +31,11 @@ static enum status take_keys(const struct sphproof_setup *theirs, bool sharp, st
             return error_set(error, STATUS_BAD_INPUT,
                              "%s is no key of a scheme: the setup itself says what is computed",
                              setting_keys[k].name);
-    if (sharp && settings.value[SETTING_h_tolerance].source == SOURCE_FALLBACK &&
-        settings_set(&settings, SETTING_h_tolerance, "1e-14", SOURCE_FALLBACK, NULL, error))
-        return error->status;
-    return settings_scheme(&settings, theirs->dim, scheme, error);
+    enum status status = STATUS_OK;
+    if (sharp && settings.value[SETTING_h_tolerance].source == SOURCE_FALLBACK)
+        status =
+            settings_set(&settings, SETTING_h_tolerance, "1e-14", SOURCE_FALLBACK, NULL, error);
+    return status ? status : settings_scheme(&settings, theirs->dim, scheme, error);
 }
 
 static enum status take_boundary(const char *name, enum boundary *boundary, struct error *error)

@@ -415,12 +415,13 @@ TEST(exceptions_from_a_region)
 
 /* ---- states of other positions ---- */
 
-/* A flow without any symmetry but that of its box, whose sides differ. In 2D it has several waves
- * along y, so that a shift is found only from a start that is near. */
+/* A flow without any symmetry but that of its box, whose sides differ. In 1D and 2D it
+ * has several waves along the last axis, so that a shift is found only from a start that is near.
+ */
 static void wave(const struct prepared *p, const double at[3], double t,
                  struct problem_state *state)
 {
-    const int waves = p->domain.dim == 2 ? 5 : 1;
+    const int waves = p->domain.dim == 1 ? 40 : p->domain.dim == 2 ? 5 : 1;
     double a[3] = {0};
     (void)t;
     if (p->domain.dim == 1) /* x and y exchanged may be beyond the box */
@@ -430,8 +431,8 @@ static void wave(const struct prepared *p, const double at[3], double t,
     *state = (struct problem_state){.rho = 1, .P = 1};
     state->u = 4 + sin(a[0] + 0.5) + 0.7 * cos(a[1] + 0.3) + 0.4 * sin(a[2] + 0.1);
     for (int d = 0; d < p->domain.dim; d++)
-        state->v[d] = sin(a[0] + d) + 0.2 * cos(a[1] + d) + 0.5 * cos(waves * a[1] + 2 * d) +
-                      0.3 * sin(a[2] + 0.7 * d);
+        state->v[d] = sin(a[0] + d) + 0.2 * cos(a[1] + d) +
+                      0.5 * cos(waves * a[p->domain.dim > 1] + 2 * d) + 0.3 * sin(a[2] + 0.7 * d);
 }
 
 static double no_energy(const struct prepared *p, double r, double t)

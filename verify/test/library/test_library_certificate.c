@@ -207,6 +207,7 @@ TEST(knots)
         {0, 0, {0}},
         {1, 0, {0.5}},
         {1, 0, {1e-3}},
+        {1, 0, {5e-7}},
         {1, 0, {1 - 1e-3}},
         {2, 0, {0.3, 0.7}},
         {3, 0, {0.2, 0.5, 0.9}},
@@ -325,20 +326,66 @@ TEST(constants)
 /* Declared values reach the properties; a class that is not declared is measured. */
 TEST(what_is_declared)
 {
-    for (int how = 0; how < 8; how++) {
+    for (int how = 0; how < 16; how++) {
         struct sphproof_shape shape = usual;
         struct sphproof_kernel *kernel;
+        const int declared = how & 8 ? 1 : 0;
         shape.dim = 2;
-        shape.negative = how & 1, shape.single = how & 2, shape.smoothness = how & 4 ? -1 : 1;
+        shape.negative = how & 1, shape.single = how & 2;
+        shape.smoothness = how & 4 ? -1 : declared;
         assert_int_equal(sphproof_kernels_own(&shape, &kernel, NULL), SPHPROOF_OK);
         const struct terms terms = terms_of(kernel, 77);
         assert_int_equal(terms.negative, how & 1);
         assert_int_equal(terms.single, (how & 2) != 0);
         assert_int_equal(terms.class_found, (how & 4) != 0);
         assert_int_equal(terms.samples, 77);
-        assert_int_equal(kernel->kernel.smoothness[2], how & 4 ? 2 : 1);
+        assert_int_equal(kernel->kernel.smoothness[2], how & 4 ? 2 : declared);
         sphproof_kernels_free(kernel);
     }
+}
+
+static int power;
+
+static double edge(double q, int dim)
+{
+    (void)dim;
+    return q < 1 ? pow(1 - q * q, power) : 0;
+}
+
+static double edge_slope(double q, int dim)
+{
+    (void)dim;
+    return q < 1 && power ? -2 * power * q * pow(1 - q * q, power - 1) : 0;
+}
+
+/* (1 - q^2)^p has p - 1 continuous derivatives at its edge; a jump counts as 0. */
+TEST(measured_classes)
+{
+    for (power = 0; power <= 4; power++) {
+        const struct sphproof_shape shape = {
+            .w = edge, .dw = edge_slope, .smoothness = -1, .dim = 1};
+        struct sphproof_kernel *kernel;
+        struct sphproof_error error = {.message = ""};
+        if (sphproof_kernels_own(&shape, &kernel, &error)) fail_msg("%s", error.message);
+        assert_int_equal(kernel->kernel.smoothness[1], power ? power - 1 : 0);
+        sphproof_kernels_free(kernel);
+    }
+}
+
+static void own_handler(const char *reason, const char *file, int line, int code)
+{
+    (void)reason, (void)file, (void)line, (void)code;
+}
+
+/* The user's handler of errors stays. */
+TEST(error_handler)
+{
+    gsl_error_handler_t *const before = gsl_set_error_handler(own_handler);
+    struct sphproof_kernel *kernel;
+    assert_int_equal(sphproof_kernels_find("wendland_c2", &kernel, NULL), SPHPROOF_OK);
+    sphproof_kernels_certify(kernel, 1, NULL, NULL, NULL);
+    assert_true(gsl_set_error_handler(before) == own_handler);
+    sphproof_kernels_free(kernel);
 }
 
 /* W, dW/dr and dW/dh of a plug-in and of a built-in kernel, from w and dw. */

@@ -167,6 +167,16 @@ TEST(refused_solutions)
     refused(NOH(1.4, 1, -1e-300), "gamma > 1");
     refused(YEE(1, 1), "gamma > 1");
     refused(YEE(1.4, 100), "gamma > 1");
+    int empty = 0; /* widths of a vortex whose centre is just empty */
+    for (double gamma = 1.125; gamma < 3; gamma += 0.125) {
+        double beta = sqrt(8 * gamma / (gamma - 1) / exp(1)) * M_PI * (1 - 1e-15);
+        for (int k = 0; k < 20; k++, beta = nextafter(beta, 100)) {
+            if (vortex_yee(0, beta, gamma).P != 0) continue;
+            refused(YEE(gamma, beta), "so small that the centre is not empty");
+            empty++;
+        }
+    }
+    assert_true(empty > 0);
     refused(WAVE(0.1, -1e-300), "t = -1e-300: allowed: from 0 to below");
     refused(WAVE(0.1, simple_wave_breaking_time(&wave)), "allowed: from 0 to below");
     refused(WAVE(7, 1), "");
@@ -517,8 +527,8 @@ enum { POINTS_MAX = 9000, FIGURES_MAX = 40, ETA_TENTHS = 22 };
 /* A function of every input of an operator, in place of a gradient. */
 static double planted(const struct sphproof_cloud *cloud, const double *f, size_t i, int a)
 {
-    return (1 + a) * f[i] * (1.5 + cloud->x[0][i]) + f[i] * f[i] - 0.25 * a + cloud->h[i] -
-           9 * cloud->volume[i];
+    return (a == 2 ? 10 : 1 + a) * f[i] * (1.5 + cloud->x[0][i]) + f[i] * f[i] - 0.25 * a +
+           cloud->h[i] - 9 * cloud->volume[i];
 }
 
 static int calls, refuse_at; /* the call that reports failure; 0: none */
@@ -755,6 +765,55 @@ static bool zero(void *context, const struct sphproof_cloud *cloud, const double
     for (int a = 0; a < cloud->dim; a++)
         for (size_t i = 0; i < cloud->n; i++) gradient[a][i] = 0;
     return ++calls != refuse_at;
+}
+
+/* Changes the last number of all at the second call. */
+static bool change(void *context, const struct sphproof_cloud *cloud, const double *f,
+                   double *const gradient[])
+{
+    (void)context, (void)f;
+    for (int a = 0; a < cloud->dim; a++)
+        for (size_t i = 0; i < cloud->n; i++) gradient[a][i] = 0;
+    gradient[cloud->dim - 1][cloud->n - 1] = ++calls == 2;
+    return true;
+}
+
+TEST(gradients_that_change)
+{
+    const struct sphproof_gradient_promise none = {0, -9, 2.4, true, true, true, true};
+    for (int dim = 1; dim <= 2; dim++) {
+        calls = 0;
+        assert_int_equal(sphproof_gradients_check(change, NULL, dim, &none, NULL, NULL, &error),
+                         SPHPROOF_CHECK_FAILED);
+        assert_non_null(strstr(error.message, "repeats: 1, allowed 0 ("));
+    }
+}
+
+/* Knows the gradient of the smooth field. */
+static bool know(void *context, const struct sphproof_cloud *cloud, const double *f,
+                 double *const gradient[])
+{
+    (void)context, (void)f;
+    for (size_t i = 0; i < cloud->n; i++) {
+        double place[3] = {0}, slope[3];
+        for (int a = 0; a < cloud->dim; a++) place[a] = cloud->x[a][i];
+        gradient_study_field(FUNCTION_SMOOTH, cloud->dim, place, slope);
+        for (int a = 0; a < cloud->dim; a++) gradient[a][i] = slope[a];
+    }
+    return true;
+}
+
+/* Without errors there is no order. */
+TEST(gradients_without_error)
+{
+    const struct sphproof_gradient_promise smooth = {0, 2, 2.4, false, false, false, false};
+    for (int dim = 1; dim <= 2; dim++) {
+        seen = 0;
+        assert_int_equal(sphproof_gradients_check(know, NULL, dim, &smooth, see, &seen, &error),
+                         SPHPROOF_CHECK_FAILED);
+        assert_int_equal(seen, 2);
+        assert_true(isnan(figures[1].value));
+    }
 }
 
 /* Fills the gradient of the first point alone. */
