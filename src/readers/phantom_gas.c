@@ -66,12 +66,12 @@ enum status phantom_gas(const char *path, const struct phantom_header *header, c
 {
     const bool lacks = !file->column[SNAPSHOT_RHO];
     if (check_header(path, header, error)) return error->status;
-    size_t *row = malloc((file->n + 1) * sizeof *row);
+    size_t *row = malloc(file->n * sizeof *row);
     bool there = row && !snapshot_file_make(file, SNAPSHOT_M, path, error) &&
                  !(lacks && snapshot_file_make(file, SNAPSHOT_RHO, path, error));
     for (int c = 0; c < SNAPSHOT_COLUMNS && there; c++) {
         if (!file->column[c]) continue;
-        double *longer = realloc(file->column[c], (2 * file->n + 1) * sizeof *longer);
+        double *longer = realloc(file->column[c], 2 * file->n * sizeof *longer);
         if (longer) file->column[c] = longer;
         there = longer;
     }

@@ -169,7 +169,8 @@ static void is_noted(const struct binary *b, const struct snapshot_file *file)
     for (size_t k = 0; k < file->notes.count; k++)
         if (strcmp(file->notes.note[k].what, "blocks") == 0)
             evidence = file->notes.note[k].evidence;
-    snprintf(words, sizeof words, "of the volume %.4g, and", pow(SIDE, b->dim));
+    snprintf(words, sizeof words, "of the volume %.4g, and",
+             pow(b->box > 0 && b->box < 2 * SIDE ? b->box : SIDE, b->dim));
     assert_non_null(strstr(evidence, words));
     assert_true(!strstr(evidence, "the records before them are the code's own") == !b->extra);
 }

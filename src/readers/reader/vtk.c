@@ -32,7 +32,7 @@ struct array {
 
 static bool refuse(const struct vtk *vtk, const char *what, const char *name)
 {
-    error_set(vtk->error, STATUS_BAD_INPUT, "%.200s: legacy VTK: %s%.60s", vtk->source->path, what,
+    error_set(vtk->error, STATUS_BAD_INPUT, "%.200s: legacy VTK: %s%s", vtk->source->path, what,
               name);
     return false;
 }
@@ -41,7 +41,7 @@ static bool refuse(const struct vtk *vtk, const char *what, const char *name)
 static const char *next_word(struct vtk *vtk, char word[WORD])
 {
     size_t n = 0;
-    while (vtk->at < vtk->end && isspace((unsigned char)*vtk->at)) vtk->at++;
+    while (isspace((unsigned char)*vtk->at)) vtk->at++;
     while (vtk->at < vtk->end && !isspace((unsigned char)*vtk->at)) {
         if (n + 1 < WORD) word[n++] = *vtk->at;
         vtk->at++;
@@ -106,7 +106,7 @@ static bool take_points(struct vtk *vtk, const struct array *array, int column,
     if (array->tuples != file->n)
         return refuse(vtk, "another number of tuples than of points has ", array->name);
     if (file->column[column]) return refuse(vtk, "there are two arrays for ", array->name);
-    double *all = malloc((3 * file->n + 1) * sizeof *all);
+    double *all = malloc(array->components * file->n * sizeof *all);
     if (!all) error_set(vtk->error, STATUS_ENVIRONMENT, "no memory for %.200s", vtk->source->path);
     const bool well = all && take_numbers(vtk, array, all) &&
                       !vtk_columns(file, column, array->components, all, array->type,

@@ -14,7 +14,8 @@ TEST(every_form)
         b.tagged = draw % 2, b.swapped = draw / 2 % 2;
         b.extra = drawn(3);
         if (drawn(4) == 0)
-            b.box = (const double[]){0, -1, 2.5 * SIDE}[drawn(3)]; /* or a box that is not full */
+            b.box = (const double[]){0, -1, 1.1 * SIDE,
+                                     2.5 * SIDE}[drawn(4)]; /* or one that is not full */
         if (drawn(4) == 0) b.parts = 0;
         b.there[ID] = !b.tagged || drawn(2);
         b.there[ACCE] = b.tagged && drawn(2); /* without its name the block cannot be recognised */
@@ -108,6 +109,7 @@ TEST(truncated_files)
             refuses(size - 4, "a short header", "the first of 252 bytes; allowed: a header of 256");
             put_all(&b);
         }
+        if (!b.tagged) refuses(head - 1, "less than a header", "no snapshot that is read");
         refuses(head, "a header alone",
                 "1 records, the first of 256 bytes; allowed: a header of 256 bytes");
         for (size_t at = head - 4; at < size; at += at < head ? 1 : 1 + at % 97) {
@@ -145,6 +147,7 @@ TEST(headers)
     } rows[] = {
         {"no gas: 3 particles of other types (dark matter only?)", 0, 0, -1, 0, 1, 0, 1, false},
         {"header: 536870912 particles of type 2", 2, 1u << 29, -1, 0, 1, 0, 1, false},
+        {"positions of 268435", 2, 1u << 28, -1, 0, 1, 0, 1, false},
         {"header: 268435457 particles of type 0", 0, (1u << 28) + 1, -1, 0, 1, 0, 1, false},
         {"of type 5, of mass nan", -1, 0, 5, (double)NAN, 1, 0, 1, false},
         {"of type 0, of mass -1", -1, 0, 0, -1, 1, 0, 1, false},
@@ -198,7 +201,8 @@ TEST(inferred_blocks)
                 {RHO, 0.45, false},   {RHO, -1, false},   {U, -1, false},      {U, 0, false},
                 {MASS, -1, false},    {MASS, 1.9, true},  {MASS, 2.1, false},  {MASS, 0.55, true},
                 {MASS, 0.45, false},  {HSML, 14.9, true}, {HSML, 15.1, false}, {HSML, 0.151, true},
-                {HSML, 0.149, false}, {HSML, -1, false},  {U, 1e31, false},    {U, 1e-31, false}};
+                {HSML, 0.149, false}, {HSML, -1, false},  {U, 1e31, false},    {U, 1e-31, false},
+                {U, 1e29, true},      {U, 1e-29, true}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         for (int dim = 1; dim <= 3; dim++) {
             struct binary b = made(dim);

@@ -126,6 +126,17 @@ TEST(boxes)
         for (int d = 0; d < 3; d++) assert_true(file.box[d] == rows[k].wanted[d]);
         snapshot_file_free(&file);
     }
+    for (int n = 2; n <= 3; n++) { /* the sides of our own initial states, all three */
+        items_of(&layouts[0], items);
+        item_called(items, "Header/BoxSize")->rank = 0;
+        item_called(items, "Header/BoxSize")->values[0] = 20;
+        items[layouts[0].count] =
+            (struct item){"Header/Sides", true, F64, 1, {(hsize_t)n}, false, {20, 5, 3}, "", 0};
+        struct snapshot_file file = file_of(items, layouts[0].count + 1, "sides");
+        assert_true(file.box[0] == 20 && file.box[1] == (n < 3 ? 20 : 5) &&
+                    file.box[2] == (n < 3 ? 20 : 3));
+        snapshot_file_free(&file);
+    }
     static const struct {
         int at;
         double value;

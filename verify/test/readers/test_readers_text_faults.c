@@ -310,7 +310,9 @@ TEST(legacy_vtk)
         {ASCII "POINTS 1.5 double\n1 2 3\n", "allowed: one set of points, not POINTS"},
         {ASCII "POINTS 4000000000 double\n", "allowed: one set of points, not POINTS"},
         {ASCII "POINTS -1 double\n", "allowed: one set of points, not POINTS"},
+        {ASCII "POINTS 200000000 double\n", "allowed: one set of points, not POINTS"},
         {HEAD "BINARY\nPOINTS 3 double", "is cut off in POINTS"},
+        {HEAD "BINARY\nPOINTS 3 double\n12345678", "is cut off in POINTS"},
         {ASCII "POINTS 3 real\n1 2 3\n", "numbers of an unknown type: real"},
         {ASCII "POINTS 2 double\n1 2 3 4 5\n",
          "is cut off, or has no number where one is due, in POINTS"},
@@ -345,8 +347,8 @@ TEST(legacy_vtk)
         {THREE "CELL_TYPES 3\n1 1\n", "is cut off, or has no number where one is due, in cells"},
         {ASCII "FIELD a 1\nTimeValue 1 1 word\n1\n", "numbers of an unknown type: word"},
         {THREE "a_word_of_so_many_letters_that_no_name_of_an_array_has_room_for_it_in_what_this_"
-               "reader_keeps_of_it_and_of_which_the_message_has_the_first_sixty\n",
-         "an unknown word: a_word_of_so_many_letters_that_no_name_of_an_array_has_room_"}};
+               "reader_keeps_of_it_and_of_which_the_message_has_the_first_63\n",
+         "an unknown word: a_word_of_so_many_letters_that_no_name_of_an_array_has_room_for"}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct snapshot_file file;
         struct error error = {0};
