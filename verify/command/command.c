@@ -151,11 +151,10 @@ static enum status join(struct line *line, const char **slot, const char *value,
 }
 
 /* Takes the option at argv[*i]; moves *i to its last word. */
-static enum status take_option(struct line *line, int argc, char **argv, int *i,
-                               struct error *error)
+static enum status take_option(struct line *line, char **argv, int *i, struct error *error)
 {
     const char *word = strcmp(argv[*i], "-h") == 0 ? "--help" : argv[*i];
-    const char *next = *i + 1 < argc ? argv[*i + 1] : NULL;
+    const char *next = argv[*i + 1]; /* NULL after the last */
     if (word[1] != '-') return unknown_option(&line->options, word, next, error);
     const size_t length = strcspn(word + 2, "=");
     const struct command *command = line->options.command;
@@ -169,7 +168,7 @@ static enum status take_option(struct line *line, int argc, char **argv, int *i,
         value = "";
     } else if (!value) {
         const bool dashes = strcmp(option->argument, COMMAND_OPTIONS) == 0;
-        if (*i + 1 >= argc || (!dashes && strncmp(argv[*i + 1], "--", 2) == 0))
+        if (!next || (!dashes && strncmp(next, "--", 2) == 0))
             return error_set(error, STATUS_BAD_INPUT, "--%s needs an argument: --%s %s",
                              option->name, option->name, option->argument);
         value = argv[++*i];
@@ -212,7 +211,7 @@ static enum status parse(struct line *line, int argc, char **argv, struct error 
         else if (!options_end && strcmp(word, "--") == 0)
             options_end = 1;
         else if (!options_end && word[0] == '-' && word[1] && !text_real(word, &number))
-            status = take_option(line, argc, argv, &i, error);
+            status = take_option(line, argv, &i, error);
         else if (!line->options.command)
             status = find_command(word, &line->options, error);
         else

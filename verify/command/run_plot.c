@@ -66,7 +66,7 @@ static enum field main_field(const struct run_settings *settings)
 static double *profile_errors(const struct plot_series *particles, const struct run_result *result,
                               enum field field)
 {
-    double *off = malloc((particles->n + 1) * sizeof *off);
+    double *off = malloc(particles->n * sizeof *off);
     for (size_t i = 0; off && i < particles->n; i++) {
         struct problem_state state;
         problem_sample(&result->problem, (double[3]){particles->x[i]}, result->time, &state);
@@ -222,10 +222,10 @@ static bool scatter_fill(struct scatter *scatter, const struct run_result *resul
         struct plot_series *one = &scatter->series[s];
         one->x = value_numbers(json_object_get(from[s], "x"), &one->n);
         one->y = value_numbers(json_object_get(from[s], name), &one->n);
-        there = there && one->x && one->y; /* of equal lengths */
+        there = there && one->y; /* as many as x */
     }
     snprintf(scatter->label, sizeof scatter->label, "%s%s", name,
-             field == FIELD_VELOCITY && name != names[field] ? " velocity" : "");
+             name != names[field] ? " velocity" : "");
     scatter->over = !strcmp(value_text(profile, "over"), "R") ? "distance from the middle [length]"
                                                               : "x [length]";
     json_decref(profile);
