@@ -152,7 +152,7 @@ static void print_one(const struct judged *judged, const struct table_style *sty
         printf(" %s %.3g", regions->names[k], r->budget.l1[k][FIELD_DENSITY]);
     if (regions) printf("\n");
     if (judged->file.dim > 1)
-        printf("noise across the flow: %s\n", cell(text[0], judged->transverse));
+        printf("noise across the flow: %s\n", cell(*text, judged->transverse));
     if (r->suspicion[0]) printf("suspicious: %s\n", r->suspicion);
     printf("\n%s%s%s\n\n", judged->foreign ? style->bad : style->bold, judged->verdict, style->end);
 }

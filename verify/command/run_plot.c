@@ -234,8 +234,8 @@ static bool scatter_fill(struct scatter *scatter, const struct run_result *resul
 
 static bool has_void(const double *z, size_t cells)
 {
-    for (size_t c = 0; c < cells; c++)
-        if (!isfinite(z[c])) return true;
+    while (cells--)
+        if (!isfinite(*z++)) return true;
     return false;
 }
 
