@@ -315,7 +315,7 @@ static void read_marks(struct curves *curves, const json_t *changes, const char 
 static void plot_trend(struct page_writer *writer, const char *case_name, struct curves *curves)
 {
     struct plot_series series[2][PAGE_SCHEMES];
-    char name[96], title[256], error[64];
+    char name[96], title[128], caption[256], error[64];
     snprintf(error, sizeof error, "L1 of %.40s", curves->field);
     for (size_t k = 0; k < curves->count; k++)
         for (int panel = 0; panel < 2; panel++)
@@ -343,11 +343,11 @@ static void plot_trend(struct page_writer *writer, const char *case_name, struct
     page_plot_name(name, sizeof name, case_name, "trend");
     snprintf(title, sizeof title, "Error and order of %.80s over the nights", case_name);
     const struct plot plot = {.name = name, .title = title, .panels = panels, .panel_count = 2};
-    snprintf(title, sizeof title,
+    snprintf(caption, sizeof caption,
              "%.80s: finest level's error and the order; the last night is this one, lines stand "
              "where something moved.",
              case_name);
-    page_plot(writer, &plot, title);
+    page_plot(writer, &plot, caption);
 }
 
 static void plot_trends(struct page_writer *writer, const json_t *history, size_t nights)

@@ -9,14 +9,20 @@
 #include "list.h"
 #include "style.h"
 
+/* Writes a string on one line; doubles this character. */
+static void line(struct buffer *to, const char *string, char doubled)
+{
+    for (const char *c = string ? string : ""; *c; c++) {
+        if (*c == doubled) buffer_add_bytes(to, c, 1);
+        buffer_add_bytes(to, (unsigned char)*c < ' ' ? " " : c, 1);
+    }
+}
+
 /* Writes a string in single quotes, in which gnuplot interprets nothing; a quote is doubled. */
 static void quote(struct buffer *to, const char *string)
 {
     buffer_add(to, "'");
-    for (const char *c = string ? string : ""; *c; c++) {
-        if (*c == '\'') buffer_add(to, "'");
-        buffer_add_bytes(to, (unsigned char)*c < ' ' ? " " : c, 1);
-    }
+    line(to, string, '\'');
     buffer_add(to, "'");
 }
 
@@ -54,8 +60,7 @@ void script_data(struct buffer *to, const struct plot *plot)
             const struct plot_series *series = &panel->series[k];
             const bool filled = series->kind == PLOT_BAND || series->kind == PLOT_BARS;
             buffer_format(to, "# x y%s: ", filled ? " low high" : "");
-            for (const char *c = series->label ? series->label : ""; *c; c++)
-                buffer_add_bytes(to, (unsigned char)*c < ' ' ? " " : c, 1);
+            line(to, series->label, '\0');
             buffer_add(to, "\n");
             for (size_t i = 0; i < series->n; i++) {
                 number(to, series->x[i]);
@@ -377,6 +382,9 @@ void script_make(struct buffer *to, const struct plot *plot, enum script_termina
 {
     struct layout layout;
     layout_make(&layout, plot);
+    buffer_add(to, "# ");
+    line(to, plot->title, '\0');
+    buffer_add(to, "\n");
     if (terminal == SCRIPT_SVG)
         buffer_format(to, "set terminal svg size %d,%d dynamic noenhanced font 'sans-serif,%d'\n",
                       layout.width, layout.height, LAYOUT_FONT);

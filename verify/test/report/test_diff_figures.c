@@ -125,6 +125,10 @@ TEST(limits)
         {METRIC_EXACT, 7.5, 4, 0, 0, 1, 3, VERDICT_BETTER, 0},
         {METRIC_TIMING, 2, 3, 1.5, 0, 0, 0, VERDICT_WORSE, 1.5},
         {METRIC_TIMING, 3, 2, 1.5, 0, 0, 0, VERDICT_BETTER, 0},
+        {METRIC_TIMING, 2, 2.5, 1.5, 0, 0, 0, VERDICT_SAME, 0},
+        {METRIC_TIMING, 2.5, 2, 1.5, 0, 0, 0, VERDICT_SAME, 0},
+        {METRIC_TIMING, 0.01, 0.029, 1.5, 0, 0, 0, VERDICT_SAME, 0},
+        {METRIC_TIMING, 0.01, 0.031, 1.5, 0, 0, 0, VERDICT_WORSE, 0.031 / 0.01},
         {METRIC_ORDER, 2, 1.375, 0.375, 0.5, 0, 0, VERDICT_SAME, 0},
         {METRIC_ORDER, 2, 1.25, 0.375, 0.5, 0, 0, VERDICT_WORSE, 0.75},
         {METRIC_NEUTRAL, -2, -1, 0.5, 0, 0, 0, VERDICT_SAME, 0},
@@ -150,6 +154,34 @@ TEST(limits)
     const struct metric nan = {.kind = METRIC_PART, .value = NAN};
     assert_true(metric_worse(&nan, &number) && !metric_worse(&number, &nan));
     assert_false(metric_worse(&nan, &nan));
+}
+
+/* Words by rising severity; those of a row are equal. */
+TEST(severity_of_words)
+{
+    static const char *const rows[][8] = {
+        {"", "pass", "ok", "true", "asymptotic"},
+        {"none", "skip", "oscillating", "floor-limited", "pre-asymptotic", "smoke", "undetermined"},
+        {"diverging"},
+        {"fail", "false"},
+        {"inaccurate"},
+        {"broke_down"},
+        {"wrong"}};
+    enum { ROWS = sizeof rows / sizeof *rows };
+    for (size_t a = 0; a < 8 * ROWS; a++)
+        for (size_t b = 0; b < 8 * ROWS; b++) {
+            const char *const words[] = {rows[a / 8][a % 8], rows[b / 8][b % 8]};
+            if (!words[0] || !words[1]) continue;
+            const struct metric one = {.path = "outcome", .word = (char *)words[0]},
+                                other = {.path = "outcome", .word = (char *)words[1]};
+            double amount;
+            bool fault;
+            assert_int_equal(metric_worse(&one, &other), a / 8 > b / 8);
+            assert_int_equal(metric_judge(&one, &other, &amount, &fault),
+                             a / 8 == b / 8  ? VERDICT_SAME
+                             : a / 8 > b / 8 ? VERDICT_BETTER
+                                             : VERDICT_WORSE);
+        }
 }
 
 /* Errors are not below 0, other figures may be. */

@@ -400,6 +400,17 @@ TEST(persistent_program)
     assert_int_equal(open_files(&above), files);
     assert_int_equal(kill(last, 0), -1);
     fclose(file);
+    /* one that would go on */
+    char goes_on[] = "read -r a; echo end; exec sleep 50";
+    char *const asked_once[] = {sh, c, goes_on, NULL};
+    struct buffer output = {0};
+    const time_t before = time(NULL);
+    assert_int_equal(process_ask(&process, asked_once, -1, "1\n", 2, "end\n", 60, &output, message,
+                                 sizeof message),
+                     PROCESS_OK);
+    process_end(&process);
+    assert_true(time(NULL) - before < 20);
+    buffer_free(&output);
 }
 
 /* One gnuplot for many plots draws the same as one for each plot; a plot that fails does not affect
