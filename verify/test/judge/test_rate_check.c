@@ -403,6 +403,7 @@ TEST(each_choice_is_named)
         {"eta=2.8", "eta=1.4", "h", "eta: theirs is half of ours (h is the support radius here)"},
         {"eta=1.4", "eta=2.8", "h", "eta: theirs is twice ours (h is the support radius here)"},
         {"", "eta=2.75", "h", "eta: theirs is 2.75"},
+        {"", "eta=2.4001", "h", "eta: theirs is 2.4001"},
         {"", "kernel=wendland_c6", "h", "kernel: theirs is wendland_c6"},
         {"kernel=cubic_spline", "kernel=sinc", "rho", "kernel: theirs is sinc"},
         {"", "kernel=quartic_spline eta=2.6", "ax",
