@@ -177,7 +177,7 @@ static enum status take_array(struct dump *dump, int kind, struct snapshot_file 
 static enum status read_arrays(struct dump *dump, struct snapshot_file *file, double **types,
                                struct error *error)
 {
-    struct fortran_record groups, lengths = {NULL, 0}, first = {NULL, 0};
+    struct fortran_record groups, lengths = {0}, first = {0};
     if (next(dump, 4, "the number of groups of arrays", &groups, error)) return error->status;
     const double n = fortran_integer(groups.bytes, 4, dump->swapped);
     for (double k = 0; k < n; k++) {

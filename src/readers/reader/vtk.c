@@ -271,7 +271,7 @@ static enum status read_vtk(const struct snapshot_source *source,
     while (*next_word(&vtk, word) && (part != POINTS || strcmp(word, "CELL_DATA")))
         if (!take_section(&vtk, word, &part, file)) return error->status;
     if (!file->n) {
-        refuse(&vtk, "has no POINTS", "");
+        refuse(&vtk, "has no ", "POINTS");
         return error->status;
     }
     snprintf(file->code, sizeof file->code, "unknown");

@@ -309,12 +309,12 @@ static bool take_field(const struct vtk *vtk, const struct tag *tag, const struc
         struct snapshot_value *value; /* NULL: another number */
         char *text;                   /* NULL: numbers */
         size_t room;
-    } known[] = {{"TimeValue", &file->time, NULL, 0},
-                 {"TIME", &file->time, NULL, 0},
-                 {"time", &file->time, NULL, 0},
-                 {"gamma", &file->gamma, NULL, 0},
-                 {"ndims", NULL, NULL, 0},
-                 {"box", NULL, NULL, 0},
+    } known[] = {{.name = "TimeValue", .value = &file->time},
+                 {.name = "TIME", .value = &file->time},
+                 {.name = "time", .value = &file->time},
+                 {.name = "gamma", .value = &file->gamma},
+                 {.name = "ndims"},
+                 {.name = "box"},
                  {"case", NULL, file->case_name, sizeof file->case_name},
                  {"keys", NULL, file->keys, sizeof file->keys},
                  {"boundary", NULL, file->boundary, sizeof file->boundary}};

@@ -41,6 +41,11 @@ TEST(every_form)
     is_read(&b, "without widths");
     b.there[ID] = false;
     is_read(&b, "without numbers of particles");
+    struct snapshot_file file; /* what stands behind the densities is too long for widths */
+    struct error error;
+    if (read_bytes(put_block(put_all(&b), &b, ACCE), &file, &error)) fail_msg("%s", error.message);
+    assert_true(file.column[SNAPSHOT_RHO] && !file.column[SNAPSHOT_H] && !file.column[SNAPSHOT_AX]);
+    snapshot_file_free(&file);
 }
 
 TEST(missing_blocks)
@@ -287,12 +292,12 @@ TEST(records)
     b = made(1);               /* a message names as many blocks as it has room for */
     b.there[MASS] = b.there[RHO] = false, b.extra = 40;
     char names[300] = "no block 'RHO '; it has: 'POS ' 'VEL ' 'ID  '";
-    for (int k = 3; k < 28; k++) strcat(names, k == 3 ? " 'M  E'" : " 'MINE'");
+    for (int k = 3; k < 28; k++) strcat(names, k == 3 ? " 'M  ~'" : " 'MINE'");
     for (int t = 0; t < TYPES; t++) b.table[t] = 1;
     size = put_all(&b);
     unsigned char *mine = bytes;
     while (memcmp(mine, "MINE", 4) != 0) mine++;
-    mine[1] = 127, mine[2] = 1; /* no letters */
+    mine[1] = 127, mine[2] = 1, mine[3] = '~'; /* the first two are no letters */
     assert_int_equal(read_bytes(size, &file, &error), STATUS_BAD_INPUT);
     const char *block = strstr(error.message, "no block");
     assert_string_equal(block ? block : error.message, names);

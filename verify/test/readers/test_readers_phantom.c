@@ -279,7 +279,7 @@ TEST(missing_items)
     }
     for (int a = X; a <= H; a++) { /* integers of this name are no such array */
         struct dump d = made();
-        d.kind[a] = 3;
+        d.kind[a] = 3 + a % 2;
         refuses(put_all(&d), "need real arrays x, y, z and h; they have: itype ");
     }
     for (int k = 0; k < 4; k++) {

@@ -58,27 +58,35 @@ static size_t put(const struct document *d, unsigned char *to, const void *numbe
     return size;
 }
 
+/* Base64 of n bytes. Returns its length. */
+static size_t encode(const unsigned char *bytes, size_t n, char *to)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    size_t made = 0;
+    for (size_t k = 0; k < n; k += 3) {
+        unsigned word = 0;
+        for (size_t j = k; j < k + 3; j++) word = word << 8 | (j < n ? bytes[j] : 0u);
+        for (size_t j = 0; j < 4; j++)
+            to[made++] = k + j > n ? '=' : digits[word >> (18 - 6 * j) & 63];
+    }
+    return made;
+}
+
 /* An array as in the file: the number of bytes, then the bytes. Returns the length. */
 static size_t packed(const struct document *d, int a, bool base64, char *to)
 {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     unsigned char bytes[BYTES_MAX / 2] = {0};
     const size_t numbers = arrays[a].components * ROWS;
     const uint64_t large = numbers * (d->single ? 4 : 8);
     const uint32_t small = (uint32_t)large;
-    size_t n = d->wide ? put(d, bytes, &large, 8) : put(d, bytes, &small, 4), made = 0;
+    size_t n = d->wide ? put(d, bytes, &large, 8) : put(d, bytes, &small, 4);
     for (size_t i = 0; i < numbers; i++) {
         const float half = (float)d->value[a][i];
         n += d->single ? put(d, bytes + n, &half, 4) : put(d, bytes + n, &d->value[a][i], 8);
     }
-    if (!base64) memcpy(to, bytes, n);
-    for (size_t k = 0; base64 && k < n; k += 3)
-        for (int digit = 0; digit < 4; digit++) {
-            const unsigned word =
-                (unsigned)bytes[k] << 16 | (unsigned)bytes[k + 1] << 8 | bytes[k + 2];
-            to[made++] = k + (size_t)digit > n ? '=' : digits[word >> (18 - 6 * digit) & 63];
-        }
-    return base64 ? made : n;
+    if (base64) return encode(bytes, n, to);
+    memcpy(to, bytes, n);
+    return n;
 }
 
 static void attribute(struct document *d, const char *name, const char *value)
@@ -176,6 +184,7 @@ TEST(every_form)
                                 d.value[a][i * arrays[a].components + c]);
         assert_true(file.time.known && file.time.value == 0.25);
         assert_true(file.gamma.known && file.gamma.value == 1.5);
+        noted(&file, "gamma", "in the file", "its field gamma");
         const bool boxed = d.ends % 2 == 0;
         assert_true(file.boxed == boxed && file.placed == boxed);
         for (int a = 0; a < 3 && boxed; a++) {
@@ -193,21 +202,23 @@ TEST(every_form)
 
 /* ---- forms that are written by hand ---- */
 
-/* Four particles whose array du is appended with an encoding; the other arrays are text. */
-static void reads_appended(const char *attributes, const char *type, const void *bytes, size_t size,
-                           const double *du)
+/* Four particles whose array du is appended, as it is or, with a head > 0, as base64 of so many
+ * bytes and of the rest; the other arrays are text. */
+static void reads_appended(const char *attributes, const char *type, const unsigned char *bytes,
+                           size_t size, size_t head, const double *du)
 {
-    char text[2000];
+    char text[4000];
     const char *array = "<DataArray type=\"Float64\" format=\"ascii\" Name=";
     int n = snprintf(text, sizeof text,
                      "<VTKFile %s><Piece NumberOfPoints=\"4\">\n<Points>%s\"p\">0 1 2 3"
                      "</DataArray></Points><PointData>%s\"v\">1 1 1 1</DataArray>%s\"m\">1 1 1 1"
                      "</DataArray>%s\"rho\">1 1 1 1</DataArray><DataArray type=\"%s\" Name=\"du\" "
                      "format=\"appended\" offset=\"0\"/></PointData></Piece>\n"
-                     "<AppendedData encoding=\"raw\"> < _",
-                     attributes, array, array, array, array, type);
-    memcpy(text + n, bytes, size);
-    const size_t length = (size_t)n + size;
+                     "<AppendedData encoding=\"%s\"> < _",
+                     attributes, array, array, array, array, type, head ? "base64" : "raw");
+    size_t length = (size_t)n + (head ? encode(bytes, head, text + n) : 0);
+    if (head) length += encode(bytes + head, size - head, text + length);
+    if (!head) memcpy(text + n, bytes, size), length += size;
     strcpy(text + length, "</AppendedData></VTKFile>");
     if (!du) {
         refuses(text, length + 25, NULL, "the array 'du' is cut off or damaged; its points need 4");
@@ -238,7 +249,7 @@ TEST(types_of_numbers)
             for (size_t i = 1; i < 4; i++) bytes[4 + i * width + (big ? width - 1 : 0)] = 5;
             const double all = types[k].all_set, du[] = {all, 5, 5, 5};
             reads_appended(big ? "byte_order='BigEndian'" : "byte_order='LittleEndian'",
-                           types[k].name, bytes, 4 + 4 * width, du);
+                           types[k].name, bytes, 4 + 4 * width, 0, du);
         }
 }
 
@@ -258,7 +269,8 @@ TEST(compressed_blocks)
         {2, 24, 0, 0, -8, 0, true},   {2, 24, -1, 0, 0, 0, true}, {2, 24, 31, 0, 0, 0, true},
         {2, 24, 0, 0, 0, 1000, true}, {2, 24, 0, 0, 0, -1, true}, {3, 16, 0, 0, 0, 0, true}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
-        for (int wide = 0; wide < 2; wide++) {
+        for (int form = 0; form < 4; form++) {
+            const bool wide = form % 2;
             unsigned char bytes[1400] = {0}, *at = bytes, packed[1000];
             size_t all = 0;
             uint64_t head[40] = {rows[k].blocks, rows[k].size, 32 % rows[k].size};
@@ -279,7 +291,7 @@ TEST(compressed_blocks)
             reads_appended(wide ? "compressor='vtkZLibDataCompressor' header_type='UInt64'"
                                 : "compressor='vtkZLibDataCompressor'",
                            "Float64", bytes, (size_t)(at - bytes) + all,
-                           rows[k].refused ? NULL : du);
+                           form / 2 ? (size_t)(at - bytes) : 0, rows[k].refused ? NULL : du);
         }
 }
 #endif
@@ -322,7 +334,11 @@ static const struct {
     {TEXT, "ascii\">3<", "ascii\">2<", "says that it has 2 dimensions"},
     {TEXT, "Components=\"3\"", "Components=\"10\"", "has no y"}, /* as one */
     {TEXT, "Components=\"3\"", "Components=\"0\"", "has no y"},
+    {TEXT, "Components=\"3\"", "Components=\"4\"", "no x; found"},
     {TEXT, "Components=\"3\"", "Components=\"9\"", "no x; found"},
+    {TEXT, "\"case\" NumberOfComponents=\"9\"",
+     "\"case\" NumberOfTuples=\"200\" NumberOfComponents=\"9\"",
+     "'case' has 200 x 9 numbers; allowed: 1 to 1200"},
     {TEXT, "\"box\" NumberOfTuples=\"6\"", "\"box\" NumberOfTuples=\"0\"",
      "'box' has 0 x 1 numbers; allowed: 1 to"},
     {TEXT, "\"box\" NumberOfTuples=\"6\"", "\"box\" NumberOfTuples=\"1200\"",
@@ -397,6 +413,13 @@ TEST(limits)
             "format='appended' offset='%d'/></Points></Piece><AppendedData encoding='raw'>_"
             "</AppendedData></VTKFile>",
             25 + k % 2);
+        struct snapshot_file file; /* the error of another file is overwritten */
+        struct error error = {.status = STATUS_ENVIRONMENT, .message = "old"};
+        const struct snapshot_options plain = {0};
+        put_bytes("a.txt", text, n);
+        assert_int_equal(snapshot_read(path_of("a.txt"), &plain, &file, &error), STATUS_BAD_INPUT);
+        assert_null(strstr(error.message, "old"));
+        snapshot_file_free(&file);
         refuses(text, n, NULL,
                 k % 2 ? "'p' has the offset '26'; allowed: 0 to 25" : "'p' is cut off or damaged");
     }
