@@ -12,7 +12,7 @@
 #include "plugin_kernel.h"
 #include "text.h"
 
-enum { SINC_ORDER = 5 };
+enum { SINC_ORDER = 5, JUDGE_FEWEST = 8 }; /* fewest particles that have a median */
 
 /* A median error above this fraction of the range of the exact values is not caused by jumps. */
 #define JUDGE_FOREIGN       0.06
@@ -241,7 +241,8 @@ static enum status measure_sums(struct judged *judged, struct error *error)
                : STATUS_OK;
 }
 
-/* Rms velocity across x in planar flows, in the radial direction in circular ones. */
+/* Rms velocity across x in planar flows, in the radial direction in circular ones. NaN if the
+ * window has no particles. */
 static double measure_noise(const struct judged *judged)
 {
     const struct prepared *p = &judged->run.problem;
@@ -256,7 +257,7 @@ static double measure_noise(const struct judged *judged)
         for (int d = 1; d < p->domain.dim; d++) sum += s->volume[i] * s->v[d][i] * s->v[d][i];
         volume += s->volume[i];
     }
-    return volume > 0 ? sqrt(sum / volume) : (double)NAN;
+    return sqrt(sum / volume);
 }
 
 /* For a growing mode one snapshot gives the mean growth rate since the start, where the amplitude
@@ -370,13 +371,13 @@ static double median_error(const struct judged *judged, int f, double *errors, d
         *range = fmax(most - least, (varies ? 0.2 : 0.5) * size);
         if (f == FIELD_VELOCITY && *range == 0) *range = sound;
         if (f == FIELD_PRESSURE || f == FIELD_INTERNAL_ENERGY) *range = fmax(*range, 0.1 * motion);
-        if (n < 8 && judged->run.problem.problem->regions)
-            return 0; /* too few particles to judge */
-        if (n < 8) continue;
-        list_sort(errors, n);
-        return errors[n / 2] / *range;
+        if (n >= JUDGE_FEWEST) {
+            list_sort(errors, n);
+            return errors[n / 2] / *range;
+        }
+        if (judged->run.problem.problem->regions) break;
     }
-    return 0;
+    return 0; /* too few particles to judge */
 }
 
 /* Error of a functional over its bound; above 1 it is far off. The value of mode_error is its

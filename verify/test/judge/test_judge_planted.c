@@ -579,3 +579,62 @@ TEST(limits_for_modes)
         judge_free(&judged);
     }
 }
+
+/* A median needs eight particles of the window that the flow has changed; the mean error counts a
+ * third of it. */
+TEST(fewest_particles_of_a_median)
+{
+    for (int k = 0; k < 4; k++) {
+        const int few = k < 2 ? 7 : 8;
+        const double error = k % 2 ? 0.03 : 0;
+        struct judge_request request = {.case_name = "sod", .time = {true, 0.1}, .kernel = -1};
+        const struct run run = keyed_run("sod", "");
+        double least = INFINITY, most = 0;
+        plant(1, -1, "# box = -1:1\n# boundary = periodic\n");
+        gas.has_P = true;
+        for (int i = 0; i < N; i++) {
+            struct problem_state s;
+            /* in the rarefaction; the others lie beyond the window */
+            gas.x[0][i] = i < few ? -0.1 + 0.08 * (i + 0.5) / few : -0.9 + 0.3 * i / N;
+            problem_sample(&run.problem, (double[3]){gas.x[0][i]}, 0.1, &s);
+            gas.rho[i] = s.rho + (i < few ? error : 0), gas.v[0][i] = s.v[0];
+            gas.P[i] = s.P, gas.u[i] = s.u, gas.m[i] = 1e-6 * gas.rho[i];
+            if (i < few) least = fmin(least, s.rho), most = fmax(most, s.rho);
+        }
+        struct judged judged = judges(&request);
+        const double range = fmax(most - least, 0.2 * most);
+        if (error > 0)
+            near_relative(judged.wrong, (few < 8 ? 0.3 : 1) * error / range, 1e-6);
+        else
+            near_absolute(judged.wrong, 0, 1e-12);
+        judge_free(&judged);
+    }
+}
+
+/* A field that varies by more than rounding has at least a fifth of its value as range, a uniform
+ * one half of it. */
+TEST(fields_that_hardly_vary)
+{
+    static const double amplitudes[] = {1e-7, 1e-11};
+    for (int k = 0; k < 2; k++) {
+        struct judge_request request = {.kernel = -1};
+        char keys[40];
+        snprintf(keys, sizeof keys, "amplitude=%g", amplitudes[k]);
+        const struct run run = keyed_run("sound_wave", keys);
+        plant(1, 0, "");
+        snprintf(gas.head, sizeof gas.head,
+                 "# case = sound_wave\n# keys = %s\n# time = 0.1\n# box = 1\n", keys);
+        gas.has_P = true;
+        for (int i = 0; i < N; i++) {
+            struct problem_state s;
+            gas.x[0][i] = (i + 0.5) / N;
+            problem_sample(&run.problem, (double[3]){gas.x[0][i]}, 0.1, &s);
+            gas.rho[i] = s.rho * 1.05, gas.v[0][i] = s.v[0], gas.P[i] = s.P, gas.u[i] = s.u;
+            gas.m[i] = s.rho / N;
+        }
+        struct judged judged = judges(&request);
+        assert_int_equal(judged.wrong_field, FIELD_DENSITY);
+        near_relative(judged.wrong, 0.05 / (k ? 0.5 : 0.2), 1e-6);
+        judge_free(&judged);
+    }
+}
