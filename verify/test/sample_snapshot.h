@@ -16,6 +16,7 @@ struct planted {
     bool has_u, has_P, has_h;
     double x[3][N], v[3][N], m[N], rho[N], u[N], P[N], h[N];
     int others; /* number of particles in the last rows that are not gas */
+    int digits; /* of all but positions; 0: all */
 };
 
 static struct planted gas;
@@ -36,6 +37,7 @@ static inline void plant(int dim, double lo, const char *head)
 static inline char *put(const char *name)
 {
     char *path = path_of(name);
+    const int digits = gas.digits ? gas.digits : 17;
     FILE *out = fopen(path, "w");
     assert_non_null(out);
     fprintf(out, "%s", gas.head);
@@ -43,12 +45,13 @@ static inline char *put(const char *name)
     fprintf(out, "m%s%s%s,rho%s\n", gas.has_u ? ",u" : "", gas.has_P ? ",P" : "",
             gas.has_h ? ",h" : "", gas.others ? ",itype" : "");
     for (int i = 0; i < N; i++) {
-        for (int d = 0; d < gas.dim; d++) fprintf(out, "%.17g,%.17g,", gas.x[d][i], gas.v[d][i]);
-        fprintf(out, "%.17g", gas.m[i]);
-        if (gas.has_u) fprintf(out, ",%.17g", gas.u[i]);
-        if (gas.has_P) fprintf(out, ",%.17g", gas.P[i]);
-        if (gas.has_h) fprintf(out, ",%.17g", gas.h[i]);
-        fprintf(out, gas.others ? ",%.17g,%d\n" : ",%.17g\n", gas.rho[i],
+        for (int d = 0; d < gas.dim; d++)
+            fprintf(out, "%.17g,%.*g,", gas.x[d][i], digits, gas.v[d][i]);
+        fprintf(out, "%.*g", digits, gas.m[i]);
+        if (gas.has_u) fprintf(out, ",%.*g", digits, gas.u[i]);
+        if (gas.has_P) fprintf(out, ",%.*g", digits, gas.P[i]);
+        if (gas.has_h) fprintf(out, ",%.*g", digits, gas.h[i]);
+        fprintf(out, gas.others ? ",%.*g,%d\n" : ",%.*g\n", digits, gas.rho[i],
                 i < N - gas.others ? 1 : 2);
     }
     fclose(out);

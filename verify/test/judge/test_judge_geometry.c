@@ -428,6 +428,32 @@ TEST(completed)
     }
 }
 
+/* Fields written with seven digits are meant to 5e-7, and a pressure may be off by eight times
+ * that, however precise the positions are. */
+TEST(digits_as_written)
+{
+    for (int k = 0; k < 4; k++) {
+        const bool above = k % 2;
+        struct judge_request request = uniform_gas();
+        request.left = request.right = "0.7 0 1.1", request.time.value = 0;
+        plant(1, 0, "# box = 2\n");
+        gas.has_P = true, gas.digits = 7;
+        for (int i = 0; i < N; i++) {
+            gas.m[i] = 1.4 / N, gas.rho[i] = 0.7, gas.u[i] = 1.1 / (0.4 * gas.rho[i]);
+            gas.P[i] = 1.1;
+        }
+        gas.P[k < 2 ? 0 : N - 1] *= 1 - (above ? 4.3e-6 : 3.7e-6);
+        struct judged judged = judges(&request);
+        assert_string_equal(note(&judged, "pressure")->value,
+                            above ? "as stored" : "(gamma - 1) rho u");
+        assert_string_equal(note(&judged, "precision")->value, "7 digits");
+        assert_string_equal(note(&judged, "precision")->evidence,
+                            "as written; nothing below 5e-07 of a value is meant");
+        assert_null(strstr(note(&judged, "start")->evidence, "single precision"));
+        judge_free(&judged);
+    }
+}
+
 TEST(options_without_effect)
 {
     struct judge_request request = uniform_gas();
