@@ -111,18 +111,15 @@ static void find_meant(const char *path, const struct judge_request *request, st
                  judged->file.dim);
     if (!best.name) return;
     if (!best.far) snprintf(judged->meant, sizeof judged->meant, "%s", best.name);
-    int used = snprintf(meant, JUDGE_MEANT,
-                        best.far ? "nearer, though far as well, is %s (" : "did you mean %s? (",
-                        best.name);
-    if (best.fieldless)
-        used += snprintf(meant + used, JUDGE_MEANT - (size_t)used, "its value is the case's");
-    else
-        used += snprintf(meant + used, JUDGE_MEANT - (size_t)used, "%s off by %.2g of its range",
-                         field_family.members[best.field]->name, best.wrong);
+    char how[80] = "its value is the case's", here[40] = "";
+    if (!best.fieldless)
+        snprintf(how, sizeof how, "%s off by %.2g of its range",
+                 field_family.members[best.field]->name, best.wrong);
     if (fields && !best.fieldless)
-        used += snprintf(meant + used, JUDGE_MEANT - (size_t)used, ", against %.2g here",
-                         judged->wrong);
-    snprintf(meant + used, JUDGE_MEANT - (size_t)used, ")");
+        snprintf(here, sizeof here, ", against %.2g here", judged->wrong);
+    snprintf(meant, JUDGE_MEANT,
+             best.far ? "nearer, though far as well, is %s (%s%s)" : "did you mean %s? (%s%s)",
+             best.name, how, here);
 }
 
 static void append(char *text, size_t size, const char *meant)
