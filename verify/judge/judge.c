@@ -570,30 +570,6 @@ static void write_verdict(struct judged *judged)
                       judged->wrong / JUDGE_FOREIGN);
 }
 
-/* True if the field with the best known exact solution can be compared at no particle. */
-static bool window_is_empty(const struct run_result *result)
-{
-    for (int f = 0; f < FIELDS; f++)
-        if (problem_knows(result->problem.problem, (enum field)f))
-            return isnan(result->errors[f].l1);
-    return false;
-}
-
-static enum status refuse_window(const struct judged *judged, struct error *error)
-{
-    const struct settings *settings = &judged->run.settings;
-    const double radius = settings_real(settings, SETTING_window_radius);
-    char window[SETTING_TEXT_MAX];
-    if (radius > 0)
-        snprintf(window, sizeof window, "%.6g about the middle", radius);
-    else
-        settings_text(settings, SETTING_window, window);
-    return error_set(error, STATUS_BAD_INPUT,
-                     "%.200s: no particle lies in the window, %s; allowed: one with particles in "
-                     "it: --window asks for another, --x0 tells where the case is",
-                     judged->path, window);
-}
-
 enum status judge_as(const char *path, const struct judge_request *request, bool glance,
                      struct judged *judged, struct error *error)
 {
@@ -628,9 +604,9 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
                           ? "; --boundary open if the tube has ends"
                           : "");
     }
-    if (!status && window_is_empty(&judged->result)) status = refuse_window(judged, error);
+    if (!status) status = judge_check_window(judged, error);
     if (!status && judged->slab > 0)
-        judged->result.spacing *= sqrt((double)judged->result.n / judged->case_n);
+        judged->result.spacing = cbrt(pow(judged->result.spacing, 2) * judged->slab);
     if (!status) measure_growth(judged);
     if (!status) status = measure_wrong(judged, error);
     if (!status) status = measure_start(judged, glance, error);

@@ -72,6 +72,9 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
 enum status judge_geometry(const struct judge_request *request, struct judged *judged,
                            double period[3], struct error *error);
 
+/* STATUS_BAD_INPUT: no particle lies in the window. */
+enum status judge_check_window(const struct judged *judged, struct error *error);
+
 /* Adds the conserved sums of a snapshot's particles, each moved by `shift`, as a run counts them:
  * no momentum where walls or gravity act. */
 void judge_sum(const struct prepared *problem, const struct snapshot *snapshot,

@@ -513,19 +513,20 @@ enum status judge_geometry(const struct judge_request *given, struct judged *jud
                         ? 0
                         : snapshot_period(&judged->file, d);
     const int dim = judged->file.dim;
-    judged->case_n = (double)judged->file.gas;
+    double number = (double)judged->file.gas; /* in a slab: in one layer, if the spacing is the same
+                                                 in all directions */
+    if (judged->slab > 0)
+        number *= cbrt((box.hi[0] - box.lo[0]) * (box.hi[1] - box.lo[1]) * judged->slab / number) /
+                  judged->slab;
+    judged->case_n = number;
     for (int d = 0; d < dim; d++)
         judged->case_n *=
             (settings_along(settings, SETTING_hi, d) - settings_along(settings, SETTING_lo, d)) /
             (box.hi[d] - box.lo[d]);
-    if (judged->slab > 0) /* number in one layer, if the spacing is the same in all directions */
-        judged->case_n *= cbrt((box.hi[0] - box.lo[0]) * (box.hi[1] - box.lo[1]) * judged->slab /
-                               (double)judged->file.gas) /
-                          judged->slab;
     if (tube && place_tube(request, judged, settings, &box, &period[0], &ended, error))
         return error->status;
     judged->boxed = box.known && !ended && !has_walls(&judged->file);
-    const double n = fmin(1e7, judged->slab > 0 ? round(judged->case_n) : (double)judged->file.gas);
+    const double n = fmin(1e7, round(number));
     if ((!ended && set_window(request, judged, settings, &box, case_hi - case_lo,
                               0.5 * (case_lo + case_hi), error)) ||
         (!settings->file[0] && set_real(judged, settings, SETTING_n, n, error)) ||
@@ -541,4 +542,29 @@ enum status judge_geometry(const struct judge_request *given, struct judged *jud
         return error_set(error, reason.status, "%.200s: %.280s", judged->path, reason.message);
     judged->run.settings.value[SETTING_n].real[0] = n; /* not a key beside a file of particles */
     return STATUS_OK;
+}
+
+/* True if the field with the best known exact solution can be compared at no particle. */
+static bool window_is_empty(const struct run_result *result)
+{
+    for (int f = 0; f < FIELDS; f++)
+        if (problem_knows(result->problem.problem, (enum field)f))
+            return isnan(result->errors[f].l1);
+    return false;
+}
+
+enum status judge_check_window(const struct judged *judged, struct error *error)
+{
+    const struct settings *settings = &judged->run.settings;
+    const double radius = settings_real(settings, SETTING_window_radius);
+    char window[SETTING_TEXT_MAX];
+    if (!window_is_empty(&judged->result)) return STATUS_OK;
+    if (radius > 0)
+        snprintf(window, sizeof window, "%.6g about the middle", radius);
+    else
+        settings_text(settings, SETTING_window, window);
+    return error_set(error, STATUS_BAD_INPUT,
+                     "%.200s: no particle lies in the window, %s; allowed: one with particles in "
+                     "it: --window asks for another, --x0 tells where the case is",
+                     judged->path, window);
 }
