@@ -56,7 +56,7 @@ static void verdict_cell(struct buffer *to, const char *verdict)
 static size_t subject_length(const char *path)
 {
     const char *end = strchr(path, ']');
-    return end ? (size_t)(end - path) + 1 : strcspn(path, ".");
+    return end ? (size_t)(end - path) : strcspn(path, ".");
 }
 
 /* True if one row can represent two entries: of the same subject, verdict and night. */
