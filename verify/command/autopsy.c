@@ -304,8 +304,10 @@ static enum status examine_theirs(const struct options *options, int n, char **a
         status = judge_autopsy(judged, &autopsy.levels[autopsy.count], &used, error);
         if (!status) json_array_append_new(files, describe(judged, &used));
     }
-    autopsy.dim = theirs.count && !status ? theirs.judged[0].file.dim : 0;
-    if (!status) status = autopsy_judge(&autopsy, error);
+    if (!status) {
+        autopsy.dim = theirs.judged->file.dim;
+        status = autopsy_judge(&autopsy, error);
+    }
     if (!status) print_files(options, files, &used);
     if (!status) status = tell(options, &used, &autopsy, json_incref(files), error);
     for (size_t k = 0; theirs.judged && k < theirs.count; k++) judge_free(&theirs.judged[k]);

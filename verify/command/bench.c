@@ -145,7 +145,7 @@ static enum status measure(struct request *request, struct code *code, struct er
 
 static enum status work_precision(struct request *request, struct error *error)
 {
-    struct code code = {.case_count = 0};
+    struct code code = {0};
     const enum status status = measure(request, &code, error);
     code_free(&code);
     return status;

@@ -298,7 +298,7 @@ static enum status converge(const struct options *options, int n, char **argumen
 
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
-    struct code code = {.case_count = 0};
+    struct code code = {0};
     if (n < 1) return command_usage(options, error, "a case is needed (`sphproof list cases`)");
     const enum status status = converge(options, n, arguments, &code, error);
     code_free(&code);

@@ -126,7 +126,7 @@ static enum status take_check(const struct request *r, const struct point_cloud 
                               struct error *error)
 {
     char text[1024];
-    const int shown = (int)(length < 60 ? length : 60);
+    const int shown = (int)fmin((double)length, 60);
     if (length >= sizeof text)
         return error_set(error, STATUS_BAD_INPUT, "gradient: --check is too long");
     memcpy(text, check, length);

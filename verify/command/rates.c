@@ -90,6 +90,11 @@ static enum status take_said(struct request *r, bool boxed, bool bounded, struct
     return STATUS_OK;
 }
 
+static bool is_key(const char *word, size_t length, const char *key)
+{
+    return strlen(key) == length && strncmp(word, key, length) == 0;
+}
+
 /* Takes the keys of the box and leaves others in rest. */
 static enum status take_box(struct request *r, int n, char **arguments, char **rest, int *left,
                             struct error *error)
@@ -101,13 +106,13 @@ static enum status take_box(struct request *r, int n, char **arguments, char **r
         const char *text = strchr(arguments[k], '=');
         const size_t length = text ? (size_t)(text++ - arguments[k]) : 0;
         enum status status = STATUS_OK;
-        if (length == 2 && !strncmp(arguments[k], "lo", 2))
+        if (is_key(arguments[k], length, "lo"))
             status = take_numbers("lo", text, dim, r->setup.lo, error), lo = true;
-        else if (length == 2 && !strncmp(arguments[k], "hi", 2))
+        else if (is_key(arguments[k], length, "hi"))
             status = take_numbers("hi", text, dim, r->setup.hi, error), hi = true;
-        else if (length == 7 && !strncmp(arguments[k], "gravity", 7))
+        else if (is_key(arguments[k], length, "gravity"))
             status = take_numbers("gravity", text, dim, r->setup.gravity, error);
-        else if (length == 8 && !strncmp(arguments[k], "boundary", 8))
+        else if (is_key(arguments[k], length, "boundary"))
             status = take_boundaries(text, dim, r->setup.boundary, error), boundary = true;
         else
             rest[(*left)++] = arguments[k];
