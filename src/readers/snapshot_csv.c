@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "conventions.h"
+#include "text.h"
 
 static enum status scale_widths(struct snapshot_file *file, char why[200], struct error *error)
 {
@@ -28,15 +29,12 @@ static enum status scale_widths(struct snapshot_file *file, char why[200], struc
 enum status snapshot_csv_named(const char *path, struct snapshot_file *said, struct csv *csv,
                                char unknown[200], struct error *error)
 {
-    size_t used = 0;
     unknown[0] = '\0';
     if (csv_read(path, csv, error) || csv_comments(path, said, error)) return error->status;
     for (size_t k = 0; k < csv->columns; k++) {
         const int column = snapshot_column_of(csv->names[k]);
         const char *ours = column < 0 ? NULL : snapshot_column_names[column];
-        if (!ours && used < 200)
-            used += (size_t)snprintf(unknown + used, 200 - used, "%s%s", used ? " " : "",
-                                     csv->names[k]);
+        if (!ours) text_add(unknown, 200, "%s%s", *unknown ? " " : "", csv->names[k]);
         if (!ours || csv_column(csv, ours) >= 0) continue;
         free(csv->names[k]);
         if (!(csv->names[k] = strdup(ours)))
@@ -53,7 +51,7 @@ enum status snapshot_csv(const char *path, struct snapshot_file *file, struct cs
     if (snapshot_read(path, &plain, file, error) || snapshot_check_gas(path, file, error) ||
         scale_widths(file, why, error))
         return error->status;
-    csv->line = calloc(file->gas + 1, sizeof *csv->line);
+    csv->line = calloc(file->gas, sizeof *csv->line);
     if (!csv->line) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
     csv->rows = csv->capacity = file->gas;
     for (size_t i = 0; i < file->gas; i++) csv->line[i] = i + 1;

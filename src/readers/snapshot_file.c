@@ -48,7 +48,7 @@ int snapshot_column_of(const char *name)
     for (; name < end && n + 1 < sizeof plain; name++)
         if (isalnum((unsigned char)*name)) plain[n++] = (char)tolower((unsigned char)*name);
     plain[n] = '\0';
-    for (int c = 0; n && name == end && c < SNAPSHOT_COLUMNS; c++)
+    for (int c = 0; name == end && c < SNAPSHOT_COLUMNS; c++)
         for (const char *word = called[c]; *word; word += strspn(word, " ")) {
             const size_t length = strcspn(word, " ");
             if (length == n && strncmp(word, plain, n) == 0) return c;

@@ -45,7 +45,8 @@ static enum status read(const struct snapshot_source *source,
 {
     struct text_table table = {.source = source, .separator = ' '};
     const char *text = (const char *)source->bytes;
-    size_t at = 0, line = 1, last = 0, last_length = 0;
+    const char *last = text; /* comment */
+    size_t at = 0, line = 1;
     bool time_follows = false;
     while (text[at] == '#') {
         const size_t length = strcspn(text + at, "\n");
@@ -57,11 +58,11 @@ static enum status read(const struct snapshot_source *source,
             if (text_real(word, &number)) file->time = (struct snapshot_value){true, number};
         }
         time_follows = strncmp(text + at, "# time:", 7) == 0;
-        last = at, last_length = length;
+        last = text + at;
         at += length + (text[at + length] == '\n');
         line++;
     }
-    if (take_names(&table, text + last, last_length, error) ||
+    if (take_names(&table, last, strcspn(last, "\n"), error) ||
         text_table_name(&table, options->map, error) ||
         text_table_read(&table, at, line, file, error))
         return error->status;

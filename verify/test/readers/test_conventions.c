@@ -425,6 +425,22 @@ TEST(notes)
     assert_true(snapshot_take_box("2 1", &file) && !file.placed);
     assert_true(file.box[0] == 2 && file.box[1] == 1 && file.box[2] == 7);
     for (int d = 0; d < 3; d++) assert_true(file.corner[d] == 0);
+    static const struct {
+        const char *boundary;
+        double period[3];
+    } rows[] = {{"", {2, 1, 7}},
+                {"periodic", {2, 1, 7}},
+                {"open", {0}},
+                {"periodic open", {2, 0, 0}},
+                {"open periodic", {0, 1, 7}},
+                {"periodic fixed periodic", {2, 0, 7}}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        for (int d = 0; d < 3; d++)
+            for (int known = 0; known < 2; known++) {
+                file.boxed = known;
+                snprintf(file.boundary, sizeof file.boundary, "%s", rows[k].boundary);
+                assert_true(snapshot_period(&file, d) == (known ? rows[k].period[d] : 0));
+            }
     assert_int_equal(snapshot_file_make(&file, SNAPSHOT_X, "a", NULL), STATUS_ENVIRONMENT);
     assert_null(file.column[SNAPSHOT_X]);
 }
