@@ -469,6 +469,7 @@ TEST(positions)
         {1, 0, {0.375, -0.25, 0.125}, 0, 0, false, "all particles of the file are shifted by"},
         {1, 0, {-0.8125, 0.5625, -0.25}, 0, 8, false, "all particles of the file are shifted by"},
         {1, 0, {0.375, 0, 0}, 0, 0, false, "all particles of the file are shifted by"},
+        {2, 0, {0.375, 0.00025, 0.125}, 0, 0, false, "all particles of the file are shifted by"},
         {1, 0, {0.375, -0.25, 0.125}, 2, 0, false, "they are shifted by"},
         {1, 0, {0.375, -0.25, 0.125}, 3, 0, false, "they are shifted by"},
         {1, 0, {0.375, -0.25, 0.125}, 0, 0, true, "all particles of the file are shifted by"},
