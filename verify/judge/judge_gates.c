@@ -133,7 +133,9 @@ static enum status no_such_figure(const json_t *figures, const char *name, struc
                      "--gate %.48s: nothing here is called so; allowed:%s; for l1 also l2 linf "
                      "particle_mean l1_whole%s",
                      name, names,
-                     strncmp(name, "order", 5) ? "" : "; orders need several numbers of particles");
+                     strncmp(name, "order", strlen("order"))
+                         ? ""
+                         : "; orders need several numbers of particles");
 }
 
 static enum status ask(const char *text, const json_t *figures, const char *no_orders,
@@ -154,7 +156,8 @@ static enum status ask(const char *text, const json_t *figures, const char *no_o
         snprintf(name, sizeof name, "%.*s", (int)end, at);
         snprintf(relation, sizeof relation, "%.*s", (int)sign, at + end);
         snprintf(number, sizeof number, "%.*s", (int)(length - end - sign), at + end + sign);
-        const bool least = !strcmp(relation, ">="), order = !strncmp(name, "order.", 6);
+        const bool least = !strcmp(relation, ">="),
+                   order = !strncmp(name, "order.", strlen("order."));
         if (!least && strcmp(relation, "=") && strcmp(relation, "<="))
             return error_set(error, STATUS_BAD_INPUT, "--gate %.48s%s%.40s: allowed: = <= >=", name,
                              relation, number);
@@ -222,11 +225,11 @@ static void say_source(const struct judged *main, const struct case_gate *gate, 
 static void add_case(const struct judged *main, const json_t *figures, json_t *gates)
 {
     static const char *const kept[] = {"mass", "momentum", "energy", "angular_momentum"};
-    const bool round = main->result.problem.problem->circular == CIRCULAR_ROUND;
+    const bool turns = main->result.problem.problem->circular == CIRCULAR_ROUND;
     const struct case_file *file = &main->run.asked.file;
     json_t *run = judge_one_json(main, false);
     char text[SOURCE], name[NAME];
-    json_object_set_new(run, "n", json_real(floor(main->case_n + 0.5)));
+    json_object_set_new(run, "n", json_real(round(main->case_n)));
     for (size_t i = 0; i < file->gate_count; i++) {
         struct case_gate gate = file->gates[i];
         if (isinf(gate.known.bound)) gate.known.bound = weakness * gate.gate.bound;
@@ -251,7 +254,7 @@ static void add_case(const struct judged *main, const json_t *figures, json_t *g
             result_add(found, "status=%s why=%s", finding_words[FINDING_KNOWN], gate->known.why);
         json_array_append_new(gates, found);
     }
-    for (size_t k = 0; k < (round ? 4 : 3); k++)
+    for (size_t k = 0; k < (turns ? 4 : 3); k++)
         if (json_object_get(figures, kept[k]))
             json_array_append_new(
                 gates, gate_json(kept[k], json_object_get(figures, kept[k]), false,
