@@ -238,6 +238,11 @@ TEST(processes)
     assert_int_equal(shell("cat", input, 1, 60, &output, message, sizeof message), PROCESS_OK);
     assert_string_equal(output.data, "a");
     buffer_free(&output);
+    assert_int_equal(
+        shell("exec 2>&-; sleep 0.1; echo late", "", 0, 60, &output, message, sizeof message),
+        PROCESS_OK);
+    assert_string_equal(output.data, "late\n");
+    buffer_free(&output);
     assert_int_equal(shell("exit 0", input, size, 60, &output, message, sizeof message),
                      PROCESS_OK);
     assert_int_equal(
