@@ -215,7 +215,7 @@ static bool scatter_fill(struct scatter *scatter, const struct run_result *resul
         name = moves(exact, "azimuthal") ? "azimuthal" : "radial";
     const json_t *from[2] = {profile, exact};
     scatter->series[0] =
-        (struct plot_series){.label = "particles", .kind = PLOT_POINTS, .color = 1, .size = 0.4};
+        (struct plot_series){.label = "particles", .kind = PLOT_POINTS, .size = 0.4};
     scatter->series[1] =
         (struct plot_series){.label = "exact", .kind = PLOT_LINES, .color = PLOT_NEUTRAL};
     for (int s = 0; s < 2; s++) {
