@@ -360,6 +360,11 @@ TEST(damaged_numbers)
             items_of(l, items);
             items[k].stored = TEXT, items[k].rank = 0;
             if (f->needed) refuses(l, items, f->path, name);
+            if (f->meaning == TIME) {
+                struct snapshot_file file = file_of(items, l->count, f->path);
+                assert_false(file.time.known);
+                snapshot_file_free(&file);
+            }
             items_of(l, items);
             items[k].values[0] = (double)NAN;
             if (f->meaning == TIME) refuses(l, items, f->path, "time = nan");
