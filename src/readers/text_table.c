@@ -203,7 +203,8 @@ static enum status take_rows(const struct text_table *table, size_t from, size_t
                 if (meaning == TABLE_TYPE) type[row] = value;
                 if (meaning < 0 || meaning == TABLE_TYPE) continue;
                 file->column[meaning][row] = value;
-                int *most = &digits[meaning >= SNAPSHOT_VX], here = digits_of(word);
+                int *most = &digits[meaning >= SNAPSHOT_VX]; /* above DBL_DIG all are a double */
+                const int here = *most <= DBL_DIG ? digits_of(word) : 0;
                 if (here > *most) *most = here;
             }
             if (!blank(at, stop))

@@ -10,9 +10,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { SIZE_MAX_FILE = 65536 };
+#include "text.h"
 
-static const char byte_order_mark[] = "\xef\xbb\xbf"; /* some editors begin a file with it */
+enum { SIZE_MAX_FILE = 65536 };
 
 enum status ini_text_fail(struct ini_text *text, const char *what, const char *allowed)
 {
@@ -161,8 +161,8 @@ enum status ini_text_read(struct ini_text *text, ini_text_pair *pair, void *cont
     if (text->rest == text->end)
         return error_set(text->error, STATUS_BAD_INPUT, "%.200s: the %s is empty", text->path,
                          text->kind);
-    const size_t mark = strlen(byte_order_mark);
-    if ((size_t)(text->end - text->rest) > mark && !memcmp(text->rest, byte_order_mark, mark))
+    const size_t mark = strlen(TEXT_BYTE_ORDER_MARK);
+    if ((size_t)(text->end - text->rest) > mark && !memcmp(text->rest, TEXT_BYTE_ORDER_MARK, mark))
         text->rest += mark;
     if (!check_text(text)) return text->error->status;
     const int line = ini_parse_stream(next_line, &receiver, hand_over, &receiver);

@@ -32,6 +32,9 @@ const char *text_nearest(const char *word, const char *const *names, size_t n);
 /* Copies word for a message: shortened, with '?' for unprintable characters. */
 void text_printable(const char *word, char *copy, size_t size);
 
+/* Some editors begin a file with it. */
+#define TEXT_BYTE_ORDER_MARK "\xef\xbb\xbf"
+
 /* Appends to the text as far as the size allows. */
 void text_add(char *text, size_t size, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -274,10 +274,10 @@ static enum status read(const struct snapshot_source *source,
     struct text_table table = {.source = source};
     struct remarks remarks = {.file = file, .path = source->path};
     const char *text = (const char *)source->bytes;
-    static const char mark[] = "\xef\xbb\xbf";
+    const size_t mark = strlen(TEXT_BYTE_ORDER_MARK);
     const char *remark = NULL; /* behind the # of the last comment */
     size_t at = 0, line = 1;
-    if (strncmp(text, mark, strlen(mark)) == 0) at = strlen(mark);
+    if (strncmp(text, TEXT_BYTE_ORDER_MARK, mark) == 0) at = mark;
     for (; text[at] && (!table.columns || text[at] == '#'); line++) {
         const size_t length = strcspn(text + at, "\n");
         const size_t begin = strspn(text + at, " \t\r");

@@ -181,14 +181,14 @@ TEST(digits)
     char text[400];
     for (int a = 0; a < WRITTEN; a++)
         for (int b = 0; b < WRITTEN; b++) {
-            const char *form = a % 2 ? "%s%s,0,1,1,1,1\n0.2,%s,1,1,1,1\n0.3,0,1,1,1,1\n"
-                                     : "%s%s,0,1,1,1,1\n0.2,0,1,1,%s,1\n0.3,0,1,1,1,1\n";
-            const int n =
-                snprintf(text, sizeof text, form, "x,vx,m,rho,u,other\n0.1,0,1,1,1,1.2345678\n",
-                         written[a], written[b][0] == '-' ? written[b] + 1 : written[b]);
+            const char *form = a % 2 ? "%s%s,0,1,1,1,1\n0.2,%s,1,1,1,1\n0.3,0,1,1,%s,1\n"
+                                     : "%s%s,0,1,1,1,1\n0.2,0,1,1,%s,1\n0.3,0,1,1,%s,1\n";
+            const int n = snprintf(
+                text, sizeof text, form, "x,vx,m,rho,u,other\n0.1,0,1,1,1,1.2345678\n", written[a],
+                written[b] + (written[b][0] == '-'), written[a] + (written[a][0] == '-'));
             struct snapshot_file file = file_of(text, (size_t)n, NULL);
             for (int k = 0; k < 2; k++) {
-                const int most = digits[k ? b : a];
+                const int most = digits[k && digits[b] > digits[a] ? b : a];
                 const bool fewer = most > 4 && most < 16;
                 assert_true(
                     fabs(file.precision[k] - (fewer ? 5 * pow(10, -most) : DBL_EPSILON / 2)) <=
