@@ -102,17 +102,13 @@ static void make_snapshot(const struct watch *watch, size_t number)
     struct run_result moment = *watch->result; /* without measurements */
     struct snapshot seen;
     struct error error = {0};
-    char *path = snapshots_path(snapshots, number);
     simulation_snapshot(watch->simulation, &seen);
-    if (!path)
-        error_set(&error, STATUS_ENVIRONMENT, "no memory for a path");
-    else if (!run_keep(&moment, &seen, &error))
-        run_write_snapshot(&moment, path, &error);
+    if (!run_keep(&moment, &seen, &error))
+        run_write_snapshot(&moment, snapshots_path(snapshots, number).text, &error);
     if (!error.status && snapshots->show)
         snapshots->show(snapshots->context, &moment, number, &error);
     if (error.status) snapshots_fail(snapshots, &error);
     run_free(&moment);
-    free(path);
 }
 
 /* Runs from the saved state to each snapshot that is due, then restores the saved state. */

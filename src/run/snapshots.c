@@ -31,15 +31,14 @@ double snapshots_time(const struct snapshots *snapshots, size_t number)
     return (double)number * snapshots->every;
 }
 
-char *snapshots_path(const struct snapshots *snapshots, size_t number)
+struct snapshots_path snapshots_path(const struct snapshots *snapshots, size_t number)
 {
     const char *slash = strrchr(snapshots->path, '/'), *dot = strrchr(snapshots->path, '.');
     const size_t length = strlen(snapshots->path);
     const size_t stem = dot && (!slash || dot > slash) ? (size_t)(dot - snapshots->path) : length;
-    char *path = malloc(length + sizeof "_0000");
-    if (path)
-        snprintf(path, length + sizeof "_0000", "%.*s_%04zu%s", (int)stem, snapshots->path,
-                 number % SNAPSHOTS_MOST, snapshots->path + stem);
+    struct snapshots_path path;
+    snprintf(path.text, sizeof path.text, "%.*s_%04zu%s", (int)stem, snapshots->path,
+             number % SNAPSHOTS_MOST, snapshots->path + stem);
     return path;
 }
 

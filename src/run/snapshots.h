@@ -35,9 +35,13 @@ enum status snapshots_check(const struct snapshots *snapshots, double t_end, str
 /* Number of intermediate snapshots. */
 size_t snapshots_count(const struct snapshots *snapshots, double t_end);
 
-/* Time and file name (malloced; NULL: no memory) of a snapshot by its number. */
+/* Time and path of a snapshot by its number. A path that is too long for a file name of the system
+ * is cut, but stays too long. */
+struct snapshots_path {
+    char text[5000];
+};
 double snapshots_time(const struct snapshots *snapshots, size_t number);
-char *snapshots_path(const struct snapshots *snapshots, size_t number);
+struct snapshots_path snapshots_path(const struct snapshots *snapshots, size_t number);
 
 /* Bytes that the saved state takes in a run of n particles, beside the run's own memory and that
  * for writing a file. */

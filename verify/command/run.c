@@ -207,11 +207,7 @@ static enum status check_files(const struct options *options, const struct snaps
     if (plot && (movie ? movie_probe : picture_probe)(plot, error)) return error->status;
     if (snapshot && output_probe(snapshot, error)) return error->status;
     if (!snapshots->path) return STATUS_OK;
-    char *first = snapshots_path(snapshots, 0);
-    const enum status status = first ? output_probe(first, error)
-                                     : error_set(error, STATUS_ENVIRONMENT, "no memory for a path");
-    free(first);
-    return status;
+    return output_probe(snapshots_path(snapshots, 0).text, error);
 }
 
 struct progress_of_run {
@@ -281,12 +277,9 @@ static enum status explain(const struct options *options, const struct run *run,
 static void print_snapshots(const struct snapshots *snapshots, double t_end)
 {
     const size_t count = snapshots_count(snapshots, t_end);
-    char *first = snapshots_path(snapshots, 0), *last = snapshots_path(snapshots, count - 1);
-    if (first && last)
-        printf("snapshots        %s to %s, t = 0 to %.9g in steps of %.9g; %s at the end\n", first,
-               last, snapshots_time(snapshots, count - 1), snapshots->every, snapshots->path);
-    free(first);
-    free(last);
+    printf("snapshots        %s to %s, t = 0 to %.9g in steps of %.9g; %s at the end\n",
+           snapshots_path(snapshots, 0).text, snapshots_path(snapshots, count - 1).text,
+           snapshots_time(snapshots, count - 1), snapshots->every, snapshots->path);
 }
 
 /* A picture of each intermediate snapshot: F_0000.svg, F_0001.svg ... for F.svg, or a frame of a
@@ -302,16 +295,10 @@ static void show_moment(void *context, const struct run_result *moment, size_t n
 {
     struct pictures *pictures = context;
     const struct snapshots named = {.path = pictures->path};
-    if (movie_wanted(pictures->path)) {
+    if (movie_wanted(pictures->path))
         run_plot(pictures->settings, moment, NULL, &pictures->movie, error);
-        return;
-    }
-    char *path = snapshots_path(&named, number);
-    if (path)
-        run_plot(pictures->settings, moment, path, NULL, error);
     else
-        error_set(error, STATUS_ENVIRONMENT, "no memory for a path");
-    free(path);
+        run_plot(pictures->settings, moment, snapshots_path(&named, number).text, NULL, error);
 }
 
 static void draw_end(const struct run_settings *settings, const struct snapshots *snapshots,

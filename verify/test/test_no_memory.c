@@ -482,9 +482,6 @@ static enum status set_aside(struct error *error)
     if (!aside) *error = snapshots.trouble;
     snapshots_go_on(&snapshots);
     simulation_destroy(simulation);
-    char *name = aside ? snapshots_path(&snapshots, 1) : NULL;
-    if (aside && !name) error_set(error, STATUS_ENVIRONMENT, "no memory for a path");
-    free(name);
     return error->status;
 }
 

@@ -170,12 +170,8 @@ static enum status collect(const struct run_result *result, const struct snapsho
                   "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" "
                   "byte_order=\"%s\">\n<Collection>\n",
                   byte_order);
-    for (size_t k = 0; k < snapshots->next; k++) {
-        char *path = snapshots_path(snapshots, k);
-        if (path) list_file(&text, path, snapshots_time(snapshots, k));
-        text.failed |= !path;
-        free(path);
-    }
+    for (size_t k = 0; k < snapshots->next; k++)
+        list_file(&text, snapshots_path(snapshots, k).text, snapshots_time(snapshots, k));
     list_file(&text, snapshots->path, result->time);
     buffer_add(&text, "</Collection>\n</VTKFile>\n");
     buffer_add_bytes(&name, snapshots->path, strlen(snapshots->path) - strlen(".vtu"));

@@ -95,14 +95,13 @@ TEST(snapshots_within_blocks_of_steps)
     assert_true(result.cost.skipped_particle_updates > 0);
     run_free(&result);
     for (size_t k = 0; k < 12; k++) {
-        char *file = snapshots_path(&snapshots, k);
-        const size_t n = text_of(file, text, sizeof text - 1);
+        const struct snapshots_path file = snapshots_path(&snapshots, k);
+        const size_t n = text_of(file.text, text, sizeof text - 1);
         text[n] = '\0';
         const char *time = strstr(text, "time = ");
         assert_non_null(time);
         assert_true(strtod(time + 7, NULL) == snapshots_time(&snapshots, k));
-        unlink(file);
-        free(file);
+        unlink(file.text);
     }
 }
 
