@@ -133,7 +133,10 @@ enum plot_status plot_svg(struct plot_pen *pen, const struct plot *plot, char **
         if (svg_adapt(&clean, raw.data, plot->name, plot->title ? plot->title : plot->name))
             *svg = buffer_take(&clean);
         if (!*svg) {
-            snprintf(message, n, "plot %s: gnuplot's SVG is not understood", plot->name);
+            snprintf(message, n,
+                     clean.failed ? "plot %s: no memory"
+                                  : "plot %s: gnuplot's SVG is not understood",
+                     plot->name);
             status = PLOT_FAILED;
         }
     }

@@ -104,13 +104,12 @@ static void drain(int *descriptor, struct buffer *into)
 static bool marked(struct buffer *output, const char *mark)
 {
     const size_t n = strlen(mark);
-    if (output->failed || output->size < n || memcmp(output->data + output->size - n, mark, n) != 0)
-        return false;
+    if (output->size < n || memcmp(output->data + output->size - n, mark, n) != 0) return false;
     output->data[output->size -= n] = '\0';
     return true;
 }
 
-enum turn { ANSWERED, ENDED, OUT_OF_TIME };
+enum turn { ANSWERED, ENDED, OUT_OF_TIME, OUT_OF_MEMORY };
 
 /* Writes and reads simultaneously, so that neither side blocks the other, until the mark. Without a
  * mark closes the input and reads to the end. */
@@ -139,6 +138,7 @@ static enum turn converse(struct process *child, const char *input, size_t size,
         }
         if (polled[2].revents) drain(&child->err, errors);
         if (polled[1].revents) drain(&child->out, output);
+        if (output->failed) return OUT_OF_MEMORY;
         if (mark && marked(output, mark)) return ANSWERED;
     }
 }
@@ -195,11 +195,12 @@ enum process_status process_ask(struct process *process, char *const argv[], int
     } else {
         const enum turn turn =
             converse(process, input, size, mark, clock_wall() + seconds, output, &errors);
-        if (turn != ANSWERED)
-            status = finish(process, argv[0], turn == ENDED, seconds, &errors, message, n);
-        if (status == PROCESS_OK && output->failed) {
+        if (turn == OUT_OF_MEMORY) {
+            process_end(process);
             snprintf(message, n, "no memory for what %s wrote", argv[0]);
             status = PROCESS_FAILED;
+        } else if (turn != ANSWERED) {
+            status = finish(process, argv[0], turn == ENDED, seconds, &errors, message, n);
         }
     }
     /* Removes a SIGPIPE that our own write raised before the mask is restored. */

@@ -321,9 +321,17 @@ static void average_all(const struct precision *precision, struct bench_subject 
     }
 }
 
+/* A failure of this machine, as want of memory, says nothing about a scheme. Where another code
+ * does not run, that is left out. */
+static bool fails_here(const struct bench_subject *subject)
+{
+    const struct job *job = subject->context;
+    return subject->failure.status == STATUS_ENVIRONMENT && !job->run.asked.external;
+}
+
 /* Removes the points of schemes that broke down. */
-static void collect(struct precision *precision, const struct bench_subject *subjects,
-                    const struct job *jobs)
+static enum status collect(struct precision *precision, const struct bench_subject *subjects,
+                           const struct job *jobs, struct error *error)
 {
     struct precision_point *points = precision->points;
     size_t kept = 0;
@@ -336,6 +344,7 @@ static void collect(struct precision *precision, const struct bench_subject *sub
     for (size_t i = 0; i < precision->point_count; i++) {
         struct precision_scheme *scheme = &precision->schemes[points[i].scheme];
         const struct error *failure = &subjects[i].failure;
+        if (fails_here(&subjects[i])) return *error = *failure, error->status;
         if (scheme->excluded[0] || !failure->status) continue;
         snprintf(scheme->excluded, sizeof scheme->excluded, "n = %g: %.450s",
                  settings_real(&jobs[i].run.settings, SETTING_n), failure->message);
@@ -350,6 +359,7 @@ static void collect(struct precision *precision, const struct bench_subject *sub
         kept++;
     }
     precision->point_count = kept;
+    return STATUS_OK;
 }
 
 /* The measurements: a job for each scheme and n, in the order of the points. */
@@ -433,10 +443,9 @@ enum status precision_measure(const struct run_settings *settings, const struct 
     if (!status) status = bench_measure(work->subjects, work->count, rules, error);
     if (!status) {
         average_all(precision, work->subjects, work->jobs);
-        collect(precision, work->subjects, work->jobs);
-        status = precision_judge(precision, error);
+        status = collect(precision, work->subjects, work->jobs, error);
     }
-    return status;
+    return status ? status : precision_judge(precision, error);
 }
 
 /* --- one n as a computation of a pool --------------------------------------------------------- */
@@ -466,13 +475,14 @@ static enum status measure_level(const void *context, json_t **document, struct 
     if (work->precision->settings->external) pool_end_with_parent();
     for (size_t i = 0; i < work->count; i++)
         if (work->level[i] == level->number) list[n++] = work->subjects[i];
-    const enum status status = bench_measure(list, n, &rules, error);
+    enum status status = bench_measure(list, n, &rules, error);
     if (!status) {
         *document = result_new("bench"); /* names this machine */
         json_t *points = json_array();
         for (size_t i = 0; i < n; i++) {
             struct job *job = list[i].context;
             if (!list[i].failure.status) average(job, work->precision->order, &list[i].failure);
+            if (fails_here(&list[i])) *error = list[i].failure, status = error->status;
             json_array_append_new(points, measured_json(&list[i], job));
         }
         json_object_set_new(*document, "points", points);
@@ -569,7 +579,7 @@ enum status precision_conclude(struct precision *precision, const struct pool *p
                 take_measured(json_array_get(points, next++), processor, &work->subjects[i],
                               &work->jobs[i]);
     }
-    collect(precision, work->subjects, work->jobs);
+    if (collect(precision, work->subjects, work->jobs, error)) return error->status;
     return precision_judge(precision, error);
 }
 

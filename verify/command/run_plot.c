@@ -222,7 +222,7 @@ static bool scatter_fill(struct scatter *scatter, const struct run_result *resul
         struct plot_series *one = &scatter->series[s];
         one->x = value_numbers(json_object_get(from[s], "x"), &one->n);
         one->y = value_numbers(json_object_get(from[s], name), &one->n);
-        there = there && one->y; /* as many as x */
+        there = there && one->x && one->y; /* as many as x */
     }
     snprintf(scatter->label, sizeof scatter->label, "%s%s", name,
              name != names[field] ? " velocity" : "");

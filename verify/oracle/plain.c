@@ -316,7 +316,7 @@ void plain_free(struct plain *plain)
 
 void plain_snapshot(const struct plain *plain, struct snapshot *snapshot)
 {
-    const size_t n = plain->arrays ? plain->n : 0;
+    const size_t n = plain->particles ? plain->n : 0;
     double *to[ARRAYS];
     for (size_t k = 0; k < ARRAYS; k++) to[k] = n ? plain->arrays + k * n : NULL;
     for (size_t i = 0; i < n; i++) {

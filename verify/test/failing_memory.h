@@ -15,8 +15,11 @@ static atomic_long held;     /* blocks that are not freed */
 
 static int spared; /* number of calls that may fail without an error */
 
+static void (*at_each_call)(void); /* NULL: nothing */
+
 static bool fails(void)
 {
+    if (at_each_call) at_each_call();
     const bool now = left >= 0 && left-- == 0;
     if (now) errno = ENOMEM;
     return now;
