@@ -11,7 +11,7 @@ static enum status read_file(struct error *error)
 {
     const struct snapshot_options options = {.here = true};
     struct snapshot_file file;
-    const enum status status = snapshot_read(path_of("m.hdf5"), &options, &file, error);
+    const enum status status = snapshot_read(path_of("m.0.hdf5"), &options, &file, error);
     snapshot_file_free(&file);
     return status;
 }
@@ -24,8 +24,19 @@ TEST(layouts_without_memory)
             items_of(&layouts[k], items);
             for (size_t f = 0; header && f < layouts[k].count; f++)
                 if (layouts[k].fields[f].column == SNAPSHOT_M) items[f].path[0] = '\0';
-            write_items(path_of("m.hdf5"), items, layouts[k].count);
+            write_items(path_of("m.0.hdf5"), items, layouts[k].count);
             without_memory(read_file, 3, true);
         }
+}
+
+TEST(parts_without_memory)
+{
+    struct item items[ITEMS_MAX];
+    items_of(layouts, items);
+    for (size_t f = 0; f < layouts->count; f++)
+        if (layouts->fields[f].meaning == PARTS) items[f].values[0] = 2;
+    write_items(path_of("m.0.hdf5"), items, layouts->count);
+    write_items(path_of("m.1.hdf5"), items, layouts->count);
+    without_memory(read_file, 10, true);
 }
 #endif

@@ -41,6 +41,42 @@ TEST(formats_without_memory)
     }
 }
 
+static void write_file(const char *name, const char *text)
+{
+    FILE *out = fopen(path_of(name), "w");
+    assert_non_null(out);
+    fputs(text, out);
+    assert_int_equal(fclose(out), 0);
+}
+
+TEST(vtk_without_memory)
+{
+    write_file("a.vtk",
+               "# vtk DataFile Version 3.0\nparticles\nASCII\nDATASET POLYDATA\n"
+               "POINTS 4 double\n0 0 0 1 0 0 2 0 0 3 0 0\nPOINT_DATA 4\nSCALARS rho double 1\n"
+               "LOOKUP_TABLE default\n1 2 3 4\nVECTORS vel float\n0 0 0 1 0 0 0 0 0 1 0 0\nSCALARS "
+               "m double\nLOOKUP_TABLE default\n1 1 1 1\n");
+    read_path = path_of("a.vtk");
+    without_memory(read_file, 6, true);
+}
+
+static enum status named(struct error *error)
+{
+    struct snapshot_file said;
+    struct csv csv;
+    char unknown[200];
+    const enum status status = snapshot_csv_named(read_path, &said, &csv, unknown, error);
+    csv_free(&csv);
+    return status;
+}
+
+TEST(names_without_memory)
+{
+    write_file("n.csv", "x,density,colour\n1,2,3\n4,5,6\n");
+    read_path = path_of("n.csv");
+    without_memory(named, 6, true);
+}
+
 static enum status as_csv(struct error *error)
 {
     struct snapshot_file file;
