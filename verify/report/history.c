@@ -27,14 +27,15 @@ static void add_checks(const json_t *checks, json_t *figures)
 {
     for (size_t i = 0; i < json_array_size(checks); i++) {
         const json_t *check = json_array_get(checks, i);
-        const double value = value_member(check, "value"), bound = value_member(check, "bound");
+        const double value = value_member(check, "value"), bound = value_member(check, "bound"),
+                     ratio = value / bound;
         char path[PATH_LENGTH];
         if (!(bound > 0) || strcmp(value_text(check, "status"), "skip") == 0) continue;
         snprintf(path, sizeof path, "verify[%s, %s].value_over_bound", value_text(check, "group"),
                  value_text(check, "name"));
         const json_t *kept = json_object_get(figures, path);
-        if (!kept || !(value / bound <= value_real(kept)))
-            json_object_set_new(figures, path, result_number(value / bound));
+        if (!kept || !(ratio <= value_real(kept)))
+            json_object_set_new(figures, path, result_number(ratio));
     }
 }
 

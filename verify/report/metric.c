@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "list.h"
+#include "text.h"
 #include "value.h"
 
 enum { PATH_MAX_LENGTH = 1536, NAME_MAX_LENGTH = 900, KEYS_MAX = 64 };
@@ -82,13 +83,13 @@ static void refine(struct metric *metric, const json_t *parent, const char *name
     }
 }
 
-/* Noise from replicates: two standard deviations of the mean. */
+/* Noise from replicates: two standard deviations of the mean; NaN without a spread. */
 static double level_noise(const json_t *level, const char *field, const char *norm)
 {
     const double spread =
         value_member(json_object_get(json_object_get(level, "spread"), field), norm);
     const double replicates = value_member(level, "replicates");
-    return spread > 0 && replicates > 1 ? 2 * spread / sqrt(replicates) : 0;
+    return replicates > 1 ? 2 * spread / sqrt(replicates) : 0;
 }
 
 static void note_trouble(struct metrics *metrics, const char *path, const char *why)
@@ -188,9 +189,8 @@ static void add_name(char name[NAME_MAX_LENGTH], const char *format, ...)
 static void add_name(char name[NAME_MAX_LENGTH], const char *format, ...)
 {
     const size_t begin = strlen(name);
-    size_t used = begin;
-    if (used) used += (size_t)snprintf(name + used, NAME_MAX_LENGTH - used, ", ");
-    if (used >= NAME_MAX_LENGTH) return;
+    if (begin) text_add(name, NAME_MAX_LENGTH, ", ");
+    const size_t used = strlen(name);
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(name + used, NAME_MAX_LENGTH - used, format, arguments);

@@ -9,7 +9,7 @@
 #include "result.h"
 #include "value.h"
 
-enum { LADDER_MAX = 12, KEYS_MAX = 12, TEXT = 256 };
+enum { LADDER_MAX = 13 /* with a 0 at its end */, TEXT = 256 };
 
 /* Particles start up to 0.4 spacings from a lattice and come to rest by plain viscosity. */
 static const char *const usual = "jitter=0.4 viscosity=constant";
@@ -20,8 +20,8 @@ static const double bound = 0.01;
 static const struct crowd {
     int dim;
     const char *gradient, *case_name;
-    const char *day, *night;                              /* sizes */
-    int by_day[LADDER_MAX + 1], by_night[LADDER_MAX + 1]; /* numbers of neighbours; 0 ends */
+    const char *day, *night;                      /* sizes */
+    int by_day[LADDER_MAX], by_night[LADDER_MAX]; /* numbers of neighbours; 0 ends */
 } crowds[] = {
     {2,
      "standard",
@@ -98,13 +98,14 @@ struct ladder {
     double predicted, negative; /* NaN: never or nowhere */
 };
 
-static struct ladder ladder_read(const struct pairing_run *runs, size_t most,
-                                 const struct pool *pool, const json_t *kernels)
+/* Reads a kernel's runs; behind the last of all there is an empty one. */
+static struct ladder ladder_read(const struct pairing_run *runs, const struct pool *pool,
+                                 const json_t *kernels)
 {
     struct ladder ladder = {.runs = runs, .predicted = (double)NAN, .negative = (double)NAN};
     const json_t *kernel;
     size_t i;
-    while (ladder.count < most && runs[ladder.count].crowd == runs->crowd &&
+    while (runs[ladder.count].crowd == runs->crowd &&
            strcmp(runs[ladder.count].kernel, runs->kernel) == 0) {
         const json_t *document = pool->jobs[runs[ladder.count].run.job].document;
         const json_t *found = json_object_get(document, "regularity");
@@ -112,9 +113,9 @@ static struct ladder ladder_read(const struct pairing_run *runs, size_t most,
         ladder.paired[ladder.count] = sound ? value_member(found, "paired") : (double)NAN;
         ladder.nearest[ladder.count] = sound ? value_member(found, "nearest") : (double)NAN;
         ladder.sound += sound;
+        if (ladder.first == ladder.count && !(ladder.paired[ladder.count] > bound)) ladder.first++;
         ladder.count++;
     }
-    while (ladder.first < ladder.count && !(ladder.paired[ladder.first] > bound)) ladder.first++;
     json_array_foreach(kernels, i, kernel) {
         if (strcmp(value_text(kernel, "kernel"), runs->kernel) != 0 ||
             (int)value_member(kernel, "dim") != runs->crowd->dim)
@@ -195,8 +196,7 @@ static json_t *judge_gradient(const struct pairing *pairing, const char *gradien
     json_t *ladders = json_array();
     char name[64], text[TEXT], verdict[TEXT + 32];
     for (size_t i = 0; i < pairing->count;) {
-        const struct ladder ladder =
-            ladder_read(&pairing->runs[i], pairing->count - i, pool, kernels);
+        const struct ladder ladder = ladder_read(&pairing->runs[i], pool, kernels);
         i += ladder.count;
         if (strcmp(ladder.runs->crowd->gradient, gradient) != 0) continue;
         balance_add(&balance, &ladder);

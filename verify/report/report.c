@@ -48,7 +48,6 @@ enum { SCHEMES = sizeof line_schemes / sizeof *line_schemes };
 enum { ENTRIES = SCHEMES + REPORT_CODES_MAX };
 enum { MORE = CASE_LADDER_MAX * sizeof ",18446744073709551615" + sizeof " --n " };
 enum { COMPARED = 8000 }; /* largest number of particles by day for which other schemes run */
-enum { QUICK = 1000 };    /* particles by day of a case in 2D or 3D without a ladder */
 
 /* The schemes, runs and studies of one case. */
 struct reported {
@@ -136,19 +135,17 @@ static enum status add_piece(struct report *report, struct report_piece piece, s
     return report_piece_add(&report->pool, kept, error);
 }
 
-/* Plans a case from its file. By day in 2D and 3D a run is as large as the ladder's finest level
- * and part of the ladder; only the default scheme has a ladder. */
+/* Plans a case from its file, which has a ladder. By day in 2D and 3D a run is as large as the
+ * ladder's finest level and part of the ladder; only the default scheme has a ladder. */
 static void plan_case(const struct report *report, const struct case_file *file,
                       struct reported *of)
 {
-    const bool quick = !report->nightly, cloud = file->dimension > 1;
     const size_t *ladder = file->quick_count ? file->quick : file->ladder;
     const size_t levels = file->quick_count ? file->quick_count : file->ladder_count;
+    const size_t n = ladder[levels - 1];
     of->dimension = file->dimension;
-    of->schemes = SCHEMES;
-    of->studied = file->ladder_count ? of->schemes : 0;
-    if (!quick || !cloud) return;
-    const size_t n = levels ? ladder[levels - 1] : QUICK;
+    of->studied = of->schemes = SCHEMES;
+    if (report->nightly || file->dimension == 1) return;
     snprintf(of->size, sizeof of->size, "n=%zu", n);
     of->studied = levels >= ORDER_LEVELS_MIN;
     /* expensive cases run with one scheme */
@@ -160,7 +157,7 @@ static enum status find_cases(struct report *report, struct error *error)
     for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++) {
         struct case_file file;
         if (case_load(&file, builtin->name, error)) return error->status;
-        if (problem_of(&file.settings)->liquid) continue; /* our solver runs every other case */
+        if (problem_of(&file.settings)->liquid) continue; /* our solver runs the others */
         if (!list_grow(&report->cases, report->case_count, sizeof *report->cases))
             return error_set(error, STATUS_ENVIRONMENT, "no memory for the cases");
         struct reported *of = &report->cases[report->case_count++];

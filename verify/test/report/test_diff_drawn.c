@@ -133,6 +133,35 @@ TEST(diffs)
     json_decref(template);
 }
 
+/* Of more than 60 differences the first 60 are printed. */
+TEST(lines)
+{
+    for (int count = 60; count < 62; count++) {
+        json_t *old = json_pack("{s:s, s:{}}", "command", "run", "errors"),
+               *new = json_deep_copy(old);
+        struct diff diff;
+        struct error error = {0};
+        struct buffer text = {0};
+        for (int i = 0; i < count; i++) {
+            char name[16];
+            snprintf(name, sizeof name, "f%02d", i);
+            json_object_set_new(json_object_get(old, "errors"), name, json_pack("{s:f}", "l1", 1.));
+            json_object_set_new(json_object_get(new, "errors"), name, json_pack("{s:f}", "l1", 2.));
+        }
+        assert_int_equal(diff_documents(old, new, DIFF_THRESHOLD, &diff, &error),
+                         STATUS_CHECK_FAILED);
+        assert_int_equal(diff.count, count);
+        add_printed(&text, &diff, false, false);
+        assert_non_null(strstr(text.data, "errors.f59.l1"));
+        assert_null(strstr(text.data, "errors.f60.l1"));
+        assert_int_equal(strstr(text.data, "\n... and 1 more ") != NULL, count == 61);
+        assert_int_equal(strstr(text.data, "\n... and ") != NULL, count == 61);
+        buffer_free(&text);
+        diff_free(&diff);
+        json_decref(old), json_decref(new);
+    }
+}
+
 /* Nights of one document that changes gradually; other modes and damaged lines between them. */
 TEST(histories)
 {

@@ -135,17 +135,21 @@ TEST(limits)
         {METRIC_NEUTRAL, -2, -1, 0, 0, 1, 0, VERDICT_SAME, 0},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        const struct metric old = {.kind = rows[k].kind,
-                                   .value = rows[k].a,
-                                   .noise = rows[k].noise,
-                                   .floor = rows[k].floor,
-                                   .exact = rows[k].exact};
-        struct metric new = old;
-        double amount;
-        bool fault;
-        new.value = rows[k].b, new.noise = rows[k].other;
-        if (metric_judge(&old, &new, &amount, &fault) != rows[k].verdict || amount != rows[k].worse)
-            fail_msg("row %zu: worse by %g", k, amount);
+        for (int floors = 0; floors < 3; floors++) { /* of either or both */
+            const struct metric old = {.kind = rows[k].kind,
+                                       .value = rows[k].a,
+                                       .noise = rows[k].noise,
+                                       .floor = floors == 1 ? 0 : rows[k].floor,
+                                       .exact = rows[k].exact};
+            struct metric new = old;
+            double amount;
+            bool fault;
+            new.value = rows[k].b, new.noise = rows[k].other;
+            new.floor = floors == 2 ? 0 : rows[k].floor;
+            if (metric_judge(&old, &new, &amount, &fault) != rows[k].verdict ||
+                amount != rows[k].worse)
+                fail_msg("row %zu: worse by %g", k, amount);
+        }
     }
     /* among equal verdicts a word is worse than a number */
     const struct metric number = {.kind = METRIC_PART, .value = 1},
@@ -218,16 +222,29 @@ static json_t *called(const char *key, int letters, const char *command)
                      "b", "reproduce", "b", "error", 3.);
 }
 
+/* Compares a document with itself; it is refused with this message, or NULL. */
+static void read_or_refused(json_t *document, const char *message)
+{
+    struct diff diff;
+    struct error error = {0};
+    json_t *same = json_deep_copy(document);
+    const enum status status = diff_documents(document, same, 0, &diff, &error);
+    if (status != (message ? STATUS_BAD_INPUT : STATUS_OK) ||
+        strcmp(error.message, message ? message : "") != 0)
+        fail_msg("%s", error.message);
+    diff_free(&diff);
+    json_decref(document), json_decref(same);
+}
+
 /* An entry of a list is identified by its name, of at most 898 characters, and an object by its
  * path. */
 TEST(names)
 {
     struct diff diff;
     for (int more = 0; more < 2; more++) {
-        json_t *old = called("errors", 898 + more, "a"), *new = json_deep_copy(old);
-        assert_int_equal(differ(old, new, &diff), more ? STATUS_BAD_INPUT : STATUS_OK);
-        diff_free(&diff);
-        json_decref(old), json_decref(new);
+        json_t *old, *new;
+        read_or_refused(called("errors", 898 + more, "a"),
+                        more ? "old document: errors: an entry whose name is too long" : NULL);
         /* two names, of which the first fills the field */
         for (int letters = 895; letters < 900; letters++) {
             old = called("errors", letters, "a"), new = json_deep_copy(old);
@@ -238,19 +255,26 @@ TEST(names)
             diff_free(&diff);
             json_decref(old), json_decref(new);
         }
-        /* a path of 1535 characters and more */
-        old = json_pack("{s:s, s:f, s:{}}", "command", "run", "error_l1", 1., "e");
-        json_t *inside = json_object_get(old, "e");
-        for (int level = 0; level < 16; level++) {
-            char key[120];
-            snprintf(key, sizeof key, "%0*d", level ? 101 : 18 + more, level);
-            json_object_set_new(inside, key, json_pack("{s:f}", "error", 1.));
-            inside = json_object_get(inside, key);
+        /* a path of 1535 characters and more, of an object or of an entry of a list */
+        for (int listed = 0; listed < 2; listed++) {
+            char key[120], message[200];
+            old = json_pack("{s:s, s:f, s:{}}", "command", "run", "error_l1", 1., "e");
+            json_t *inside = json_object_get(old, "e");
+            for (int level = 0; level < 16 - listed; level++) {
+                snprintf(key, sizeof key, "%0*d", level ? 101 : 18 + more, level);
+                json_object_set_new(inside, key, json_pack("{s:f}", "error", 1.));
+                inside = json_object_get(inside, key);
+            }
+            if (listed) {
+                snprintf(key, sizeof key, "%080d", 0);
+                json_object_set_new(
+                    inside, key,
+                    json_pack("[{s:s, s:f}]", "label", "a name of 17 signs", "error", 1.));
+            }
+            snprintf(message, sizeof message, "old document: %s: %s", key,
+                     listed ? "an entry whose name is too long" : "a name that is too long");
+            read_or_refused(old, more ? message : NULL);
         }
-        new = json_deep_copy(old);
-        assert_int_equal(differ(old, new, &diff), more ? STATUS_BAD_INPUT : STATUS_OK);
-        diff_free(&diff);
-        json_decref(old), json_decref(new);
     }
     /* entries of skips and autopsies of the same case are identified by the command that computes
      * them */
@@ -332,4 +356,53 @@ TEST(totals_and_parts)
                 diff_free(&diff);
                 json_decref(old), json_decref(new);
             }
+}
+
+/* A failed check names the cause: the one with the lower rank comes first. */
+TEST(rank_of_checks)
+{
+    for (int first = 1; first < 3; first++) {
+        json_t *old = json_pack("{s:s, s:[{s:s, s:i, s:s}, {s:s, s:i, s:s}]}", "command", "verify",
+                                "checks", "check", "a", "rank", first, "status", "pass", "check",
+                                "b", "rank", 3 - first, "status", "pass"),
+               *new = json_deep_copy(old), *check;
+        struct diff diff;
+        size_t i;
+        json_array_foreach(json_object_get(new, "checks"), i, check)
+            json_object_set_new(check, "status", json_string("fail"));
+        assert_int_equal(differ(old, new, &diff), STATUS_CHECK_FAILED);
+        assert_int_equal(diff.regressions, 2);
+        assert_string_equal(diff.list[0].any->path,
+                            first == 1 ? "checks[a].status" : "checks[b].status");
+        diff_free(&diff);
+        json_decref(old), json_decref(new);
+    }
+}
+
+/* An error is a regression if it rises by more than the threshold. */
+TEST(threshold_of_errors)
+{
+    for (int more = 0; more < 2; more++) {
+        json_t *old = json_pack("{s:s, s:f}", "command", "run", "error_l1", 1.),
+               *new = json_pack("{s:s, s:f}", "command", "run", "error_l1", more ? 1.501 : 1.5);
+        struct diff diff;
+        struct error error = {0};
+        assert_int_equal(diff_documents(old, new, 0.5, &diff, &error),
+                         more ? STATUS_CHECK_FAILED : STATUS_OK);
+        assert_int_equal(diff.verdicts[VERDICT_WORSE], 1);
+        assert_int_equal(diff.regressions, more);
+        diff_free(&diff);
+        json_decref(old), json_decref(new);
+    }
+}
+
+/* A number in the place of a word is no figure. */
+TEST(numbers_for_words)
+{
+    json_t *old = json_pack("{s:s, s:f, s:i}", "command", "run", "error_l1", 1., "outcome", 5);
+    struct diff diff;
+    assert_int_equal(differ(old, old, &diff), STATUS_OK);
+    assert_int_equal(diff.count, 1);
+    diff_free(&diff);
+    json_decref(old);
 }
