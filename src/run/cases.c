@@ -48,8 +48,7 @@ static enum status load_installed(struct case_file *file, const char *name, stru
 
 static enum status load(struct case_file *file, const char *name, struct error *error)
 {
-    const char *dot = strrchr(name, '.');
-    if (strchr(name, '/') || (dot && strcmp(dot, ".ini") == 0)) return load_path(file, name, error);
+    if (strchr(name, '/') || text_ends(name, ".ini")) return load_path(file, name, error);
     for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++) {
         char path[80];
         snprintf(path, sizeof path, "cases/%s.ini", builtin->name);

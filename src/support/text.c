@@ -90,6 +90,12 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
+bool text_ends(const char *text, const char *ending)
+{
+    const char *dot = strrchr(text, '.');
+    return dot && strcmp(dot, ending) == 0;
+}
+
 size_t text_distance(const char *a, const char *b)
 {
     const size_t na = strlen(a), nb = strlen(b);

@@ -23,6 +23,9 @@ bool text_count(const char *text, double *value, int *exponent);
 /* Reads exactly n numbers separated by any of separators (a run of blanks is one separator). */
 bool text_reals(const char *text, const char *separators, size_t n, double *values);
 
+/* True if the last dot begins this ending: ".ini". */
+bool text_ends(const char *text, const char *ending);
+
 /* Edit distance (insert, delete, replace, swap neighbours), ignoring case. */
 size_t text_distance(const char *a, const char *b);
 

@@ -238,7 +238,7 @@ static int by_number(const void *a, const void *b)
 static enum status take_theirs(const struct options *options, int n, char **arguments,
                                struct theirs *theirs, struct error *error)
 {
-    char *keys[SETTINGS];
+    char *keys[n];
     int count = 0;
     if (options_value(options, "n"))
         return error_set(error, STATUS_BAD_INPUT,
@@ -246,7 +246,7 @@ static enum status take_theirs(const struct options *options, int n, char **argu
                          "as there are numbers of particles");
     theirs->path[theirs->count++] = options_value(options, "rates");
     for (int k = 1; k < n; k++)
-        if (strchr(arguments[k], '=') && !strchr(arguments[k], '/') && count < SETTINGS)
+        if (strchr(arguments[k], '=') && !strchr(arguments[k], '/'))
             keys[count++] = arguments[k];
         else if (theirs->count < CASE_LADDER_MAX)
             theirs->path[theirs->count++] = arguments[k];

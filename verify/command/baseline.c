@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * sphproof baseline: accepts figures, each time with a reason. A baseline file keeps the document
  * that it was made from and all reasons so far. */
-#include <ctype.h>
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,18 +13,12 @@
 static const char default_results[] = "reports/out/results.json",
                   default_file[] = "reports/out/baseline.json";
 
-static bool blank(const char *text)
-{
-    while (*text && isspace((unsigned char)*text)) text++;
-    return !*text;
-}
-
 static enum status check_options(const struct options *options, int n, struct error *error)
 {
     const char *accept = options_value(options, "accept"),
                *reason = options_value(options, "reason");
     if (n > 1) return command_usage(options, error, "one result document at most");
-    if (accept && (!reason || blank(reason)))
+    if (accept && (!reason || !reason[strspn(reason, " \t\n")]))
         return error_set(error, STATUS_BAD_INPUT,
                          "baseline: --accept needs a reason: --accept --reason \"why the figures "
                          "may change\"");
@@ -34,21 +27,17 @@ static enum status check_options(const struct options *options, int n, struct er
     return STATUS_OK;
 }
 
-/* Loads the baseline, or NULL if there is none yet. */
+/* Loads the baseline; *baseline stays NULL if there is none yet. */
 static enum status load_baseline(const char *path, json_t **baseline, struct error *error)
 {
-    *baseline = NULL;
     if (access(path, F_OK) && errno == ENOENT) return STATUS_OK;
     const enum status status = result_load(baseline, path, error);
     if (status) return status;
     const char *command = json_string_value(json_object_get(*baseline, "command"));
     if (strcmp(command, "baseline") == 0 && json_is_object(json_object_get(*baseline, "document")))
         return STATUS_OK;
-    error_set(error, STATUS_BAD_INPUT, "'%.200s': a document of %.40s, not a baseline", path,
-              command);
-    json_decref(*baseline);
-    *baseline = NULL;
-    return error->status;
+    return error_set(error, STATUS_BAD_INPUT, "'%.200s': a document of %.40s, not a baseline", path,
+                     command);
 }
 
 /* A copy without large members that hold no figures. */

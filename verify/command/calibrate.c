@@ -107,7 +107,7 @@ static void print_case(const struct calibrate *calibrate, const struct calibrate
 
 /* ---- the command ---- */
 
-/* Writes the file only if the program can read it back. */
+/* Writes the file, and reads it back as the program would. */
 static enum status write_code(const struct calibrate *calibrate, const char *out,
                               struct error *error)
 {

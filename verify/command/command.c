@@ -41,7 +41,7 @@ const struct command_option command_common[] = {
 struct line {
     struct options options;
     const char *color;
-    int help, version, uncertified;
+    bool help, version, uncertified;
     int n; /* arguments, command's name not counted */
     char **arguments;
     char **owned; /* texts of repeated options */
@@ -67,35 +67,30 @@ static const struct command_option *find(const struct command_option *list, cons
 static enum status unknown_option(const struct options *options, const char *word, const char *next,
                                   struct error *error)
 {
-    const int length = (int)strcspn(word + 2, "=");
+    const char *name = word + strspn(word, "-"), *value = strchr(name, '=');
     char key[40];
-    snprintf(key, sizeof key, "%.*s", length, word[1] == '-' ? word + 2 : "");
+    snprintf(key, sizeof key, "%.*s", (int)strcspn(name, "="), name);
     if (options->command && strstr(options->command->synopsis, "KEY=VALUE") &&
         setting_find(key) >= 0)
         return error_set(error, STATUS_BAD_INPUT,
-                         "%s: '--%s' is a key, not an option; write it as %s=%.80s",
-                         options->command->name, key, key,
-                         word[2 + length]                      ? word + 3 + length
+                         "%s: '%.*s%s' is a key, not an option; write it as %s=%.80s",
+                         options->command->name, (int)(name - word), word, key, key,
+                         value                                 ? value + 1
                          : next && strncmp(next, "--", 2) != 0 ? next
                                                                : "VALUE");
     const struct command_option *const lists[] = {
         options->command ? options->command->options : NULL, command_common};
     const size_t most = count(lists[0]) + count(lists[1]);
-    char(*names)[40] = malloc(most * sizeof *names);
-    const char **list = malloc(most * sizeof *list);
-    enum status status = STATUS_OK;
+    char names[most][40];
+    const char *list[most];
     size_t n = 0;
-    if (!names || !list) status = error_set(error, STATUS_ENVIRONMENT, "no memory");
-    for (size_t l = 0; l < 2 && !status; l++)
+    for (size_t l = 0; l < 2; l++)
         for (size_t i = 0; i < count(lists[l]); i++, n++) {
             snprintf(names[n], sizeof names[n], "--%s", lists[l][i].name);
             list[n] = names[n];
         }
-    if (!status)
-        status = text_unknown(error, options->command ? options->command->name : NULL, "option",
-                              word, list, n);
-    free(names), free(list);
-    return status;
+    return text_unknown(error, options->command ? options->command->name : NULL, "option", word,
+                        list, n);
 }
 
 static enum status apply_common(struct line *line, const char *name, const char *value,
@@ -110,13 +105,13 @@ static enum status apply_common(struct line *line, const char *name, const char 
         line->options.quiet = 1;
         break;
     case 'h':
-        line->help = 1;
+        line->help = true;
         break;
     case 'u':
-        line->uncertified = 1;
+        line->uncertified = true;
         break;
     case 'v':
-        line->version = 1;
+        line->version = true;
         break;
     case 'c':
         if (strcmp(value, "auto") && strcmp(value, "always") && strcmp(value, "never"))
@@ -207,7 +202,7 @@ static enum status parse(struct line *line, int argc, char **argv, struct error 
         char *word = argv[i];
         double number;
         if (i == 1 && strcmp(word, "help") == 0)
-            line->help = 1;
+            line->help = true;
         else if (!options_end && strcmp(word, "--") == 0)
             options_end = 1;
         else if (!options_end && word[0] == '-' && word[1] && !text_real(word, &number))

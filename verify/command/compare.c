@@ -74,9 +74,7 @@ static bool split(char *text, char *words[WORDS_MAX], int *count)
 static bool is_file(const char *text)
 {
     struct stat of;
-    const size_t length = strlen(text);
-    return stat(text, &of) == 0 && S_ISREG(of.st_mode) &&
-           !(length > 4 && strcmp(text + length - 4, ".ini") == 0);
+    return stat(text, &of) == 0 && S_ISREG(of.st_mode) && !text_ends(text, ".ini");
 }
 
 static enum status take_side(struct side *side, int threads, struct error *error)

@@ -50,27 +50,21 @@ struct judgements {
 static enum status take_box(const struct options *options, struct request *r, struct error *error)
 {
     const char *text = options_value(options, "box");
-    int pairs = 0;
-    bool sound = true;
     if (!text) return STATUS_OK;
-    for (const char *rest = text; sound && rest; pairs++) {
-        char pair[80];
+    char copy[strlen(text) + 1], *rest = strcpy(copy, text), *pair = NULL;
+    const bool each = strchr(text, ',');
+    bool sound = true;
+    for (int a = 0; a < r->dim && sound; a++) {
         double ends[2];
-        const size_t length = strcspn(rest, ",");
-        sound = pairs < r->dim && length < sizeof pair;
-        if (!sound) break;
-        memcpy(pair, rest, length);
-        pair[length] = '\0';
-        sound = text_reals(pair, ":", 2, ends) && ends[0] < ends[1];
-        r->lo[pairs] = ends[0], r->hi[pairs] = ends[1];
-        rest = rest[length] ? rest + length + 1 : NULL;
+        if (each || !a) pair = strsep(&rest, ",");
+        sound = pair && text_reals(pair, ":", 2, ends) && ends[0] < ends[1];
+        if (sound) r->lo[a] = ends[0], r->hi[a] = ends[1];
     }
-    if (!sound || (pairs != 1 && pairs != r->dim))
+    if (!sound || rest)
         return error_set(error, STATUS_BAD_INPUT,
                          "gradient: --box '%.60s': allowed with --dim %d: LO:HI for all directions "
                          "or one for each, separated by commas, LO below HI",
                          text, r->dim);
-    for (int a = pairs; a < r->dim; a++) r->lo[a] = r->lo[0], r->hi[a] = r->hi[0];
     r->boxed = true;
     return STATUS_OK;
 }
@@ -113,11 +107,12 @@ static enum status take_request(const struct options *options, int n, char **arg
     return STATUS_OK;
 }
 
-static int field_index(const struct point_cloud *pc, const char *name)
+/* NULL: there is no such column. */
+static const double *column_of(const struct point_cloud *pc, const char *name)
 {
     for (size_t k = 0; k < pc->fields; k++)
-        if (strcmp(pc->name[k], name) == 0) return (int)k;
-    return -1;
+        if (strcmp(pc->name[k], name) == 0) return pc->field[k];
+    return NULL;
 }
 
 /* Reads COLUMN=dx[,dy,dz], length characters of text. */
@@ -131,33 +126,30 @@ static enum status take_check(const struct request *r, const struct point_cloud 
         return error_set(error, STATUS_BAD_INPUT, "gradient: --check is too long");
     memcpy(text, check, length);
     text[length] = '\0';
-    char *rest = strchr(text, '=');
+    char *rest = text;
+    const char *judged = strsep(&rest, "=");
     if (!rest)
         return error_set(error, STATUS_BAD_INPUT,
                          "gradient: --check '%.*s': allowed: COLUMN=dx[,dy,dz]", shown, check);
-    *rest++ = '\0';
-    int count = 0;
-    bool distinct = true;
-    for (char *name = rest; name && count < r->dim; name = rest) {
-        char *comma = strchr(name, ',');
-        rest = comma ? comma + 1 : NULL;
-        if (comma) *comma = '\0';
-        const int k = field_index(pc, name);
-        if (k < 0)
+    bool sound = true;
+    for (int a = 0; a < r->dim && sound; a++) {
+        const char *name = strsep(&rest, ",");
+        const double *column = name ? column_of(pc, name) : NULL;
+        if (name && !column)
             return text_unknown(error, "gradient: --check", "column", name, pc->name, pc->fields);
-        for (int a = 0; a < count; a++) distinct = distinct && j->given[a] != pc->field[k];
-        j->given[count++] = pc->field[k];
+        sound = column;
+        for (int b = 0; b < a; b++) sound = sound && j->given[b] != column;
+        j->given[a] = column;
     }
-    if (count != r->dim || rest || !distinct)
+    if (!sound || rest)
         return error_set(error, STATUS_BAD_INPUT,
                          "gradient: --check '%.*s': allowed with --dim %d: %d distinct columns "
                          "after the '='",
                          shown, check, r->dim, r->dim);
-    const int k = field_index(pc, text);
-    if (k < 0)
-        return text_unknown(error, "gradient: --check", "column", text, pc->name, pc->fields);
-    j->column = pc->field[k];
-    return STATUS_OK;
+    j->column = column_of(pc, judged);
+    return j->column
+               ? STATUS_OK
+               : text_unknown(error, "gradient: --check", "column", judged, pc->name, pc->fields);
 }
 
 static bool is_given(const struct judgements *all, int dim, const double *column)
@@ -248,7 +240,7 @@ static void judge(const struct request *r, const struct point_cloud *pc,
                   const struct answer *answer, struct judgement *j)
 {
     const size_t dim = (size_t)r->dim;
-    double largest = 0, worst = -1;
+    double largest = 0, worst = -HUGE_VAL;
     for (size_t i = 0; i < pc->cloud.points.n; i++)
         largest = fmax(largest, fabs(pc->field[j->field][i]));
     for (size_t i = 0; i < pc->cloud.points.n; i++) {

@@ -140,22 +140,16 @@ static enum status sharpen(struct settings *settings, struct error *error)
     return settings_set(settings, SETTING_h_tolerance, "1e-14", SOURCE_FALLBACK, NULL, error);
 }
 
-static bool ends_in(const char *path, const char *end)
-{
-    const size_t length = strlen(path), n = strlen(end);
-    return length > n && strcmp(path + length - n, end) == 0;
-}
-
 static bool is_csv(const char *path)
 {
-    return ends_in(path, ".csv");
+    return text_ends(path, ".csv");
 }
 
 /* A case is a name, or a path of an .ini file; a file that is neither is a snapshot. */
 static bool is_snapshot(const char *path)
 {
     struct stat about;
-    return !is_csv(path) && !ends_in(path, ".ini") && stat(path, &about) == 0 &&
+    return !is_csv(path) && !text_ends(path, ".ini") && stat(path, &about) == 0 &&
            S_ISREG(about.st_mode);
 }
 

@@ -40,10 +40,10 @@ static void print_head(const struct run_settings *settings, const struct run_res
     const char *const parts[] = {"kernel",         "eta",        "gradient", "formulation",
                                  "volume_element", "integrator", "cfl",      "energy",
                                  "viscosity",      "alpha",      "beta"};
-    char line[1024];
+    char line[16 * SETTING_TEXT_MAX]; /* more than all of them need */
     size_t used = 0;
     printf("%s%s%s: %s\n", style->bold, settings->file.name, style->end, settings->file.title);
-    for (size_t i = 0; i < sizeof parts / sizeof *parts && used < sizeof line; i++) {
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         char value[SETTING_TEXT_MAX];
         settings_text(&result->settings, (enum setting)setting_find(parts[i]), value);
         used += (size_t)snprintf(line + used, sizeof line - used, "%s%s=%s", i ? " " : "", parts[i],

@@ -193,14 +193,10 @@ struct scatter {
     const char *over;
 };
 
-static bool moves(const json_t *exact, const char *name)
+/* True of a flow that turns: its curve begins near the middle, beside which it moves. */
+static bool turns(const json_t *exact)
 {
-    size_t n;
-    double *y = value_numbers(json_object_get(exact, name), &n);
-    bool any = false;
-    for (size_t i = 0; i < n; i++) any = any || y[i] != 0;
-    free(y);
-    return any;
+    return value_real(json_array_get(json_object_get(exact, "azimuthal"), 0)) != 0;
 }
 
 /* False: there is no such curve, or no memory. */
@@ -212,7 +208,7 @@ static bool scatter_fill(struct scatter *scatter, const struct run_result *resul
     const char *name = names[field];
     bool there = true;
     if (field == FIELD_VELOCITY && !json_object_get(profile, name))
-        name = moves(exact, "azimuthal") ? "azimuthal" : "radial";
+        name = turns(exact) ? "azimuthal" : "radial";
     const json_t *from[2] = {profile, exact};
     scatter->series[0] =
         (struct plot_series){.label = "particles", .kind = PLOT_POINTS, .size = 0.4};

@@ -29,9 +29,8 @@ enum status slurm_submit(const char *const *words, long *job, struct error *erro
 {
     struct child_said said;
     if (ask(words, &said, error)) return STATUS_ENVIRONMENT;
-    char *end = said.output;
-    *job = strtol(said.output, &end, 10); /* "17", or "17;cluster" */
-    const bool sound = end > said.output && *job > 0;
+    *job = strtol(said.output, NULL, 10); /* "17", or "17;cluster"; 0: no number */
+    const bool sound = *job > 0;
     if (!sound)
         error_set(error, STATUS_ENVIRONMENT, "--engine slurm: sbatch answers '%.60s', no number",
                   said.output);

@@ -54,11 +54,11 @@ static char *line_of(const struct slurm_work *work, int of)
     const struct command_option *list = options->command->options;
     char program[PATH_LENGTH] = "", *text = NULL;
     size_t size;
-    if (readlink("/proc/self/exe", program, sizeof program - 1) < 0) strcpy(program, "sphproof");
+    (void)!readlink("/proc/self/exe", program, sizeof program - 1); /* stays empty without /proc */
     FILE *line = open_memstream(&text, &size);
     if (!line) return NULL;
     fputs("exec ", line);
-    put_quoted(line, program);
+    put_quoted(line, *program ? program : "sphproof");
     fprintf(line, " %s --shard $SLURM_ARRAY_TASK_ID/%d --only-build %s --threads %d",
             options->command->name, of, work->cache->build, options->threads);
     if (takes(options->command, "jobs")) fprintf(line, " --jobs %d", work->jobs);

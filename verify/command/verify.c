@@ -51,7 +51,7 @@ static enum status refuse_name(const char *name, const char *const *groups, size
     size_t count = 0;
     if (!names) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     for (size_t i = 0; i < check_registry_count; i++)
-        if (name[length] && strlen(check_registry[i]->group) == length &&
+        if (strlen(check_registry[i]->group) == length &&
             strncmp(name, check_registry[i]->group, length) == 0)
             names[count++] = check_registry[i]->name;
     if (count) {

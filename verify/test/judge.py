@@ -73,6 +73,7 @@ def without_its_library(folder):
                         (["run", "sod", "n=50", "--snapshot", os.path.join(folder, "a.csv")], 0)):
         done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=60, env=hidden)
         assert done.returncode == code and ("cannot be loaded" in done.stderr) == (code == 4), done
+        assert bool(done.stdout) == (code == 0), done
 
 
 def with_zlib():

@@ -75,6 +75,35 @@ TEST(bars_of_parts)
     }
 }
 
+/* What the time step costs is said to cancel part of the rest if the error at a quarter of the step
+ * is larger by more than a hundredth, not of snapshots, whose steps are unknown. */
+TEST(errors_that_grow_with_shorter_steps)
+{
+    static const struct {
+        double half, quarter;
+        bool theirs;
+        const char *said; /* NULL: nothing */
+    } rows[] = {{1, 2, false, "is 2.00 times as large"},
+                {9, 1.5, false, "is 1.50 times as large"},
+                {0.1, 1.02, false, "is 1.02 times as large"},
+                {9, 1.005, false, NULL},
+                {2, 1, false, NULL},
+                {1, 2, true, NULL}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        char text[4096];
+        static struct autopsy autopsy;
+        autopsy.count = 2, autopsy.theirs = rows[k].theirs;
+        memcpy(autopsy.levels[0].error, (double[]){1, 3, 9}, sizeof autopsy.levels[0].error);
+        memcpy(autopsy.levels[1].error, (double[]){4, 4 * rows[k].half, 4 * rows[k].quarter},
+               sizeof autopsy.levels[1].error);
+        const struct printed printed = printed_begin();
+        print_parts(&autopsy, &none);
+        printed_end(&printed, text, sizeof text);
+        assert_int_equal(strstr(text, "With a quarter") != NULL, rows[k].said != NULL);
+        if (rows[k].said) assert_non_null(strstr(text, rows[k].said));
+    }
+}
+
 TEST(powers_of_terms)
 {
     static struct autopsy_level level;

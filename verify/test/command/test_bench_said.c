@@ -6,6 +6,8 @@
 
 #include <stdarg.h>
 
+#include "own_folder.h"
+
 /* the command itself, because its static functions are tested */
 #define bench_kernels_add_json add_kernels
 #define bench_kernels_free     free_kernels
@@ -401,6 +403,32 @@ TEST(skips_that_break_their_promise)
     assert_non_null(strstr(error.message, "bench: --steps: sod has no local steps; allowed: "));
     assert_non_null(strstr(calls, "end; free; "));
     planted.none = false;
+}
+
+/* The usual numbers of particles from the case's least on, but always the largest of them. */
+TEST(sizes_of_scaling)
+{
+    static const struct {
+        const char *ladder, *sizes;
+    } rows[] = {{"316 400 500 600", "316 1000 3162 10000 31623 100000 316228 1000000"},
+                {"317 400 500 600", "1000 3162 10000 31623 100000 316228 1000000"},
+                {"1000000 2000000 3000000 4000000", "1000000"},
+                {"1000001 2000000 3000000 4000000", "1000000"}};
+    char *path = path_of("tube.ini"), sizes[200];
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct error error;
+        FILE *file = fopen(path, "w");
+        assert_non_null(file);
+        fprintf(
+            file,
+            "[case]\ntitle = A tube\ndimension = 1\nreference = riemann\n[initial]\nkind = "
+            "riemann\nleft = 1 0 1\nright = 0.1 0 0.1\n[run]\nt_end = 0.01\n[converge]\nn = %s\n",
+            rows[k].ladder);
+        fclose(file);
+        assert_int_equal(bench((const char *[]){"--scaling", path, NULL}, &error), STATUS_OK);
+        snprintf(sizes, sizeof sizes, "n = %s, ", rows[k].sizes);
+        assert_non_null(strstr(calls, sizes));
+    }
 }
 
 /* Two threads at least, since one is what they are compared with. */

@@ -146,6 +146,17 @@ TEST(messages_describe_the_last_task)
     says("share 2 of 3 (TIMEOUT, submitted 3 times)");
 }
 
+/* The record of an array's cancelled tasks says nothing of those of another array. */
+TEST(cancelled_tasks_of_another_array)
+{
+    again();
+    slurm.fates[2][0] = CANCELLED_WAITING;
+    slurm.fates[1][0] = ENDS_BADLY, slurm.fates[1][1] = NEVER_SEEN;
+    assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+    assert_string_equal(slurm.arrays, "1-3 1 1 ");
+    assert_int_equal(lacking(), shares_computations(2));
+}
+
 static void submit_share_2(void)
 {
     if (slurm.tries[2] == 1) add_tasks("2", 90);
