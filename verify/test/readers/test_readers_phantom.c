@@ -237,6 +237,15 @@ static void is_read(const struct dump *d)
     snapshot_file_free(&file);
 }
 
+/* Moves an end of the box so far in that one particle alone is outside. */
+static void put_inside(struct dump *d, int end)
+{
+    const bool upper = end % 2;
+    double outermost = d->array[end / 2][0];
+    for (int i = 1; i < N; i++) outermost = (upper ? fmax : fmin)(outermost, d->array[end / 2][i]);
+    d->value[6 + end].value = outermost + (upper ? -1 : 1) * ldexp(1, -21);
+}
+
 TEST(every_form)
 {
     for (int draw = 0; draw < 300; draw++) {
@@ -252,6 +261,7 @@ TEST(every_form)
         if (drawn(3) == 0) d.kind[U + (int)drawn(2)] = -1;
         if (drawn(4) == 0) d.value[4 + drawn(8)].tag = NULL;
         if (drawn(4) == 0) d.value[6 + drawn(6)].value = 0.5; /* too small for the gas, or empty */
+        if (drawn(4) == 0) put_inside(&d, (int)drawn(6));
         if (drawn(8) == 0) d.value[6 + 2 * drawn(3)].value = (double)-INFINITY;
         if (drawn(8) == 0) d.value[7 + 2 * drawn(3)].value = (double)INFINITY;
         if (drawn(8) == 0) d.masses = 70; /* more than are read */

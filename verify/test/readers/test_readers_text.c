@@ -61,7 +61,7 @@ TEST(spellings)
 /* Units beside names are not part of them; a note says that they are not converted. */
 TEST(units)
 {
-    static const char *const noted[] = {"such as (km/s):", "such as (pc):", "such as ():"};
+    static const char *const said[] = {"such as (km/s):", "such as (pc):", "such as ():"};
     static const char *const heads[] = {"# x [kpc] rho [g cm^-3]  v (km/s) m P\n",
                                         "# x (pc),rho [g],v [km/s],m,P\n", "x [] rho v () m P\n"};
     for (size_t k = 0; k < 3; k++) {
@@ -74,7 +74,7 @@ TEST(units)
         assert_true(file.n == 5 && file.column[SNAPSHOT_X][4] == 4 &&
                     file.column[SNAPSHOT_RHO][4] == 2 && file.column[SNAPSHOT_VX][4] == 3 &&
                     file.column[SNAPSHOT_M][4] == 4 && file.column[SNAPSHOT_P][4] == 5);
-        assert_non_null(strstr(file.notes.note[0].evidence, noted[k]));
+        noted(&file, "units", "not converted", said[k]);
         snapshot_file_free(&file);
     }
 }
