@@ -191,7 +191,8 @@ TEST(values_in_comments)
             char head[300];
             t.columns -= 2;
             snprintf(head, sizeof head,
-                     "# case = my tube.ini\n# case = my tube.ini\n# boundary = open fixed\n# keys "
+                     "# box\n# case\n# case = my tube.ini\n# case = my tube.ini\n# boundary = open "
+                     "fixed\n# keys "
                      "= n=3; eta=2\n# box = %s\n",
                      ends[k].box);
             if (!behind) strcpy(t.head, head);
