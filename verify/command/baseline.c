@@ -36,8 +36,8 @@ static enum status load_baseline(const char *path, json_t **baseline, struct err
     const char *command = json_string_value(json_object_get(*baseline, "command"));
     if (strcmp(command, "baseline") == 0 && json_is_object(json_object_get(*baseline, "document")))
         return STATUS_OK;
-    return error_set(error, STATUS_BAD_INPUT, "'%.200s': a document of %.40s, not a baseline", path,
-                     command);
+    return error_set(error, STATUS_BAD_INPUT, "'%.200s': a document of %.40s, not %s baseline",
+                     path, command, strcmp(command, "baseline") ? "a" : "a whole");
 }
 
 /* A copy without large members that hold no figures. */
@@ -113,12 +113,13 @@ static enum status run(const struct options *options, int n, char **arguments, s
     }
     if (status == STATUS_OK || status == STATUS_CHECK_FAILED) {
         if (options->speak && baseline) diff_print(&diff, DIFF_THRESHOLD, true, options->color);
-        if (options->speak && !baseline) printf("a first baseline: %zu figures\n", diff.count);
         json_t *document = result_new("baseline");
         diff_add_json(&diff, document);
         if (options_write(options, document, error)) status = error->status;
         if (options_value(options, "accept") && status <= STATUS_CHECK_FAILED)
             status = accept(options, file, baseline, results, &diff, error);
+        if (options->speak && !baseline && !status)
+            printf("a first baseline: %zu figures\n", diff.count);
         diff_free(&diff);
     }
     json_decref(baseline);

@@ -199,7 +199,9 @@ static void add_filtered(struct buffer *to, const char *text)
             char *at = strstr(line, left_out[k]);
             if (!at) continue;
             at += strlen(left_out[k]);
-            const bool by_hand = at[0] == '"' && at[1] && at[2] == '"'; /* a word of one letter */
+            /* a document written by hand: words of one letter */
+            const char *git = strstr(at, ", git ");
+            const bool by_hand = (at[0] == '"' && at[1] && at[2] == '"') || (git && git[7] == ',');
             if (!by_hand) strcpy(at, "~");
         }
         /* round-off errors and CPU times */
