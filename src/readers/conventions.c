@@ -64,7 +64,7 @@ static bool inside(const struct snapshot_file *file, const double box[3], const 
 {
     for (int d = 0; d < file->dim; d++) {
         const double x = file->column[d][i], gap = margin * file->column[SNAPSHOT_H][i];
-        if (box[d] == 0 && !(x - lo[d] > gap && hi[d] - x > gap)) return false;
+        if (box[d] == 0 && !(fmin(x - lo[d], hi[d] - x) > gap)) return false;
     }
     return true;
 }

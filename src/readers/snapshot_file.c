@@ -40,19 +40,21 @@ const char *snapshot_unit(const char *name)
     return is_unit ? unit : name + strlen(name);
 }
 
+/* True if the letters and digits from name to end are this word, which a blank may end. */
+static bool is_called(const char *name, const char *end, const char *word)
+{
+    for (; name < end; name++)
+        if (isalnum((unsigned char)*name) && tolower((unsigned char)*name) != *word++) return false;
+    return strchr(" ", *word);
+}
+
 int snapshot_column_of(const char *name)
 {
-    char plain[48];
-    size_t n = 0;
     const char *end = snapshot_unit(name);
-    for (; name < end && n + 1 < sizeof plain; name++)
-        if (isalnum((unsigned char)*name)) plain[n++] = (char)tolower((unsigned char)*name);
-    plain[n] = '\0';
-    for (int c = 0; name == end && c < SNAPSHOT_COLUMNS; c++)
+    for (int c = 0; c < SNAPSHOT_COLUMNS; c++)
         for (const char *word = called[c]; *word; word += strspn(word, " ")) {
-            const size_t length = strcspn(word, " ");
-            if (length == n && strncmp(word, plain, n) == 0) return c;
-            word += length;
+            if (is_called(name, end, word)) return c;
+            word += strcspn(word, " ");
         }
     return -1;
 }

@@ -193,14 +193,15 @@ static const char *header_differs(const struct snapshot_file *a, const struct sn
     bool boxes_equal = true; /* what has no box has one of 0, at 0 */
     for (int d = 0; d < 3; d++)
         boxes_equal = boxes_equal && a->box[d] == b->box[d] && a->corner[d] == b->corner[d];
-    return strcmp(a->layout, b->layout)       ? "layout"
-           : a->parts != b->parts             ? "number of files"
-           : !same(a->time, b->time)          ? "time"
-           : !same(a->gamma, b->gamma)        ? "gamma"
-           : !boxes_equal                     ? "box"
-           : strcmp(a->boundary, b->boundary) ? "boundary"
-           : a->dim != b->dim                 ? "dimension"
-                                              : NULL;
+    return strcmp(a->layout, b->layout)         ? "layout"
+           : a->parts != b->parts               ? "number of files"
+           : !same(a->time, b->time)            ? "time"
+           : !same(a->gamma, b->gamma)          ? "gamma"
+           : !boxes_equal                       ? "box"
+           : strcmp(a->boundary, b->boundary)   ? "boundary"
+           : strcmp(a->case_name, b->case_name) ? "case"
+           : a->dim != b->dim                   ? "dimension"
+                                                : NULL;
 }
 
 static enum status append(struct snapshot_file *file, const struct snapshot_file *more,

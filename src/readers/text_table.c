@@ -93,14 +93,20 @@ enum status text_table_name(struct text_table *table, const char *map, struct er
 
 /* ---- rows ---- */
 
+enum { WORD = 48 };
+
+static bool number_of(const char *word, size_t length, double *value)
+{
+    char plain[WORD];
+    if (length >= sizeof plain) return false;
+    for (size_t k = 0; k < length; k++) plain[k] = word[k] == 'D' || word[k] == 'd' ? 'e' : word[k];
+    plain[length] = '\0';
+    return text_real(plain, value);
+}
+
 bool text_table_number(const char *word, double *value)
 {
-    char plain[48];
-    size_t n = 0;
-    for (; word[n] && n + 1 < sizeof plain; n++)
-        plain[n] = word[n] == 'D' || word[n] == 'd' ? 'e' : word[n];
-    plain[n] = '\0';
-    return !word[n] && text_real(plain, value);
+    return number_of(word, strlen(word), value);
 }
 
 /* A line, or the file, ends with a byte that is no blank. */
@@ -109,23 +115,18 @@ static void skip_blanks(const char **at)
     *at += strspn(*at, " \t\r");
 }
 
-enum { WORD = 48 };
-
 /* Reads one number of a line that ends at `end`, after its separator unless it is the first
- * number; word: its text, or the beginning if it is longer. */
+ * number; its text is from *word to *at. */
 static bool take_number(const char **at, const char *end, char separator, bool first,
-                        char word[WORD], double *value)
+                        const char **word, double *value)
 {
-    size_t n = 0;
     skip_blanks(at);
     const bool marked = !first && separator != ' ', separated = !marked || **at == separator;
     *at += marked && separated;
     skip_blanks(at);
-    for (; *at < end && **at != separator && **at != ' ' && **at != '\t' && **at != '\r'; ++*at)
-        if (n < WORD) word[n++] = **at;
-    const bool whole = n < WORD;
-    word[whole ? n : WORD - 1] = '\0';
-    return separated && whole && text_table_number(word, value);
+    *word = *at;
+    while (*at < end && **at != separator && **at != ' ' && **at != '\t' && **at != '\r') ++*at;
+    return separated && number_of(*word, (size_t)(*at - *word), value);
 }
 
 static bool blank(const char *line, const char *end)
@@ -148,10 +149,13 @@ static size_t count_rows(const struct text_table *table, size_t from)
     return rows;
 }
 
-/* Reports that a word is not a number. */
+/* Reports that the text from `from` to `to` is not a number. */
 static enum status no_number(const struct text_table *table, size_t line, size_t column,
-                             char word[WORD], struct snapshot_file *file, struct error *error)
+                             const char *from, const char *to, struct snapshot_file *file,
+                             struct error *error)
 {
+    char word[WORD];
+    snprintf(word, sizeof word, "%.*s", (int)(to - from), from);
     file->impossible = *word && !isfinite(strtod(word, NULL)); /* "nan", "-inf" */
     return *word ? error_set(error, STATUS_BAD_INPUT,
                              "%.200s:%zu: column %zu, '%s': no number: '%s'; allowed: such as 1, "
@@ -163,10 +167,10 @@ static enum status no_number(const struct text_table *table, size_t line, size_t
 }
 
 /* Significant digits of a number as written. */
-static int digits_of(const char *word)
+static int digits_of(const char *word, const char *end)
 {
     int digits = 0;
-    for (; *word && !strchr("eEdD", *word); word++)
+    for (; word < end && !strchr("eEdD", *word); word++)
         if (*word >= '0' && *word <= '9') digits += digits > 0 || *word != '0';
     return digits;
 }
@@ -195,16 +199,16 @@ static enum status take_rows(const struct text_table *table, size_t from, size_t
         if (!stop) stop = end;
         if (!blank(at, stop)) {
             for (size_t c = 0; c < table->columns; c++) {
-                char word[WORD];
+                const char *word;
                 double value;
-                if (!take_number(&at, stop, table->separator, c == 0, word, &value))
-                    return no_number(table, line, c, word, file, error);
+                if (!take_number(&at, stop, table->separator, c == 0, &word, &value))
+                    return no_number(table, line, c, word, at, file, error);
                 const int meaning = table->meaning[c];
                 if (meaning == TABLE_TYPE) type[row] = value;
                 if (meaning < 0 || meaning == TABLE_TYPE) continue;
                 file->column[meaning][row] = value;
                 int *most = &digits[meaning >= SNAPSHOT_VX]; /* above DBL_DIG all are a double */
-                const int here = *most <= DBL_DIG ? digits_of(word) : 0;
+                const int here = *most <= DBL_DIG ? digits_of(word, at) : 0;
                 if (here > *most) *most = here;
             }
             if (!blank(at, stop))

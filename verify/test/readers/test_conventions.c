@@ -282,14 +282,14 @@ TEST(stated_conventions_are_used)
 TEST(too_many_neighbours_end_the_search)
 {
     const struct kernel cubic = kernel_called("cubic_spline");
-    struct snapshot_file file = scatter(1, MOST, 0.1, 0);
+    struct snapshot_file file = scatter(1, MOST, 0.1, 0); /* with 4096 others up to 2.048 h */
     for (size_t i = 0; i < file.n; i++)
-        storage[SNAPSHOT_H][i] = 0.1, storage[0][i] = ((double)i + 0.4 * draw(0, 1)) / MOST;
+        storage[SNAPSHOT_H][i] = 0.1, storage[0][i] = (double)i / MOST;
     for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_RHO][i] = 1;
     struct conventions found =
-        found_in(&file, boxed, &cubic, &(struct width_meaning){.ratio = 2.04});
+        found_in(&file, boxed, &cubic, &(struct width_meaning){.ratio = 2.0475});
     assert_true(found.known && found.count == 1 && found.candidate[0].residual < 1e-3);
-    found = found_in(&file, boxed, &cubic, &(struct width_meaning){.ratio = 2.06});
+    found = found_in(&file, boxed, &cubic, &(struct width_meaning){.ratio = 2.0485});
     assert_true(!found.known && found.count == 0);
     assert_string_equal(found.why, "no sum is finite");
     for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_H][i] = 0.3; /* too many neighbours */
