@@ -77,6 +77,30 @@ TEST(names_without_memory)
     without_memory(named, 6, true);
 }
 
+static int calls;
+
+static void count_call(void)
+{
+    calls++;
+}
+
+/* Memory is asked for up to the most rows that are allowed. */
+TEST(most_rows)
+{
+    for (int more = 0; more < 2; more++) {
+        struct snapshot_file file = {.n = (size_t)SNAPSHOT_ROWS_MAX + (size_t)more};
+        struct error error = {0};
+        calls = 0;
+        at_each_call = count_call;
+        left = 0;
+        const enum status status = snapshot_file_make(&file, SNAPSHOT_X, "a", &error);
+        left = -1;
+        at_each_call = NULL;
+        assert_int_equal(status, STATUS_ENVIRONMENT);
+        assert_int_equal(calls, !more);
+    }
+}
+
 static enum status as_csv(struct error *error)
 {
     struct snapshot_file file;

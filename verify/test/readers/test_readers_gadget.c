@@ -51,8 +51,8 @@ TEST(every_form)
 TEST(missing_blocks)
 {
     static const char *const says[BLOCKS] = {
-        "positions of",    "velocities of",   NULL, "no block 'MASS'",
-        "neither u nor P", "no block 'RHO '", NULL, NULL};
+        "; the record has 0", "; the record has 0", NULL, "no block 'MASS'",
+        "neither u nor P",    "no block 'RHO '",    NULL, NULL};
     for (int k = 0; k < BLOCKS; k++)
         for (int draw = 0; draw < 4; draw++) {
             struct binary b = made(1 + draw % 3);
@@ -301,6 +301,12 @@ TEST(records)
     assert_int_equal(read_bytes(size, &file, &error), STATUS_BAD_INPUT);
     const char *block = strstr(error.message, "no block");
     assert_string_equal(block ? block : error.message, names);
+    snapshot_file_free(&file);
+    b.extra = 0; /* and no more than there are */
+    b.there[MASS] = b.there[ID] = b.there[U] = b.there[HSML] = b.there[ACCE] = false;
+    assert_int_equal(read_bytes(put_all(&b), &file, &error), STATUS_BAD_INPUT);
+    block = strstr(error.message, "no block");
+    assert_string_equal(block ? block : error.message, "no block 'RHO '; it has: 'POS ' 'VEL '");
     snapshot_file_free(&file);
     /* a block may itself be 8 bytes long */
     bytes[put_count(0, &b, 7)] = 1;

@@ -14,6 +14,8 @@
 
 #include "sample_layouts.h"
 
+#include "h5.h" /* after uses of the library's macros, which it changes */
+
 TEST(missing_items)
 {
     for (int a = 0; a < LAYOUTS; a++) {
@@ -88,6 +90,12 @@ TEST(file_after_a_user_block)
     }
 }
 
+static hid_t crash(const char *path, unsigned flags, hid_t how)
+{
+    (void)path, (void)flags, (void)how;
+    abort();
+}
+
 TEST(reading_in_a_process)
 {
     struct rlimit usual, none;
@@ -124,6 +132,11 @@ TEST(reading_in_a_process)
         snapshot_file_free(&file);
     }
     here.here = false;
+    const __typeof__(h5.Fopen) usual_open = h5.Fopen;
+    h5.Fopen = crash;
+    is_refused("a.hdf5", &here, "a crash",
+               "damaged or hostile: the HDF5 library crashes (Aborted)");
+    h5.Fopen = usual_open;
     const char *usual_folder = getenv("TMPDIR");
     putenv(folder);
     assert_int_equal(snapshot_read(path_of("a.hdf5"), &here, &file, &error), STATUS_ENVIRONMENT);
@@ -234,6 +247,8 @@ TEST(damaged_columns)
             items[k].shape[0] = ((hsize_t)1 << 28) + 1, items[k].shape[1] = 1;
             refuses(l, items, f->path,
                     first ? "268435457 particles; allowed: up to 268435456" : "has 268435457 x 1");
+            items[k].shape[0]--, items[k].shape[1] = 4;
+            refuses(l, items, f->path, "has 268435456 x 4");
             items[k].rank = 3;
             items[k].shape[0] = N, items[k].shape[1] = items[k].shape[2] = 1;
             refuses(l, items, f->path, "no table of numbers, but numbers with 3 indices");
@@ -316,9 +331,20 @@ TEST(damaged_pieces)
         }
 }
 
+static int freed; /* texts of the library */
+static __typeof__(h5.free_memory) usual_free;
+
+static herr_t free_counted(void *memory)
+{
+    freed++;
+    return usual_free(memory);
+}
+
 /* A text of the header is one text of less than 4096 letters, else it counts as missing. */
 TEST(texts)
 {
+    usual_free = h5.free_memory;
+    h5.free_memory = free_counted;
     static const struct {
         enum stored stored;
         int rank;
@@ -339,15 +365,18 @@ TEST(texts)
                 items[k].shape[0] = rows[r].count, items[k].letters = rows[r].letters;
                 strcpy(items[k].text, rows[r].text);
             }
+        freed = 0;
         struct snapshot_file file = file_of(items, n, rows[r].text);
+        assert_int_equal(freed, rows[r].stored == TEXT_VARIABLE && rows[r].length);
         assert_int_equal(strlen(file.kernel), rows[r].length);
         assert_null(strchr(file.kernel, '\x1b'));
         assert_true(!rows[r].length || file.kernel[0] == (rows[r].letters ? 'k' : 'Q'));
         snapshot_file_free(&file);
     }
+    h5.free_memory = usual_free;
 }
 
-/* In the header: text, an empty list, a value that is not a number. */
+/* In the header: text, an empty list, one that is too long, a value that is not a number. */
 TEST(damaged_numbers)
 {
     for (int a = 0; a < LAYOUTS; a++) {
@@ -357,12 +386,20 @@ TEST(damaged_numbers)
             const char *name = strrchr(f->path, '/') + 1;
             struct item items[ITEMS_MAX];
             if (is_column(f) || f->text || f->meaning == IGNORED) continue;
-            items_of(l, items);
-            items[k].stored = TEXT, items[k].rank = 0;
-            if (f->needed) refuses(l, items, f->path, name);
-            if (f->meaning == TIME) {
+            for (int form = 0; form < 4; form++) {
+                static const hsize_t count[] = {1, 0, 4097, 7};
+                items_of(l, items);
+                items[k].attribute = !form, items[k].rank = form > 0,
+                items[k].shape[0] = count[form];
+                items[k].stored = form ? F64 : TEXT;
+                if (form == 3 && f->meaning != BOX_ENDS) continue;
+                if (f->needed) {
+                    refuses(l, items, f->path, name);
+                    continue;
+                }
                 struct snapshot_file file = file_of(items, l->count, f->path);
-                assert_false(file.time.known);
+                assert_false(file.time.known && f->meaning == TIME);
+                assert_false(file.boxed && (f->meaning == BOX || f->meaning == BOX_ENDS));
                 snapshot_file_free(&file);
             }
             items_of(l, items);

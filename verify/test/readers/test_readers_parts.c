@@ -107,8 +107,8 @@ TEST(totals)
         }
 }
 
-/* Parts of which one has a different item, or of our own snapshots a different corner of the box or
- * boundary, are not joined. */
+/* Parts of which one has a different item, or of our own snapshots a different corner of the box,
+ * boundary or case, are not joined. */
 TEST(parts_with_different_items)
 {
     static const struct {
@@ -130,6 +130,8 @@ TEST(parts_with_different_items)
                 {"Header/Origin", "another box", true, 0, 0},
                 {"Header/Boundary", "another boundary", false, 0, 0},
                 {"Header/Boundary", "another boundary", true, 0, 0},
+                {"Header/Case", "another case", false, 0, 0},
+                {"Header/Case", "another case", true, 0, 0},
                 {"Header/Dimension", "another dimension", true, 0, 0},
                 {"Header/NumPart_ThisFile", "cut off or damaged", false, 3, 0},
                 {"Header/NumFilesPerSnapshot", "another number of files", false, 3, 0},
@@ -142,9 +144,11 @@ TEST(parts_with_different_items)
             struct error error;
             struct item items[2][ITEMS_MAX];
             char name[32];
-            const size_t n = gadget->count + 2;
+            const size_t n = gadget->count + 3;
             for (int p = 0; p < 2; p++) {
                 part(p, 2, items[p]);
+                items[p][n - 3] =
+                    (struct item){"Header/Case", true, TEXT, 0, {0}, false, {0}, "sedov", 0};
                 items[p][n - 2] =
                     (struct item){"Header/Origin", true, F64, 1, {3}, false, {-3, 40, 5}, "", 0};
                 items[p][n - 1] =

@@ -58,7 +58,7 @@ static struct dump made(void)
 }
 
 static unsigned char bytes[BYTES];
-static size_t at, begun;
+static size_t at, begun, lengths; /* lengths: where those of the arrays stand */
 
 static void put(const struct dump *d, double value, int size, bool real)
 {
@@ -135,6 +135,7 @@ static size_t put_all(const struct dump *d)
     begin(), put(d, d->groups, 4, false), end(d);
     for (int g = 0; g < d->groups; g++) {
         begin();
+        if (!g) lengths = at;
         put(d, g ? 2 : d->rows, 8, false);
         for (int kind = 0; kind < KINDS; kind++) {
             int n = kind == 1 && !g && d->typed;
@@ -264,6 +265,8 @@ TEST(every_form)
         if (drawn(4) == 0) put_inside(&d, (int)drawn(6));
         if (drawn(8) == 0) d.value[6 + 2 * drawn(3)].value = (double)-INFINITY;
         if (drawn(8) == 0) d.value[7 + 2 * drawn(3)].value = (double)INFINITY;
+        for (int a = X; a <= Y && drawn(2); a++) /* below 0, above the least ends of the box */
+            for (int i = 0; i < N; i++) d.array[a][i] -= 1;
         if (drawn(8) == 0) d.masses = 70; /* more than are read */
         is_read(&d);
     }
@@ -347,7 +350,23 @@ TEST(names)
     refuses(put_all(&d), "1 gas particles");
     d = made();
     d.groups = 0;
-    refuses(put_all(&d), "0 groups of arrays");
+    refuses(put_all(&d), "0 groups of arrays, 0 particles; allowed: at least one group");
+    static const struct {
+        size_t behind; /* bytes behind the beginning of the lengths */
+        double value;
+        int size;
+        const char *says;
+    } rows[] = {{0, (1 << 28) + 1., 8, "1 groups of arrays, 2.68435e+08 particles; allowed: "},
+                {0, 1 << 28, 8, "has 14 bytes; allowed: 268435456"},
+                {8, -1, 4, "damaged: -1 arrays of one kind; allowed: 0 to "},
+                {8 + 4 * (KINDS - 1), 1e6, 4, "damaged: 1e+06 arrays of one kind"}};
+    d = made();
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const size_t size = put_all(&d);
+        at = lengths + rows[k].behind;
+        put(&d, rows[k].value, rows[k].size, false);
+        refuses(size, rows[k].says);
+    }
 }
 
 /* A file that ends early or has any byte changed is refused or read. */

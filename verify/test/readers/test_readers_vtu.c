@@ -308,6 +308,7 @@ static const struct {
     {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"1e5\"", "NumberOfPoints = '1e5'; allowed: 1"},
     {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"0\"", "NumberOfPoints = '0'; allowed: 1"},
     {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"2.5\"", "NumberOfPoints = '2.5'"},
+    {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=>9>", "NumberOfPoints = ''; allowed: 1"},
     {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"1\"", "1 gas particles; allowed: at least 4"},
     {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"10\"",
      "'Points' has '' as number 28 of the 30"},
