@@ -102,7 +102,7 @@ static enum status apply_common(struct line *line, const char *name, const char 
         line->options.json = value;
         break;
     case 'q':
-        line->options.quiet = 1;
+        line->options.quiet = true;
         break;
     case 'h':
         line->help = true;
@@ -197,14 +197,14 @@ static enum status find_command(const char *word, struct options *options, struc
 static enum status parse(struct line *line, int argc, char **argv, struct error *error)
 {
     enum status status = STATUS_OK;
-    int options_end = 0;
+    bool options_end = false;
     for (int i = 1; i < argc && !status; i++) {
         char *word = argv[i];
         double number;
         if (i == 1 && strcmp(word, "help") == 0)
             line->help = true;
         else if (!options_end && strcmp(word, "--") == 0)
-            options_end = 1;
+            options_end = true;
         else if (!options_end && word[0] == '-' && word[1] && !text_real(word, &number))
             status = take_option(line, argv, &i, error);
         else if (!line->options.command)

@@ -23,9 +23,9 @@ struct command_option {
 struct options {
     const char *json; /* file (known to be writable), "-" for standard output, NULL for none */
     int threads;      /* >= 1 */
-    int quiet;        /* no progress, no remarks */
-    int speak;        /* 1 if tables go to standard output */
-    int color;        /* resolved: 1 if standard output may be coloured */
+    bool quiet;       /* no progress, no remarks */
+    bool speak;       /* tables go to standard output */
+    bool color;       /* resolved: standard output may be coloured */
     const struct command *command;
     const char **values; /* of the command's own options, see options_value */
     int count;           /* number of arguments, as passed to the command */

@@ -138,8 +138,8 @@ static enum status take_check(const struct request *r, const struct point_cloud 
         if (name && !column)
             return text_unknown(error, "gradient: --check", "column", name, pc->name, pc->fields);
         sound = column;
-        for (int b = 0; b < a; b++) sound = sound && j->given[b] != column;
         j->given[a] = column;
+        for (int b = 0; b < a; b++) sound = sound && j->given[b] != column;
     }
     if (!sound || rest)
         return error_set(error, STATUS_BAD_INPUT,

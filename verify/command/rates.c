@@ -161,7 +161,7 @@ static enum status take_theirs(struct request *r, const char *path, bool toleran
     if (is_csv(path)) return snapshot_csv_named(path, &file, &r->theirs, r->unknown, error);
     const enum status status = snapshot_csv(path, &file, &r->theirs, r->widths, error);
     /* single precision limits the agreement of rates */
-    if (!status && !tolerance && file.precision[SINGLE] > 1e-9) r->tolerance = 1e-5;
+    if (!status && !tolerance && file.precision[SINGLE] > r->tolerance) r->tolerance = 1e-5;
     snapshot_file_free(&file);
     return status;
 }

@@ -196,7 +196,8 @@ struct scatter {
 /* True of a flow that turns: its curve begins near the middle, beside which it moves. */
 static bool turns(const json_t *exact)
 {
-    return value_real(json_array_get(json_object_get(exact, "azimuthal"), 0)) != 0;
+    const json_t *first = json_array_get(json_object_get(exact, "azimuthal"), 0);
+    return value_real(first) != 0;
 }
 
 /* False: there is no such curve, or no memory. */

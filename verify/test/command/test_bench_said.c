@@ -311,6 +311,8 @@ static const struct {
      "free; "},
     {{"--scaling", "--n=20,40"},
      "bench --scaling: sod, n = 20 40, 3 threads, 5 samples of 0.02 to 5 s; end; json; print; "},
+    {{"--scaling", "--n=20"},
+     "bench --scaling: sod, n = 20, 3 threads, 5 samples of 0.02 to 5 s; end; json; print; "},
     {{"--scaling", "gresho", "--time=1e-9", "--plot=p.svg"},
      "probe p.svg; bench --scaling: gresho, n = 316 1000 3162 10000 31623 100000 316228 "
      "1000000, 3 threads, 5 samples of 1e-09 to 5 s; end; plot p.svg; json; print; "},
