@@ -50,7 +50,8 @@ static void set_fields(struct parser *parser, const char *name, const char *valu
     char copy[INI_TEXT_LINE + 1], *rest = NULL;
     snprintf(copy, sizeof copy, "%s", value);
     memset(fields, 0, FIELDS * sizeof *fields);
-    if (!*value) ini_text_fail_value(&parser->at, name, value, "names of fields");
+    if (!value[strspn(value, " \t,")])
+        ini_text_fail_value(&parser->at, name, value, "names of fields");
     for (char *word = strtok_r(copy, " \t,", &rest); word; word = strtok_r(NULL, " \t,", &rest)) {
         const int field = family_index(&field_family, word);
         if (field < 0) {

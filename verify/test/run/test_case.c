@@ -237,6 +237,7 @@ TEST(bad_lines)
 {
     refused("", "some/folder/tube.v2.ini: the case file is empty");
     refused(HEAD "[measure]\nfields =\n", AT("13") "fields = ; allowed: names of fields");
+    refused(HEAD "[measure]\nfields = , ,\n", AT("13") "fields = , ,; allowed: names of fields");
     begins(HEAD "[measure]\nfields = density mass\n", AT("13") "no field 'mass'");
     begins(HEAD "[measure]\nexact = densty\n",
            AT("13") "no field 'densty'; did you mean 'density'? allowed: density velocity");
