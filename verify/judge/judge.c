@@ -580,16 +580,14 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
     enum status status = snapshot_read(path, &request->options, &judged->file, error);
     if (!status) status = judge_geometry(request, judged, period, error);
     if (!status) status = complete(judged, judged->run.problem.gamma, error);
+    const int dim = judged->file.dim;
+    if (judged->slab > 0) judged->file.dim = 3; /* densities were summed in 3D */
     if (!status && request->kernel >= 0)
-        status = plugin_select(&kernel, request->kernel, SINC_ORDER,
-                               judged->slab > 0 ? 3 : judged->file.dim, error);
-    if (!status && !glance) {
-        const int dim = judged->file.dim;
-        if (judged->slab > 0) judged->file.dim = 3; /* densities were summed in 3D */
+        status = plugin_select(&kernel, request->kernel, SINC_ORDER, judged->file.dim, error);
+    if (!status && !glance)
         status = conventions_find(&judged->file, period, request->kernel < 0 ? NULL : &kernel,
                                   &request->width, &judged->conventions, error);
-        judged->file.dim = dim;
-    }
+    judged->file.dim = dim;
     if (!status)
         status =
             gas_make(&gas, judged, period,

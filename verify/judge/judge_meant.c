@@ -6,6 +6,7 @@
 
 #include "judge.h"
 #include "problem_list.h"
+#include "text.h"
 
 /* Two cases whose misfits differ by less are equally good; the cases' end times decide. */
 static const double alike = 1e-3;
@@ -46,7 +47,7 @@ static bool nearer(const struct candidate *a, const struct candidate *b)
     if (!b->name) return true;
     if (a->far != b->far) return b->far;
     if (a->fieldless != b->fieldless) return b->fieldless;
-    if (fabs(a->wrong - b->wrong) > alike * fmax(a->wrong, b->wrong)) return a->wrong < b->wrong;
+    if (fabs(a->wrong - b->wrong) > alike * b->wrong) return a->wrong < b->wrong;
     return a->late < b->late;
 }
 
@@ -122,12 +123,6 @@ static void find_meant(const char *path, const struct judge_request *request, st
              best.name, how, here);
 }
 
-static void append(char *text, size_t size, const char *meant)
-{
-    const size_t used = strlen(text);
-    snprintf(text + used, size - used, "; %s", meant);
-}
-
 enum status judge_snapshot(const char *path, const struct judge_request *request,
                            struct judged *judged, struct error *error)
 {
@@ -140,8 +135,8 @@ enum status judge_snapshot(const char *path, const struct judge_request *request
         return status;
     find_meant(path, request, judged, !status, meant);
     if (meant[0] && status)
-        append(error->message, sizeof error->message, meant);
+        text_add(error->message, sizeof error->message, "; %s", meant);
     else if (meant[0])
-        append(judged->verdict, sizeof judged->verdict, meant);
+        text_add(judged->verdict, sizeof judged->verdict, "; %s", meant);
     return status;
 }

@@ -79,15 +79,14 @@ static bool find_gases(struct start_gas *gas, double *work)
 {
     const struct snapshot *s = gas->snapshot;
     for (size_t i = 0; i < s->n; i++) {
-        size_t k = 0;
-        while (k < gas->gases && !start_alike(gas->exact[i].rho, gas->of[k].rho, 1e-9)) k++;
+        const size_t k = start_gas_of(gas, gas->exact[i].rho);
         if (k == START_GASES_MAX) return false;
         if (k == gas->gases) gas->of[gas->gases++].rho = gas->exact[i].rho;
     }
     for (size_t k = 0; k < gas->gases; k++) {
         size_t n = 0;
         for (size_t i = 0; i < s->n; i++)
-            if (start_alike(gas->exact[i].rho, gas->of[k].rho, 1e-9)) work[n++] = s->m[i];
+            if (start_gas_of(gas, gas->exact[i].rho) == k) work[n++] = s->m[i];
         gas->of[k].mass = median(work, n);
         if (2 * near(work, n, gas->of[k].mass) <= n) return false;
     }
@@ -99,7 +98,7 @@ static bool find_gases(struct start_gas *gas, double *work)
 static bool gases_fit(const struct start_gas *gas)
 {
     bool fit = true;
-    for (size_t k = 0; k < gas->gases; k++) fit &= start_alike(gas->of[k].mass, gas->mass, 0.15);
+    for (size_t k = 0; k < gas->gases; k++) fit &= fabs(gas->of[k].mass / gas->mass - 1) <= 0.15;
     return fit || problem_reads(gas->problem->problem, SETTING_mass_ratio);
 }
 
@@ -221,7 +220,7 @@ static bool are_moved(const struct start_gas *gas)
         gas->problem->problem->smooth ? ~(1u << START_MASS) : 1u << START_PRESSURE;
     size_t wrong = 0, moved = 0;
     for (size_t i = 0; i < gas->snapshot->n; i++) {
-        double most[3] = {0};
+        double most[START_FIELDS] = {0};
         if (!gas->wrong[i]) continue;
         if (gas->wrong[i] & telling) return false;
         for (int k = 0; k < 2 * dim; k++) {
@@ -230,17 +229,16 @@ static bool are_moved(const struct start_gas *gas)
             state_beside(gas, i, k / 2, (k % 2 ? -1 : 1) * gas->spacing, &beside);
             for (int d = 0; d < dim; d++)
                 squares += (beside.v[d] - gas->exact[i].v[d]) * (beside.v[d] - gas->exact[i].v[d]);
-            most[0] = fmax(most[0], sqrt(squares) / gas->speed);
-            most[1] = fmax(most[1], start_relative(beside.u, gas->exact[i].u));
-            most[2] = fmax(most[2], start_relative(beside.rho, gas->exact[i].rho));
+            most[START_VELOCITY] = fmax(most[START_VELOCITY], sqrt(squares) / gas->speed);
+            most[START_ENERGY] =
+                fmax(most[START_ENERGY], start_relative(beside.u, gas->exact[i].u));
+            most[START_MASS] =
+                fmax(most[START_MASS], start_relative(beside.rho, gas->exact[i].rho));
         }
-        const double off[3] = {
-            start_off(gas, START_VELOCITY, i, &gas->exact[i]),
-            gas->problem->problem->mean_energy ? 0
-                                               : start_off(gas, START_ENERGY, i, &gas->exact[i]),
-            gas->wrong[i] & 1u << START_MASS ? start_off(gas, START_MASS, i, &gas->exact[i]) : 0};
         bool is_moved = true;
-        for (int k = 0; k < 3; k++) is_moved = is_moved && off[k] <= most[k] + START_WRONG;
+        for (enum start_field f = 0; f <= START_MASS; f++)
+            is_moved = is_moved && (!(gas->wrong[i] & 1u << f) ||
+                                    start_off(gas, f, i, &gas->exact[i]) <= most[f] + START_WRONG);
         wrong++;
         moved += is_moved;
     }

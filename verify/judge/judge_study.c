@@ -144,24 +144,20 @@ json_t *judge_conservation(const struct judged *judged, size_t n, struct trace *
 
 /* ---- orders ---- */
 
-/* Fewest particles first; for equal numbers the latest first. */
-static int by_number(const void *a, const void *b)
-{
-    const struct judged *one = *(const struct judged *const *)a,
-                        *other = *(const struct judged *const *)b;
-    if (one->result.n != other->result.n) return one->result.n > other->result.n ? 1 : -1;
-    return better(one, other) ? -1 : better(other, one) ? 1 : (one > other) - (one < other);
-}
-
-/* The last snapshot of each number of particles, fewest first. */
+/* The last snapshot of each number of particles, fewest first; of two of one time the first. */
 static size_t levels_of(const struct judged *judged, size_t n, const struct judged **levels)
 {
     size_t count = 0;
-    for (size_t i = 0; i < n; i++) levels[i] = &judged[i];
-    qsort(levels, n, sizeof *levels, by_number);
-    for (size_t i = 0; i < n; i++)
-        if (!count || levels[count - 1]->result.n != levels[i]->result.n)
-            levels[count++] = levels[i];
+    for (size_t i = 0; i < n; i++) {
+        size_t k = 0;
+        while (k < count && levels[k]->result.n < judged[i].result.n) k++;
+        if (k == count || levels[k]->result.n > judged[i].result.n) {
+            memmove(&levels[k + 1], &levels[k], (count++ - k) * sizeof *levels);
+            levels[k] = &judged[i];
+        } else if (better(&judged[i], levels[k])) {
+            levels[k] = &judged[i];
+        }
+    }
     return count;
 }
 

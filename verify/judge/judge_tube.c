@@ -26,18 +26,18 @@ static double sound(const struct riemann_solution *s, const struct riemann_state
     return sqrt(s->gamma * gas->P / gas->rho);
 }
 
+static double fastest_in(const struct riemann_solution *s, const struct riemann_state *gas)
+{
+    return fabs(gas->v) + sound(s, gas);
+}
+
+/* The fastest signal in the right gas and beside the contact: no wave between them is faster. The
+ * left gas is the right one of the mirrored tube. */
 static double fastest_of(const struct riemann_solution *s)
 {
-    const struct riemann_state states[] = {s->left,
-                                           s->right,
-                                           {s->rho_star_left, s->v_star, s->p_star},
-                                           {s->rho_star_right, s->v_star, s->p_star}};
-    const double heads[] = {s->left_head, s->left_tail, s->right_head, s->right_tail};
-    double most = 0;
-    for (size_t i = 0; i < (s->vacuum ? 2 : 4); i++)
-        most = fmax(most, fabs(states[i].v) + sound(s, &states[i]));
-    for (size_t i = 0; i < 4; i++) most = fmax(most, fabs(heads[i])); /* fmax ignores NaN */
-    return most;
+    const struct riemann_state left = {s->rho_star_left, s->v_star, s->p_star},
+                               right = {s->rho_star_right, s->v_star, s->p_star};
+    return fmax(fastest_in(s, &s->right), fmax(fastest_in(s, &left), fastest_in(s, &right)));
 }
 
 static bool solve(const struct settings *settings, struct tube *tube)

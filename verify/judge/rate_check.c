@@ -176,7 +176,7 @@ static void propose_kernels(struct rate_check *check, const struct both *both)
         struct rate_table table;
         char cause[RATE_CAUSE];
         const char *name = k < 0 ? "" : kernel_family.members[k]->name;
-        if (k >= 0 && kernel_select(&changed.scheme.kernel, name, 5, NULL)) continue;
+        if (k >= 0) kernel_select(&changed.scheme.kernel, name, 5, NULL);
         if (other) changed.scheme.eta = found;
         if (k < 0)
             snprintf(cause, sizeof cause, "eta: theirs is %.6g", found);
@@ -194,15 +194,15 @@ static void propose_kernels(struct rate_check *check, const struct both *both)
 static void propose_no_grad_h(struct rate_check *check, const struct both *both)
 {
     const struct setup *setup = both->setup;
-    struct oracle oracle;
+    struct oracle oracle = {0};
     struct rate_table changed = *both->ours;
     if (setup->scheme.formulation != FORMULATION_LAGRANGIAN || setup->n > ORACLE_MOST) return;
     for (int a = 0; a < setup->dim; a++)
         if (setup->boundary[a] != BOUNDARY_PERIODIC || setup->gravity[a] != 0) return;
-    if (oracle_create(&oracle, setup, NULL)) return;
-    oracle.without_grad_h = true;
     double *storage = malloc(4 * setup->n * sizeof *storage);
-    if (storage && !oracle_evaluate(&oracle, NULL)) {
+    const bool made = storage && !oracle_create(&oracle, setup, NULL);
+    oracle.without_grad_h = true;
+    if (made && !oracle_evaluate(&oracle, NULL)) {
         for (int a = 0; a < 3; a++) changed.force[a] = storage + (size_t)a * setup->n;
         changed.dU = storage + 3 * setup->n;
         for (size_t i = 0; i < setup->n; i++) {

@@ -75,13 +75,13 @@ static bool name_range(struct rank *rank, size_t n, const char *what, char *text
     return true;
 }
 
-/* Names a constant stride between the wrong rows of the file. */
+/* Names a constant stride between the wrong rows of the file, two at least. */
 static bool name_stride(const struct start_gas *gas, unsigned fields, char *text, size_t size)
 {
     const size_t n = gas->snapshot->n;
     size_t first = 0, stride = 1;
     while (!(gas->wrong[first] & fields)) first++;
-    while (first + stride < n && !(gas->wrong[first + stride] & fields)) stride++;
+    while (!(gas->wrong[first + stride] & fields)) stride++;
     if (stride < 2) return false;
     for (size_t i = first; i < n; i++)
         if (((gas->wrong[i] & fields) != 0) != ((i - first) % stride == 0)) return false;
@@ -111,10 +111,10 @@ void start_where(const struct start_gas *gas, unsigned fields, char *text, size_
     const size_t n = gas->snapshot->n;
     struct rank *rank = malloc(n * sizeof *rank);
     size_t wrong = 0;
-    bool named = false;
+    bool named = !rank; /* without memory nothing is said */
     *text = '\0';
     for (size_t i = 0; i < n; i++) wrong += (gas->wrong[i] & fields) != 0;
-    for (enum way way = 0; rank && !named && way < WAYS; way++) {
+    for (enum way way = 0; !named && way < WAYS; way++) {
         if (!has_way(gas->problem->problem, gas->problem->domain.dim, way)) continue;
         for (size_t i = 0; i < n; i++)
             rank[i] = (struct rank){along(gas, way, i), (gas->wrong[i] & fields) != 0};

@@ -3,9 +3,14 @@
 
 #include <math.h>
 
-bool start_alike(double a, double b, double tolerance)
+/* Densities that differ by less are those of one gas. */
+static const double alike = 1e-9;
+
+size_t start_gas_of(const struct start_gas *gas, double rho)
 {
-    return fabs(a / b - 1) <= tolerance;
+    size_t k = 0;
+    while (k < gas->gases && !(fabs(rho / gas->of[k].rho - 1) <= alike)) k++;
+    return k;
 }
 
 double start_relative(double value, double exact)
@@ -15,8 +20,8 @@ double start_relative(double value, double exact)
 
 double start_mass(const struct start_gas *gas, double rho)
 {
-    for (size_t k = 0; k < gas->gases; k++)
-        if (start_alike(rho, gas->of[k].rho, 1e-9)) return gas->of[k].mass;
+    const size_t k = start_gas_of(gas, rho);
+    if (k < gas->gases) return gas->of[k].mass;
     return gas->volume > 0 ? rho * gas->volume : gas->mass;
 }
 

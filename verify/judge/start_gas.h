@@ -25,8 +25,8 @@ struct start_gas {
     } of[START_GASES_MAX];
 };
 
-/* True if |a - b| is at most tolerance times |b|. */
-bool start_alike(double a, double b, double tolerance);
+/* The index of the gas with this density; gas->gases: there is none. */
+size_t start_gas_of(const struct start_gas *gas, double rho);
 
 /* The difference relative to the exact value; where the exact value is 0, 1 for any other value. */
 double start_relative(double value, double exact);

@@ -74,10 +74,12 @@ TEST(times_decide_between_equals)
     static const struct {
         double ratio, time; /* misfit of sod over that of sod_standard; ends are at 0.2 and 0.1 */
         const char *meant;
-    } rows[] = {{0.9989, 0.1, "sod"},          {0.9991, 0.1, "sod_standard"},
-                {1.0009, 0.1, "sod_standard"}, {1.0011, 0.1, "sod_standard"},
-                {0.9989, 0.2, "sod"},          {0.9991, 0.2, "sod"},
-                {1.0009, 0.2, "sod"},          {1.0011, 0.2, "sod_standard"}};
+    } rows[] = {
+        {0.9989, 0.1, "sod"},          {0.9991, 0.1, "sod_standard"},
+        {1.0009, 0.1, "sod_standard"}, {1.0011, 0.1, "sod_standard"},
+        {0.9991, 0.14, "sod"},         {1.0009, 0.14, "sod"}, /* as a part of the end time */
+        {0.9989, 0.2, "sod"},          {0.9991, 0.2, "sod"},
+        {1.0009, 0.2, "sod"},          {1.0011, 0.2, "sod_standard"}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         mix_at("sod", "sod_standard", rows[k].ratio, rows[k].time);
         assert_true(is_said_to_be("sound_wave", rows[k].meant, distance(rows[k].meant) > 0.06));
@@ -157,6 +159,58 @@ TEST(lengths_of_candidates)
         judge_free(&judged);
         assert_true(is_said_to_be("lax", "sound_wave", false) == rows[k].meant);
     }
+}
+
+/* The margin of a box is a part of the case's length, here 10, in each direction. */
+TEST(lengths_of_a_longer_case)
+{
+    const struct judge_request request = {.case_name = "gresho", .time = {true, 0}, .kernel = -1};
+    const struct run run = keyed_run("yee", "");
+    for (int k = 0; k < 6; k++) {
+        const double off = k % 3 == 0   ? 0
+                           : k % 3 == 1 ? 9e-6
+                                        : 1.1e-5,
+                     lo = run.problem.domain.lo[0];
+        plant(2, 0, "");
+        snprintf(gas.head, sizeof gas.head, "# gamma = 1.4\n# box = %.17g:%.17g %.17g:%.17g\n", lo,
+                 lo + 10 + (k < 3 ? off : 0), lo, lo + 10 + (k < 3 ? 0 : off));
+        for (int i = 0; i < N; i++) {
+            struct problem_state s;
+            const double x[3] = {lo + 10 * (i % 16 + 0.5) / 16, lo + 10 * (i / 16 + 0.5) / 15};
+            problem_sample(&run.problem, x, 0, &s);
+            for (int d = 0; d < 2; d++) gas.x[d][i] = x[d], gas.v[d][i] = s.v[d];
+            gas.rho[i] = s.rho, gas.u[i] = s.u, gas.m[i] = 100 * s.rho / N;
+        }
+        struct judged judged = judges(&request);
+        assert_int_equal(strstr(judged.verdict, "did you mean yee? (") != NULL, k % 3 < 2);
+        judge_free(&judged);
+    }
+}
+
+/* Another case is looked for if the mass is wrong, and not if only gamma is another: then the
+ * verdict says which. A time that is given is taken also where the file has none and the case asked
+ * for has other dimensions. */
+TEST(when_others_are_tried)
+{
+    const struct judge_request sod = {.case_name = "sod", .kernel = -1},
+                               other = {.case_name = "gresho", .time = {true, 0.1}, .kernel = -1};
+    mix("sod", "sod", 1, 0.1);
+    for (int i = 0; i < N; i++) gas.m[i] *= 0.8;
+    struct judged judged = judges(&sod);
+    assert_non_null(strstr(judged.verdict, "; none of our other cases in 1D is near either"));
+    judge_free(&judged);
+    struct judge_request uniform = uniform_gas();
+    uniform.gamma.known = false;
+    plant(1, 0, "# gamma = 1.5\n# box = 0:2\n");
+    for (int i = 0; i < N; i++) gas.x[0][i] = (i + 0.5) * 2 / N, gas.m[i] = 2. / N, gas.u[i] = 2;
+    judged = judges(&uniform);
+    assert_non_null(strstr(judged.verdict, "another gas: gamma = 1.5"));
+    assert_null(strstr(judged.verdict, "other cases"));
+    assert_null(strstr(judged.verdict, "did you mean"));
+    judge_free(&judged);
+    mix("sod", "sod", 1, 0.1);
+    snprintf(gas.head, sizeof gas.head, "# gamma = 1.4\n# box = -1:1\n");
+    refuses(&other, "; did you mean sod? (");
 }
 
 /* A case with one exact value only is named if no case with fields is near; never if it is far. */

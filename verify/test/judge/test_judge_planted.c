@@ -279,12 +279,12 @@ TEST(particles_beside_a_jump)
 TEST(moved_particles)
 {
     static const struct {
-        double moved; /* in spacings */
-        int others;   /* with a wrong energy */
+        double moved;  /* in spacings */
+        int hot, fast; /* so many have a wrong energy, a wrong velocity */
         bool pressure, good;
-    } rows[] = {{0, 0, false, false},  {0, 0, false, true},    {0.3, 0, false, true},
-                {0.3, 3, false, true}, {0.3, 6, false, false}, {0.3, 0, true, false},
-                {2.5, 0, false, false}};
+    } rows[] = {{0, 0, 0, false, false},   {0, 0, 0, false, true},    {0.3, 0, 0, false, true},
+                {0.3, 3, 0, false, true},  {0.3, 6, 0, false, false}, {0.3, 0, 3, false, true},
+                {0.3, 0, 6, false, false}, {0.3, 0, 0, true, false},  {2.5, 0, 0, false, false}};
     double mass = 1; /* of the case, after the first row */
     const struct run run = keyed_run("noh_2d", "");
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
@@ -306,7 +306,8 @@ TEST(moved_particles)
             gas.x[0][i] = x[0] + by * cos(angle), gas.x[1][i] = x[1] + by * sin(angle);
             for (int d = 0; d < 2; d++) gas.v[d][i] = s.v[d];
             gas.m[i] = mass / N, gas.rho[i] = s.rho;
-            gas.u[i] = s.u * (i < rows[k].others ? 1.5 : 1);
+            gas.v[0][i] += i < rows[k].fast ? 2 : 0;
+            gas.u[i] = s.u * (i < rows[k].hot ? 1.5 : 1);
             gas.P[i] = (run.problem.gamma - 1) * gas.rho[i] * gas.u[i];
         }
         if (rows[k].pressure) gas.P[77] *= 1.01;

@@ -130,8 +130,15 @@ TEST(snapshots_of_one_time)
     assert_true(judge_drift(judged, 4, &drift, pair));
     assert_int_equal(pair[0], 0);
     assert_int_equal(pair[1], 1);
-    judged[2].result.n = 60;
-    for (int f = 0; f < FIELDS; f++) judged[0].result.errors[f].l1 = 1e9;
+    for (int f = 0; f < FIELDS; f++)
+        judged[0].result.errors[f].l1 = judged[2].result.errors[f].l1 = 1e9;
+    struct judged levels[3] = {judged[1], judged[2], made(60, 0.2, 2)};
+    json_t *of_three = judge_orders(levels, 3), *of_first = NULL;
+    levels[1] = levels[2];
+    of_first = judge_orders(levels, 2);
+    assert_true(json_array_size(of_first) == FIELDS && json_equal(of_three, of_first));
+    json_decref(of_three), json_decref(of_first);
+    judged[2] = made(60, 0.2, 2);
     json_t *orders = judge_orders(judged, 4), *other = judge_orders(judged + 1, 3);
     assert_true(json_equal(orders, other)); /* orders leave out the snapshot of an earlier time */
     json_decref(orders);

@@ -287,7 +287,8 @@ TEST(rows_of_other_particles)
             static char letters[3][2] = {"x", "y", "z"};
             make(&gas, dim, sides[dim], "eta=2.4");
             for (int a = 0; a < dim; a++) {
-                gas.setup.hi[a] = 2, gas.setup.boundary[a] = BOUNDARY_PERIODIC;
+                gas.setup.lo[a] = -0.25, gas.setup.hi[a] = 1.75;
+                gas.setup.boundary[a] = BOUNDARY_PERIODIC;
                 memcpy(x[a], gas.x[a], sizeof x[a]);
             }
             gas.setup.boundary[dim - 1] = rows[k].boundary;

@@ -78,6 +78,7 @@ static void compute_some(struct pool *pool)
             assert_int_equal(job->compute(job->context, &document, &error), STATUS_OK);
             assert_string_equal(value_text(document, "command"), cheap[c].command);
             if (!c) assert_string_equal(value_text(document, "status"), "ok");
+            if (!c) has_content(json_object_get(json_object_get(document, "through_time"), "time"));
             struct kernel sinc;
             assert_int_equal(kernel_select(&sinc, "sinc", 5, &error), STATUS_OK);
             if (strstr(cheap[c].job, "sinc")) /* of the order that settings have by default */
@@ -200,6 +201,8 @@ TEST(small_pieces)
             assert_string_equal(value_text(document, "reproduce"), rows[k].reproduce);
             for (int i = 0; i < 2 && rows[k].members[i]; i++)
                 has_content(json_object_get(document, rows[k].members[i]));
+            if (piece.kind == REPORT_SKIPS)
+                assert_true(json_is_array(json_object_get(document, "points")));
             if (piece.kind == REPORT_RUN)
                 assert_string_equal(value_text(document, "status"), "broke_down");
             json_decref(document);
