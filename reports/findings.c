@@ -368,7 +368,7 @@ static int most_specific_first(const void *a, const void *b)
     const struct failure *x = a, *y = b;
     if (x->finding->rank != y->finding->rank) return x->finding->rank < y->finding->rank ? -1 : 1;
     if (x->excess != y->excess) return x->excess > y->excess ? -1 : 1;
-    return x->number < y->number ? -1 : 1;
+    return (int)x->number - (int)y->number;
 }
 
 static bool same_check(const struct finding *a, const struct finding *b)

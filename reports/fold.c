@@ -54,21 +54,19 @@ void fold_section(struct buffer *to, size_t start)
     char *section = strdup(to->data + start);
     char *at = section ? strstr(section, head) : NULL, *rest = at ? strstr(at, head_end) : NULL;
     const size_t length = section ? strlen(section) : 0;
-    if (!rest || length < sizeof end || strcmp(section + length - (sizeof end - 1), end) != 0) {
-        if (!section) to->failed = true;
-        free(section);
-        return;
+    if (!section) to->failed = true;
+    if (rest && length >= sizeof end && !strcmp(section + length - (sizeof end - 1), end)) {
+        to->data[to->size = start] = '\0';
+        buffer_add_bytes(to, section, (size_t)(at - section));
+        buffer_add(to, "<details class=\"part\"><summary>");
+        rest += sizeof head_end - 1;
+        buffer_add_bytes(to, at, (size_t)(rest - at));
+        buffer_add(to, "</summary>\n");
+        const size_t inside = to->size;
+        buffer_add_bytes(to, rest, length - (size_t)(rest - section) - (sizeof end - 1));
+        fold_seal(to, inside);
+        buffer_add(to, "</details></section>\n");
     }
-    to->data[to->size = start] = '\0';
-    buffer_add_bytes(to, section, (size_t)(at - section));
-    buffer_add(to, "<details class=\"part\"><summary>");
-    rest += sizeof head_end - 1;
-    buffer_add_bytes(to, at, (size_t)(rest - at));
-    buffer_add(to, "</summary>\n");
-    const size_t inside = to->size;
-    buffer_add_bytes(to, rest, length - (size_t)(rest - section) - (sizeof end - 1));
-    fold_seal(to, inside);
-    buffer_add(to, "</details></section>\n");
     free(section);
 }
 

@@ -14,7 +14,7 @@ void html_number(struct buffer *to, double value)
     if (isnan(value)) {
         buffer_add(to, "nan");
     } else if (isinf(value)) {
-        buffer_add(to, value > 0 ? "∞" : "−∞");
+        buffer_add(to, signbit(value) ? "−∞" : "∞");
     } else if (value == 0) {
         buffer_add(to, "0");
     } else if (fabs(value) >= 0.01 && fabs(value) < 1e5) {

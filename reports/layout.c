@@ -38,7 +38,6 @@ static void include_all(struct layout_axis *axis, const double *values, size_t n
 /* Includes the cells of a heat map, up to half a cell beyond the first and the last centre. */
 static void include_cells(struct layout_axis *axis, const double *centres, size_t n)
 {
-    if (!n) return;
     include(axis, centres[0] - (n > 1 ? centres[1] - centres[0] : 1) / 2);
     include(axis, centres[n - 1] + (n > 1 ? centres[n - 1] - centres[n - 2] : 1) / 2);
 }

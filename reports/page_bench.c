@@ -47,13 +47,11 @@ static int by_merit(const void *a, const void *b)
 }
 
 /* Reads the curves of a document, best first; returns their number. */
-static size_t read_curves(struct buffer *to, const json_t *document, struct curve *curves,
-                          size_t most)
+static size_t read_curves(struct buffer *to, const json_t *document, struct curve *curves)
 {
     size_t count = 0, i;
     const json_t *entry;
     json_array_foreach(json_object_get(document, "schemes"), i, entry) {
-        if (count == most) break;
         struct curve *curve = &curves[count++];
         *curve = (struct curve){.scheme = entry};
         short_name(to, curve->name, value_text(entry, "scheme"));
@@ -218,10 +216,10 @@ void page_bench(struct page_writer *writer, const json_t *results)
     const bool of_codes = page_of_codes(results);
     explain(to, of_codes);
     json_array_foreach(json_object_get(results, "bench"), i, document) {
-        size_t most = json_array_size(json_object_get(document, "schemes"));
+        const size_t most = json_array_size(json_object_get(document, "schemes"));
         struct curve *curves = page_allocate(to, most, sizeof *curves);
         if (!curves) return;
-        size_t count = read_curves(to, document, curves, most);
+        size_t count = read_curves(to, document, curves);
         html_format(to, "<h3><code>%s</code> <span>%s</span></h3>\n<div class=\"figures\">",
                     value_text(document, "case"), value_text(document, "title"));
         plot_curves(writer, document, curves, count, of_codes);

@@ -162,12 +162,12 @@ static double contact_of(const struct curves *curves)
 {
     const struct page_columns *exact = &curves->exact;
     const double *rho = exact->of[DENSITY], *P = exact->of[PRESSURE], *x = exact->of[X];
-    double low, high, most = 0, at = (double)NAN;
+    double low, high, at = (double)NAN;
     range(rho, exact->n, &low, &high);
+    double most = 0.01 * (high - low);
     for (size_t i = 0; i + 1 < exact->n; i++) {
         const double jump = fabs(rho[i + 1] - rho[i]);
-        if (jump < 0.01 * (high - low) || jump <= most || fabs(P[i + 1] - P[i]) > 1e-6 * fabs(P[i]))
-            continue;
+        if (jump <= most || fabs(P[i + 1] - P[i]) > 1e-6 * fabs(P[i])) continue;
         most = jump;
         at = (x[i] + x[i + 1]) / 2;
     }

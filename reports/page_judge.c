@@ -62,10 +62,9 @@ static void cloud(struct page_writer *writer, const json_t *judged, size_t numbe
     json_t *labelled = json_copy((json_t *)judged);
     const json_t *const one[] = {labelled};
     snprintf(which, sizeof which, "judge-%zu", number);
-    if (!labelled || json_object_set_new(labelled, "label", json_string("this snapshot")))
-        writer->to.failed = true;
-    else
-        page_cloud_plots(writer, which, one, 1, false);
+    writer->to.failed |=
+        !labelled || json_object_set_new(labelled, "label", json_string("this snapshot"));
+    if (!writer->to.failed) page_cloud_plots(writer, which, one, 1, false);
     if (labelled) buffer_add(&writer->to, "</div>\n");
     json_decref(labelled);
 }

@@ -25,14 +25,13 @@ static void flat_cell(struct buffer *to, const json_t *value)
 static void degree_cell(struct buffer *to, double degree)
 {
     static const char *const names[] = {"nothing", "constants", "linear", "quadratic", "cubic"};
-    int index = degree >= -1 && degree <= 3 ? (int)degree + 1 : 0;
-    html_cell(to, isfinite(degree) ? names[index] : "—");
+    html_cell(to, isfinite(degree) ? names[(int)fmin(fmax(degree + 1, 0), 4)] : "—");
 }
 
 /* True for "exact_degree_lattice" and the like; the dimension is in the heading. */
 static bool is_degree(const char *name)
 {
-    return !strncmp(name, "exact_degree", 12);
+    return strstr(name, "exact_degree") == name;
 }
 
 static void league_head(struct buffer *to, const json_t *row)
@@ -119,10 +118,10 @@ void page_gradients(struct page_writer *writer, const json_t *results)
                "not. Errors are those of a smooth field's gradient, times h over its largest "
                "value.</p>\n");
     plot_league(writer, rows);
-    double dim = 0;
+    double dim = (double)NAN;
     json_array_foreach(rows, i, row) {
         double now = value_member(row, "dim");
-        if (!(now >= dim && now <= dim)) {
+        if (now != dim) {
             if (i) html_table_end(to);
             buffer_format(to, "<h3>%.0fD</h3>\n", now);
             league_head(to, row);

@@ -54,12 +54,12 @@ static bool read_line(struct line *line, const json_t *of, const char *name)
     return line->n > 0;
 }
 
-/* Reads a curve of each run that has it. */
+/* Reads a curve of each run, of at most PAGE_SCHEMES, that has it. */
 static size_t read_series(const struct picture *picture, int curve, const json_t *const *runs,
                           size_t count, struct line *lines, struct plot_series *series)
 {
     size_t n = 0;
-    for (size_t k = 0; k < count && k < PAGE_SCHEMES; k++) {
+    for (size_t k = 0; k < count; k++) {
         const json_t *of = json_object_get(runs[k], "through_time");
         if (picture->inside) of = json_object_get(of, picture->inside);
         if (!read_line(&lines[k], of, picture->names[curve])) continue;

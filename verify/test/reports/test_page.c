@@ -2,6 +2,7 @@
  * Tests the report's list of failing figures. (test_page_drawn.c tests the rest.) */
 #include "test.h"
 
+#include "case_state.h"
 #include "markup.h"
 #include "page.h"
 #include "page_part.h"
@@ -34,6 +35,21 @@ TEST(style_sheet)
     assert_int_equal(strncmp(at, style_css(), strlen(style_css())), 0);
     assert_int_equal(strncmp(at + strlen(style_css()), "</style>", 8), 0);
     free(whole);
+}
+
+/* A list of labels ends with the most that a page has room for. */
+TEST(most_labels)
+{
+    const char *labels[PAGE_SCHEMES + 1] = {NULL};
+    json_t *list = json_array();
+    for (int k = 0; k < PAGE_SCHEMES + 2; k++) {
+        const char name[] = {(char)('a' + k), '\0'};
+        json_array_append_new(list, json_pack("{s:s}", "label", name));
+    }
+    assert_int_equal(case_state_labels(list, 1, 1, labels), PAGE_SCHEMES);
+    assert_string_equal(labels[0], "a");
+    assert_null(labels[PAGE_SCHEMES]);
+    json_decref(list);
 }
 
 /* For a failed check the page shows the worst figure and 20 more, then the number of figures. */

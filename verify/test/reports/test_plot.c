@@ -9,6 +9,7 @@
 #include <sys/time.h>
 #include <time.h>
 
+#include "autopsy_plot.h"
 #include "layout.h"
 #include "markup.h"
 #include "movie.h"
@@ -18,6 +19,7 @@
 #include "picture.h"
 #include "plot.h"
 #include "process.h"
+#include "script.h"
 
 static const double x[] = {100, 200, 400, 800}, y[] = {1e-2, 5.1e-3, NAN, 1.3e-3},
                     low[] = {9e-3, 4e-3, 2e-3, 1e-3}, high[] = {2e-2, 6e-3, 3e-3, 2e-3};
@@ -526,9 +528,73 @@ TEST(wrong_gnuplot)
     snprintf(gnuplot, sizeof gnuplot, "%s", path_of("a.mp4"));
     assert_int_equal(movie_write(&none, gnuplot, &error), STATUS_ENVIRONMENT);
     assert_non_null(strstr(error.message, "a movie is made by ffmpeg (Debian"));
-    assert_int_equal(access(gnuplot, F_OK), -1);
+    char command[300];
+    snprintf(command, sizeof command, "ls %s | /bin/grep -q mp4", own_folder);
     setenv("PATH", path, 1);
+    assert_int_not_equal(system(command), 0); /* nor a temporary file */
     free(path);
+}
+
+/* Files beside a picture name each other without their folder; what has no levels has no picture.
+ */
+TEST(beside_a_picture)
+{
+    struct error error = {0};
+    char text[4000] = "";
+    assert_int_equal(picture_source(&stack, path_of("p.svg"), &error), STATUS_OK);
+    FILE *in = fopen(path_of("p.gp"), "r");
+    assert_non_null(in);
+    text[fread(text, 1, sizeof text - 1, in)] = '\0';
+    fclose(in);
+    assert_non_null(strstr(text, "'p.dat'"));
+    assert_non_null(strstr(text, "'p.svg'"));
+    json_t *nothing = json_object();
+    assert_int_equal(autopsy_plot_write(nothing, path_of("q.svg"), &error), STATUS_ENVIRONMENT);
+    assert_non_null(strstr(error.message, "q.svg: nothing to draw"));
+    json_decref(nothing);
+}
+
+/* The script of a map of these two values, in a plot of this height, must have this line. */
+static void colors_of(double low_z, double high_z, bool diverging, int height, const char *says)
+{
+    const double z[] = {low_z, high_z};
+    const struct plot_heat of = {.nx = 2, .ny = 1, .x = x, .y = y, .z = z, .diverging = diverging};
+    const struct plot_panel panel = {.heat = &of};
+    const struct plot plot = {.name = "a", .panels = &panel, .panel_count = 1, .height = height};
+    char *script, *data;
+    assert_true(plot_source(&plot, &script, &data));
+    if (!strstr(script, says)) fail_msg("no '%s' in: %s", says, script);
+    free(script), free(data);
+}
+
+/* With room for five labels on a colour bar they are at steps of 1/5 of its range, which is kept if
+ * it is 2 or 5 times a power of ten. A map of zeros has no range. */
+TEST(colors)
+{
+    colors_of(0, 1, false, 175, "\nset cbtics 0.2\n");
+    colors_of(0, 2.5, false, 175, "\nset cbtics 0.5\n");
+    colors_of(0, 2.6, false, 175, "\nset cbtics 1\n");
+    colors_of(0, 0, true, 175, "\nset cbrange [*:*]\n");
+    colors_of(0, -1, true, 175, "\nset cbrange [-1:1]\n");
+}
+
+/* What gnuplot does not write is refused, or left as it is. */
+TEST(odd_svg)
+{
+    static const char *const dot =
+        "<svg><use xlink:href='#gpPt6' transform='translate(1,2) scale(3)' color='%s'/></svg>";
+    for (int known = 0; known < 2; known++) {
+        struct buffer to = {0}, raw = {0};
+        buffer_format(&raw, dot, known ? "black" : "#123456");
+        assert_true(svg_adapt(&to, raw.data, "one", "a"));
+        assert_true(!strstr(to.data, "<path") == !known);
+        buffer_free(&raw);
+        buffer_free(&to);
+    }
+    struct buffer to = {0}, full = {.failed = true};
+    assert_false(svg_adapt(&to, "<svg><desc>no end</svg>", "one", "a"));
+    buffer_free(&to);
+    assert_false(svg_adapt(&full, "<svg><g></g></svg>", "one", "a"));
 }
 
 /* The names of plots are used as ids and as file names, and fit on one page. */
