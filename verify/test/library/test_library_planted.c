@@ -836,6 +836,60 @@ TEST(gradients_left_out)
     refuse_at = 0;
 }
 
+/* What an operator is given: at the fifth call a cloud, at the sixth the same one after a move. */
+static double given_x[3][POINTS_MAX], given_h[POINTS_MAX], given_volume[POINTS_MAX], by_unit;
+
+static double distance(double *const place[], int dim, size_t i, size_t j)
+{
+    double square = 0;
+    for (int a = 0; a < dim; a++)
+        square += (place[a][i] - place[a][j]) * (place[a][i] - place[a][j]);
+    return sqrt(square);
+}
+
+static bool watch(void *context, const struct sphproof_cloud *cloud, const double *f,
+                  double *const gradient[])
+{
+    double *const before[3] = {given_x[0], given_x[1], given_x[2]};
+    double *now[3];
+    (void)context, (void)f;
+    calls++;
+    for (int a = 0; a < cloud->dim; a++) {
+        now[a] = (double *)cloud->x[a];
+        for (size_t i = 0; i < cloud->n; i++) assert_true(isnan(gradient[a][i]));
+    }
+    for (size_t i = 0; i < cloud->n && calls == 5; i++) {
+        given_h[i] = cloud->h[i], given_volume[i] = cloud->volume[i];
+        for (int a = 0; a < cloud->dim; a++) given_x[a][i] = cloud->x[a][i];
+    }
+    for (size_t i = 0; i < cloud->n && calls == 6; i++) {
+        const size_t j = (i + cloud->n / 2) % cloud->n;
+        assert_true(fabs(cloud->h[i] / (by_unit * given_h[i]) - 1) < 1e-15);
+        assert_true(fabs(cloud->volume[i] / (pow(by_unit, cloud->dim) * given_volume[i]) - 1) <
+                    1e-14);
+        assert_true(fabs(distance(now, cloud->dim, i, j) -
+                         by_unit * distance(before, cloud->dim, i, j)) < 1e-13);
+    }
+    for (int a = 0; a < cloud->dim; a++)
+        for (size_t i = 0; i < cloud->n; i++) gradient[a][i] = 0;
+    return true;
+}
+
+/* All points move, and turns and shifts keep their distances. */
+TEST(gradients_of_moved_clouds)
+{
+    for (int dim = 1; dim <= 3; dim++)
+        for (int move = 0; move < 3; move++) {
+            const struct sphproof_gradient_promise promise = {
+                .order = -9, .eta = 2.4, .turns = !move, .moves = move == 1, .scales = move == 2};
+            by_unit = promise.scales ? 2.385 : 1;
+            calls = 0;
+            assert_int_equal(
+                sphproof_gradients_check(watch, NULL, dim, &promise, NULL, NULL, &error),
+                SPHPROOF_OK);
+        }
+}
+
 TEST(promises)
 {
     const struct sphproof_gradient_promise none = {0, -9, 2.4, true, true, true, true};
