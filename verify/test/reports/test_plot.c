@@ -295,6 +295,7 @@ TEST(processes)
         assert_int_equal(setrlimit(RLIMIT_NOFILE, &usual), 0);
         if (!status) assert_true(above - files + spare >= 7); /* smaller descriptors may be free */
         if (status) assert_string_equal(message, "sh cannot be run: Too many open files");
+        assert_int_equal(status, status ? PROCESS_FAILED : PROCESS_OK);
         assert_int_equal(open_files(&above), files);
     }
     /* this process handles a broken pipe as before, and one that came before is still there */
