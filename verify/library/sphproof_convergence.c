@@ -13,15 +13,15 @@ enum sphproof_status sphproof_convergence_norms(size_t n, const double *volume, 
                                                 struct sphproof_error *error)
 {
     static const double window[2] = {0, 0};
-    double sum = 0;
+    bool any = false;
     if (n == 0) return library_fail(error, STATUS_BAD_INPUT, "norms of no values");
     for (size_t i = 0; volume && i < n; i++) {
         if (!(volume[i] >= 0) || isinf(volume[i]))
             return library_fail(error, STATUS_BAD_INPUT,
                                 "volume %zu is %g: allowed: finite, 0 or more", i, volume[i]);
-        sum += volume[i];
+        any = any || volume[i] > 0;
     }
-    if (volume && sum == 0)
+    if (volume && !any)
         return library_fail(error, STATUS_BAD_INPUT, "all volumes are 0: one must be above");
     double *room = calloc(2 * n, sizeof *room); /* positions, all in the window; equal volumes */
     if (!room) return library_fail(error, STATUS_ENVIRONMENT, "no memory for %zu values", n);

@@ -59,7 +59,7 @@ static enum status take_setup(const struct sphproof_setup *theirs, bool sharp, c
                             .m = theirs->m,
                             .u = theirs->u,
                             .skip = !sharp,
-                            .threads = theirs->threads > 0 ? theirs->threads : 1};
+                            .threads = theirs->threads};
     if (theirs->dim < 1 || theirs->dim > 3)
         return error_set(error, STATUS_BAD_INPUT, "dim = %d: allowed: 1, 2, 3", theirs->dim);
     if (!theirs->m || !theirs->u)

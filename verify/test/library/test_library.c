@@ -167,11 +167,21 @@ TEST(an_order_passes_its_gate)
     assert_true(isnan(norms.l1) && isnan(norms.linf));
     assert_int_equal(sphproof_convergence_norms(0, NULL, at, exact, &norms, &error),
                      SPHPROOF_BAD_INPUT);
-    const double wrong[][2] = {{2, -1}, {0, 0}, {1, (double)NAN}, {1, (double)INFINITY}},
-                 half[] = {1, 0};
-    for (int k = 0; k < 4; k++)
-        assert_int_equal(sphproof_convergence_norms(2, wrong[k], at, exact, &norms, &error),
+    static const struct {
+        double volume[2];
+        const char *says;
+    } wrong[] = {{{2, -1}, "volume 1 is -1: allowed: finite, 0 or more"},
+                 {{-3, 2}, "volume 0 is -3: allowed: finite, 0 or more"},
+                 {{1, (double)NAN}, "volume 1 is nan: allowed: finite, 0 or more"},
+                 {{(double)INFINITY, 1}, "volume 0 is inf: allowed: finite, 0 or more"},
+                 {{1, (double)INFINITY}, "volume 1 is inf: allowed: finite, 0 or more"},
+                 {{0, 0}, "all volumes are 0: one must be above"}};
+    const double half[] = {1, 0};
+    for (int k = 0; k < 6; k++) {
+        assert_int_equal(sphproof_convergence_norms(2, wrong[k].volume, at, exact, &norms, &error),
                          SPHPROOF_BAD_INPUT);
+        assert_string_equal(error.message, wrong[k].says);
+    }
     assert_int_equal(sphproof_convergence_norms(2, half, at, exact, &norms, &error), SPHPROOF_OK);
     assert_true(fabs(norms.l1 / at[0] - 1) < 1e-15);
 }

@@ -151,7 +151,7 @@ TEST(dimensions)
 
 /* ---- shapes ---- */
 
-enum odd { USUAL, NAN_W, NAN_DW, INF_W, INF_DW, NOTHING, HALF_NEGATIVE };
+enum odd { USUAL, NAN_W, NAN_DW, INF_W, INF_DW, NOTHING, HALF_NEGATIVE, TOO_LARGE };
 static enum odd odd;
 static double odd_at, odd_width;
 
@@ -161,6 +161,7 @@ static double parabola(double q, int dim)
     (void)dim;
     if (odd == NOTHING) return 0;
     if (odd == HALF_NEGATIVE) return q < 1 ? -a * a * a : 0;
+    if (odd == TOO_LARGE) return q < 1 ? 1.5e308 : 0; /* its integral overflows */
     if (odd == NAN_W && fabs(q - odd_at) <= odd_width) return (double)NAN;
     if (odd == INF_W && fabs(q - odd_at) <= odd_width) return (double)INFINITY;
     return q < 1 ? a * a * a : 0;
@@ -170,7 +171,7 @@ static double parabola_slope(double q, int dim)
 {
     const double a = 1 - q * q;
     (void)dim;
-    if (odd == NOTHING) return 0;
+    if (odd == NOTHING || odd == TOO_LARGE) return 0;
     if (odd == NAN_DW && fabs(q - odd_at) <= odd_width) return (double)NAN;
     if (odd == INF_DW && fabs(q - odd_at) <= odd_width) return -(double)INFINITY;
     return q < 1 ? (odd == HALF_NEGATIVE ? 6 : -6) * q * a * a : 0;
@@ -320,6 +321,8 @@ TEST(constants)
     memset(shape.constant, 0, sizeof shape.constant);
     odd = HALF_NEGATIVE;
     assert_int_equal(own(&shape, "the constant is -"), SPHPROOF_BAD_INPUT);
+    odd = TOO_LARGE;
+    assert_int_equal(own(&shape, "the constant is 0; allowed: above 0"), SPHPROOF_BAD_INPUT);
     odd = USUAL;
 }
 

@@ -35,11 +35,13 @@ static void refused(enum sphproof_status status, const char *says)
 /* ---- solutions ---- */
 
 enum { PLACES = 6 };
-static double at[PLACES], found[3][PLACES + 1];
+static double at[PLACES + 1], found[3][PLACES + 1];
 
-static void draw_places(double lo, double hi)
+/* n places, of which the first is lo; no place is behind them. */
+static void draw_places(size_t n, double lo, double hi)
 {
     for (int i = 0; i < PLACES; i++) at[i] = uniform(lo, hi);
+    at[0] = lo, at[n] = (double)NAN;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i <= PLACES; i++) found[k][i] = -77;
 }
@@ -69,7 +71,7 @@ TEST(solutions)
         double shock = 0;
         assert_null(riemann_solve(gamma, &(struct riemann_state){left[0], left[1], left[2]},
                                   &(struct riemann_state){right[0], right[1], right[2]}, &tube));
-        draw_places(-1, 1);
+        draw_places(n, -1, 1);
         assert_int_equal(
             sphproof_solutions_riemann(gamma, left, right, x0, t, n, at, rho, v, P, &error),
             SPHPROOF_OK);
@@ -86,7 +88,7 @@ TEST(solutions)
         assert_memory_equal(star.speed, speeds, sizeof speeds);
 
         const int dim = 1 + count % 3;
-        draw_places(0, 1);
+        draw_places(n, 0, 1);
         assert_int_equal(sphproof_solutions_noh(gamma, dim, t, n, at, rho, v, P, &error),
                          SPHPROOF_OK);
         for (int i = 0; i < count; i++) {
@@ -94,7 +96,7 @@ TEST(solutions)
             state_is(i, s.rho, s.v, s.P);
         }
         ends_at(n);
-        draw_places(0, 1);
+        draw_places(n, 0, 1);
         assert_null(sedov_solve(1.4, dim, 2, 0.7, &sedov));
         for (int given = 0; given < 2; given++)
             assert_int_equal(sphproof_solutions_sedov(1.4, dim, 2, 0.7, t + 0.1, n, at, rho, v, P,
@@ -106,14 +108,14 @@ TEST(solutions)
             state_is(i, s.rho, s.v, s.P);
         }
         ends_at(n);
-        draw_places(0, 0.6);
+        draw_places(n, 0, 0.6);
         assert_int_equal(sphproof_solutions_gresho(n, at, rho, v, P, &error), SPHPROOF_OK);
         for (int i = 0; i < count; i++) {
             const struct vortex_state s = vortex_gresho(at[i]);
             state_is(i, s.rho, s.v, s.P);
         }
         ends_at(n);
-        draw_places(0, 3);
+        draw_places(n, 0, 3);
         assert_int_equal(sphproof_solutions_yee(gamma, 2.5, n, at, rho, v, P, &error), SPHPROOF_OK);
         for (int i = 0; i < count; i++) {
             const struct vortex_state s = vortex_yee(at[i], 2.5, gamma);
@@ -121,7 +123,7 @@ TEST(solutions)
         }
         ends_at(n);
         const struct simple_wave wave = {gamma, 1.1, 0.3, 0.9, 0.01, 2};
-        draw_places(-1, 1);
+        draw_places(n, -1, 1);
         assert_int_equal(
             sphproof_solutions_wave(gamma, 1.1, 0.3, 0.9, 0.01, 2, t, n, at, rho, v, P, &error),
             SPHPROOF_OK);
@@ -139,7 +141,7 @@ TEST(refused_solutions)
     const struct simple_wave wave = {1.4, 1, 0, 1, 0.1, 1};
     double *const rho = found[0], *const v = found[1], *const P = found[2];
     struct sphproof_star star;
-    draw_places(0, 1);
+    draw_places(PLACES, 0, 1);
 #define RIEMANN(left, t)   sphproof_solutions_riemann(1.4, left, gas, 0, t, 1, at, rho, v, P, &error)
 #define SEDOV(dim, t)      sphproof_solutions_sedov(1.4, dim, 1, 1, t, 1, at, rho, v, P, NULL, &error)
 #define NOH(gamma, dim, t) sphproof_solutions_noh(gamma, dim, t, 1, at, rho, v, P, &error)
@@ -193,6 +195,14 @@ TEST(refused_solutions)
     }
     at[0] = 0.5;
     ends_at(0);
+    for (int i = 0; i < PLACES; i++) { /* any of them */
+        char says[60];
+        const double before = at[i];
+        at[i] = -0.25 * (i + 1);
+        snprintf(says, sizeof says, "position %d is %g: allowed: finite, 0 or more", i, at[i]);
+        refused(sphproof_solutions_gresho(PLACES, at, rho, v, P, &error), says);
+        at[i] = before;
+    }
     assert_int_equal(WAVE(0.1, nextafter(simple_wave_breaking_time(&wave), 0)), SPHPROOF_OK);
     assert_int_equal(RIEMANN(gas, 0), SPHPROOF_OK);
     assert_int_equal(NOH(1.4, 1, 0), SPHPROOF_OK);
