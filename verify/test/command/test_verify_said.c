@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Tests what `sphproof verify` makes of checks that fail: its status, its document, and files of
  * failures, of checks one after another and side by side. (The program's own checks pass.) */
+#define _GNU_SOURCE /* asprintf */
 #include "test.h"
 
 #include <fcntl.h>
@@ -94,4 +95,16 @@ TEST(checks_that_fail)
                  "sphproof: verify: cannot make the folder '%s': Not a directory\n", file);
         verify(said);
     }
+}
+
+/* Files of failures are beside the program unless --failures says otherwise. */
+TEST(folder_of_failures)
+{
+    char *program = realpath("/proc/self/exe", NULL), *expected, folder[FOLDER_LENGTH];
+    assert_non_null(program);
+    *strrchr(program, '/') = '\0';
+    assert_true(asprintf(&expected, "%s/failures", program) > 0);
+    default_folder(folder, sizeof folder);
+    assert_string_equal(folder, access(program, W_OK) ? "failures" : expected);
+    free(expected), free(program);
 }
