@@ -193,11 +193,14 @@ struct scatter {
     const char *over;
 };
 
-/* True of a flow that turns: its curve begins near the middle, beside which it moves. */
+/* True of a flow that turns anywhere. */
 static bool turns(const json_t *exact)
 {
-    const json_t *first = json_array_get(json_object_get(exact, "azimuthal"), 0);
-    return value_real(first) != 0;
+    size_t i;
+    const json_t *v;
+    json_array_foreach(json_object_get(exact, "azimuthal"), i, v)
+        if (value_real(v) != 0) return true;
+    return false;
 }
 
 /* False: there is no such curve, or no memory. */
