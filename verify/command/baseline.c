@@ -94,7 +94,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     const char *file = options_value(options, "file");
     const char *path = n ? arguments[0] : default_results;
     json_t *baseline = NULL, *results = NULL;
-    struct diff diff = {.count = 0};
+    struct diff diff = {0};
     if (!file) file = default_file;
     enum status status = check_options(options, n, error);
     if (!status) status = result_load(&results, path, error);

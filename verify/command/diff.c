@@ -45,7 +45,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
 {
     double threshold = DIFF_THRESHOLD;
     json_t *old = NULL, *new = NULL;
-    struct diff diff = {.list = NULL};
+    struct diff diff = {0};
     if (n != 2) return command_usage(options, error, "two result documents are needed");
     if (take_threshold(options, &threshold, error)) return error->status;
     enum status status = result_load(&old, arguments[0], error);

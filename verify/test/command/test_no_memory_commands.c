@@ -143,6 +143,7 @@ TEST(commands)
 #endif
         "judge g.vtu --case gresho --time 0",
         "judge a.csv --gates case --junit j.xml --json -",
+        "judge a.csv --gate density_l1=1 --gate velocity_l1=1 --case sod",
         "run rest_2d n=12^2 lattice=hexagonal t_end=0.005",
         "run sod n=20 t_end=0.01 --snapshot s.csv --checkpoint c.bin",
         "run kelvin_helmholtz_mode n=10^2 --explain",
