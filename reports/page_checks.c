@@ -12,7 +12,6 @@
 /* Figures [first, end) of a check. */
 struct span {
     size_t first, end, failed, skipped, worst;
-    double seconds;
 };
 
 static double used(const json_t *figure)
@@ -34,8 +33,6 @@ static struct span next_check(const json_t *figures, size_t first)
         bool skipped = !strcmp(status, "skip");
         span.failed += !strcmp(status, "fail");
         span.skipped += skipped;
-        double seconds = value_member(figure, "seconds");
-        if (seconds > 0) span.seconds += seconds;
         if (!skipped && used(figure) > most) {
             most = used(figure);
             span.worst = span.end;

@@ -52,19 +52,12 @@ static void verdict_cell(struct buffer *to, const char *verdict)
                   verdict);
 }
 
-/* Length of the part of a path that names its run, study or check. */
-static size_t subject_length(const char *path)
-{
-    const char *end = strchr(path, ']');
-    return end ? (size_t)(end - path) : strcspn(path, ".");
-}
-
 /* True if one row can represent two entries: of the same subject, verdict and night. */
 static bool together(const json_t *a, const json_t *b)
 {
     const char *p = value_text(a, "path"), *q = value_text(b, "path");
-    const size_t length = subject_length(p);
-    return length == subject_length(q) && !strncmp(p, q, length) &&
+    const size_t length = strcspn(p, "]"); /* of the name of its run, study or check */
+    return length == strcspn(q, "]") && !strncmp(p, q, length) &&
            !strcmp(value_text(a, "verdict"), value_text(b, "verdict")) &&
            !strcmp(value_text(a, "git"), value_text(b, "git")) &&
            !strcmp(value_text(a, "date"), value_text(b, "date"));
