@@ -13,7 +13,7 @@
 #include "failing_memory.h"
 #include "own_folder.h"
 
-enum { WORDS = 40, TEXT = 1 << 18, MANY = 1 << 28, CALLERS = 5, FEW_CALLERS = 3, PLACES = 1 << 14 };
+enum { WORDS = 40, TEXT = 1 << 18, MANY = 1 << 28, CALLERS = 4, FEW_CALLERS = 3, PLACES = 1 << 14 };
 
 static char usual[TEXT], printed[TEXT], errors[TEXT];
 static int allocations; /* of the last command */
