@@ -35,8 +35,8 @@ enum status snapshots_check(const struct snapshots *snapshots, double t_end, str
 /* Number of intermediate snapshots. */
 size_t snapshots_count(const struct snapshots *snapshots, double t_end);
 
-/* Time and path of a snapshot by its number. A path that is too long for a file name of the system
- * is cut, but stays too long. */
+/* Time and path of a snapshot by its number. A path that no file can have is cut, to a length that
+ * the system refuses as well. */
 struct snapshots_path {
     char text[5000];
 };

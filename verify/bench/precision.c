@@ -321,8 +321,8 @@ static void average_all(const struct precision *precision, struct bench_subject 
     }
 }
 
-/* A failure of this machine, as want of memory, says nothing about a scheme. Where another code
- * does not run, that is left out. */
+/* True if this machine failed, for want of memory, which says nothing about a scheme. Another code
+ * that does not run is excluded like a scheme that breaks down. */
 static bool fails_here(const struct bench_subject *subject)
 {
     const struct job *job = subject->context;
