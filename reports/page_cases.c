@@ -182,7 +182,7 @@ static double pressure_blip(const struct curves *curves, size_t k, double contac
     const double *P = value->of[PRESSURE], *error = curves->residual[k].of[PRESSURE];
     for (size_t i = 0; i < value->n; i++)
         if (fabs(value->of[X][i] - contact) <= 4 * h)
-            most = fmax(isnan(most) ? 0 : most, fabs(error[i] / (P[i] - error[i])));
+            most = fmax(most, fabs(error[i] / (P[i] - error[i])));
     return most;
 }
 

@@ -22,7 +22,7 @@ enum { PATH_LENGTH = 1024 };
 /* ---- this night's line ---- */
 
 /* Thousands of figures of checks are too many for the history: keeps the one closest to its bound
- * of each check. */
+ * of each check, or one that is not a number. */
 static void add_checks(const json_t *checks, json_t *figures)
 {
     for (size_t i = 0; i < json_array_size(checks); i++) {
@@ -34,7 +34,7 @@ static void add_checks(const json_t *checks, json_t *figures)
         snprintf(path, sizeof path, "verify[%s, %s].value_over_bound", value_text(check, "group"),
                  value_text(check, "name"));
         const json_t *kept = json_object_get(figures, path);
-        if (!kept || !(ratio <= value_real(kept)))
+        if (!kept || (!isnan(value_real(kept)) && !(ratio <= value_real(kept))))
             json_object_set_new(figures, path, result_number(ratio));
     }
 }

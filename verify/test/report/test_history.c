@@ -484,3 +484,48 @@ TEST(nights_that_lack_a_figure)
     }
     unlink(path_of("history"));
 }
+
+/* A night keeps the worst figure of each check, in whichever order they come; the worst is one that
+ * is not a number. Skipped figures and those without a bound are not kept. */
+TEST(worst_figure_of_a_check)
+{
+    static const char *const values[] = {"0.5", "\"nan\"", "2", "\"inf\"", "1"};
+    enum { VALUES = sizeof values / sizeof *values };
+    for (int which = 1; which < 1 << VALUES; which++)
+        for (int turned = 0; turned < 2; turned++) {
+            const char *path = path_of("history");
+            const struct night night = usual_night(1);
+            json_t *results = results_of(&night), *checks = json_array();
+            struct error error = {0};
+            for (int i = 0; i < VALUES; i++) {
+                const int k = turned ? VALUES - 1 - i : i;
+                if (which & 1 << k)
+                    json_array_append_new(
+                        checks, json_pack("{s:s, s:s, s:s, s:i, s:o}", "group", "g", "name", "c",
+                                          "status", "pass", "bound", 2, "value",
+                                          json_loads(values[k], JSON_DECODE_ANY, NULL)));
+            }
+            json_array_append_new(checks,
+                                  json_pack("{s:s, s:s, s:s, s:i, s:i}", "group", "g", "name", "c",
+                                            "status", "skip", "bound", 2, "value", 9));
+            json_array_append_new(checks,
+                                  json_pack("{s:s, s:s, s:s, s:i, s:i}", "group", "g", "name", "c",
+                                            "status", "pass", "bound", 0, "value", 9));
+            json_object_set_new(results, "verify", json_pack("{s:o}", "checks", checks));
+            unlink(path);
+            assert_int_equal(history_append(results, path, &error), STATUS_OK);
+            json_decref(results);
+            json_t *line = json_load_file(path, 0, NULL);
+            const double kept = value_member(json_object_get(line, "figures"),
+                                             "verify[g, c].value_over_bound");
+            if (which & 2)
+                assert_true(isnan(kept));
+            else
+                assert_true(kept == (which & 8    ? (double)INFINITY
+                                     : which & 4  ? 1
+                                     : which & 16 ? 0.5
+                                                  : 0.25));
+            json_decref(line);
+        }
+    unlink(path_of("history"));
+}
