@@ -13,8 +13,9 @@
 /* Settings that change the solved problem, in addition to the problem's own keys; results that
  * differ only in other settings are compared. */
 static const enum setting problem_keys[] = {
-    SETTING_kind,   SETTING_gamma, SETTING_t_end, SETTING_lo,       SETTING_hi,     SETTING_window,
-    SETTING_jitter, SETTING_seed,  SETTING_n,     SETTING_boundary, SETTING_gravity};
+    SETTING_kind,   SETTING_gamma,         SETTING_t_end, SETTING_lo,      SETTING_hi,
+    SETTING_window, SETTING_window_radius, SETTING_boost, SETTING_gravity, SETTING_boundary,
+    SETTING_jitter, SETTING_seed,          SETTING_n};
 
 /* Members of a document that also define the problem; command "": of every document. */
 static const struct {
