@@ -216,13 +216,15 @@ TEST(names)
                 {"a.05.0.hdf5", "a.05.1.hdf5", NULL},
                 {"a.0b.0.hdf5", "a.0b.1.hdf5", NULL},
                 {"d.0/a.0.hdf5", "d.0/a.1.hdf5", NULL},
+                {"d.0.5/a.0.hdf5", "d.0.5/a.1.hdf5", NULL},
                 {"c.0.hdf5", "c.2.hdf5", "c.1.hdf5: cannot be read"},
                 {"c.1.hdf5", "c.2.hdf5", "one of 2 files of a snapshot; give the first"},
                 {"c.hdf5", "d.hdf5", "give the first"},
                 {"c.01.hdf5", "c.11.hdf5", "give the first"},
-                {"d.0/c.hdf5", "d.1/c.hdf5", "give the first"}};
+                {"d.0/c.hdf5", "d.1/c.hdf5", "give the first"},
+                {"d.0.5/c.hdf5", "d.1.5/c.hdf5", "give the first"}};
     char command[300];
-    snprintf(command, sizeof command, "mkdir %s/d.0 %s/d.1", own_folder, own_folder);
+    snprintf(command, sizeof command, "cd %s && mkdir d.0 d.1 d.0.5 d.1.5", own_folder);
     assert_int_equal(system(command), 0);
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct snapshot_file file;
