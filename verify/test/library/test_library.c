@@ -3,6 +3,8 @@
  * wrong ones are refused with a message that names the fault. */
 #include "test.h"
 
+#include <dirent.h>
+
 #include "sphproof/convergence.h"
 #include "sphproof/gradients.h"
 #include "sphproof/rates.h"
@@ -232,6 +234,33 @@ TEST(a_simulation_conserves)
     sphproof_simulations_free(simulation);
     sphproof_simulations_free(NULL);
 }
+
+#ifdef __linux__
+static size_t threads_of_this_process(void)
+{
+    size_t count = 0;
+    DIR *tasks = opendir("/proc/self/task");
+    for (struct dirent *task; tasks && (task = readdir(tasks));) count += task->d_name[0] != '.';
+    if (tasks) closedir(tasks);
+    return count;
+}
+
+/* As many threads compute as the setup says; they stay until the process ends. */
+TEST(threads_of_a_simulation)
+{
+    struct sphproof_setup setup = setup_of_a_wave();
+    struct sphproof_simulation *simulation;
+    struct sphproof_error error;
+    setup.dim = 2, setup.x[1] = y, setup.hi[1] = 1;
+    for (int k = 0; k < N; k++) x[k] = (k % 8 + 0.5) / 8, y[k] = (k / 8 + 0.5) / 8;
+    for (setup.threads = 0; setup.threads <= 3; setup.threads++) {
+        assert_int_equal(sphproof_simulations_create(&setup, &simulation, &error), SPHPROOF_OK);
+        assert_int_equal(sphproof_simulations_run(simulation, 0.01, &error), SPHPROOF_OK);
+        assert_int_equal(threads_of_this_process(), setup.threads ? setup.threads : 1);
+        sphproof_simulations_free(simulation);
+    }
+}
+#endif
 
 /* A run to the current time computes nothing, and a run to an earlier time is refused. */
 TEST(times_of_a_simulation)
