@@ -241,7 +241,7 @@ static void note_unit(const struct text_table *table, struct snapshot_file *file
 {
     const char *unit = table->unit;
     for (size_t c = 0; c < table->columns && !*unit; c++)
-        if (table->meaning[c] >= 0) unit = snapshot_unit(table->names[c]);
+        unit = snapshot_unit(table->names[c]);
     if (*unit)
         snapshot_note(&file->notes, "units", "not converted",
                       "the names of the columns have units such as %.24s: numbers are taken as "
