@@ -63,7 +63,7 @@ enum status snapshot_file_make(struct snapshot_file *file, enum snapshot_column 
                                const char *path, struct error *error)
 {
     free(file->column[column]);
-    file->column[column] = file->n > SNAPSHOT_ROWS_MAX ? NULL : calloc(file->n + 1, sizeof(double));
+    file->column[column] = file->n > SNAPSHOT_ROWS_MAX ? NULL : calloc(file->n, sizeof(double));
     return file->column[column]
                ? STATUS_OK
                : error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);

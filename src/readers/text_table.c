@@ -262,7 +262,7 @@ enum status text_table_read(const struct text_table *table, size_t from, size_t 
                             : snapshot_file_make(file, (enum snapshot_column)table->meaning[c],
                                                  table->source->path, error);
     }
-    double *type = calloc(2 * file->n + 2, sizeof *type);
+    double *type = calloc(2 * file->n, sizeof *type);
     if (!type)
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", table->source->path);
     if (!status) status = take_rows(table, from, line, file, type, error);

@@ -149,7 +149,7 @@ struct user_table *user_table_read(const char *path, struct error *error)
     struct user_table *table = calloc(1, sizeof *table);
     enum status status = table ? csv_read(path, &csv, error)
                                : error_set(error, STATUS_ENVIRONMENT, "no memory for a table");
-    size_t *order = status ? NULL : malloc((csv.rows + 1) * sizeof *order);
+    size_t *order = status ? NULL : malloc(csv.rows * sizeof *order);
     if (!status && !order) status = error_set(error, STATUS_ENVIRONMENT, "no memory for a table");
     if (!status && csv.rows < 2)
         status = error_set(error, STATUS_BAD_INPUT,

@@ -86,8 +86,8 @@ static void fronts(struct precision *precision, const double *cost, double *wron
 enum status precision_judge(struct precision *precision, struct error *error)
 {
     const size_t n = precision->point_count;
-    double *cost = malloc((2 * n + 1) * sizeof *cost), *wrong = cost ? cost + n : NULL;
-    bool *front = malloc((n + 1) * sizeof *front);
+    double *cost = malloc(2 * n * sizeof *cost), *wrong = cost ? cost + n : NULL;
+    bool *front = malloc(n * sizeof *front);
     if (!cost || !front) {
         free(cost), free(front);
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", n);

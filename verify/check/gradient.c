@@ -32,8 +32,8 @@ static double departure(const struct gradient_subject *subject, const struct ker
     const size_t n = cloud->cloud.points.n;
     const int dim = cloud->cloud.points.dim;
     const struct operator_form *right = promise_of(subject);
-    double *memory = malloc((4 * n + 1) * sizeof *memory), largest = 0, worst = 0;
-    struct operator_point *point = malloc((n + 1) * sizeof *point);
+    double *memory = malloc(4 * n * sizeof *memory), largest = 0, worst = 0;
+    struct operator_point *point = malloc(n * sizeof *point);
     double *const gradient[3] = {memory + n, memory + 2 * n, memory + 3 * n};
     bool ok = memory && point;
     for (size_t i = 0; ok && i < n; i++) {
@@ -225,8 +225,8 @@ static bool assumption_of(const struct gradient_subject *subject, const struct k
     *result = (struct assumption){.condition = 1};
     if (clouds_make(settings, &cloud, NULL)) return false;
     const size_t n = cloud.cloud.points.n;
-    double *m = malloc((11 * n + 1) * sizeof *m), slope[3] = {0};
-    struct operator_point *point = malloc((n + 1) * sizeof *point);
+    double *m = malloc(11 * n * sizeof *m), slope[3] = {0};
+    struct operator_point *point = malloc(n * sizeof *point);
     double *const one = m, *const f = m + n, *const g1[3] = {m + 2 * n, m + 3 * n, m + 4 * n};
     double *const g[3] = {m + 5 * n, m + 6 * n, m + 7 * n};
     double *const violated[3] = {m + 8 * n, m + 9 * n, m + 10 * n};

@@ -21,8 +21,8 @@ static bool response_of(const struct gradient_subject *subject, const struct ker
     if (clouds_make(settings, &cloud, NULL)) return false;
     const int dim = settings->dim;
     const size_t n = cloud.cloud.points.n;
-    double *m = calloc(4 * n + 1, sizeof *m);
-    struct operator_point *point = calloc(n + 1, sizeof *point);
+    double *m = calloc(4 * n, sizeof *m);
+    struct operator_point *point = calloc(n, sizeof *point);
     double *const f = m, *const g[3] = {m + n, m + 2 * n, m + 3 * n};
     bool ok = m && point;
     cloud.cloud.points.periodic = true;

@@ -29,8 +29,8 @@ static double moved_difference(const struct gradient_subject *subject, const str
     double worst = (double)NAN;
     if (clouds_make(&settings, &cloud, NULL)) return worst;
     const size_t n = cloud.cloud.points.n;
-    double *m = calloc(7 * n + 1, sizeof *m), largest = 0;
-    struct operator_point *point = calloc(n + 1, sizeof *point);
+    double *m = calloc(7 * n, sizeof *m), largest = 0;
+    struct operator_point *point = calloc(n, sizeof *point);
     double *const before[3] = {m + n, m + 2 * n, m + 3 * n};
     double *const after[3] = {m + 4 * n, m + 5 * n, m + 6 * n};
     bool ok = m && point;
@@ -103,8 +103,8 @@ static bool defects_of(const struct gradient_subject *subject, const struct kern
     struct clouds_cloud cloud;
     if (clouds_make(&settings, &cloud, NULL)) return false;
     const size_t n = cloud.cloud.points.n;
-    double *m = calloc(7 * n + 1, sizeof *m);
-    struct operator_point *point = calloc(n + 1, sizeof *point);
+    double *m = calloc(7 * n, sizeof *m);
+    struct operator_point *point = calloc(n, sizeof *point);
     double *const one[3] = {m + n, m + 2 * n, m + 3 * n};
     double *const linear[3] = {m + 4 * n, m + 5 * n, m + 6 * n};
     bool ok = m && point;

@@ -67,7 +67,7 @@ static enum status plan_case(const struct calibrate *calibrate, struct calibrate
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s: [case %.60s] has no ladder; allowed: n = N1 N2 N3 N4 ...",
                          code->path, one->of->file.asked);
-    one->faulty = calloc(code->fault_count + 1, sizeof *one->faulty);
+    one->faulty = calloc(code->fault_count, sizeof *one->faulty);
     one->externals = calloc(studies, sizeof *one->externals);
     one->studies = calloc(studies, sizeof *one->studies);
     if (!one->faulty || !one->externals || !one->studies)

@@ -225,7 +225,7 @@ static enum status compute(const struct request *r, const struct point_cloud *pc
                            struct answer *answer, struct error *error)
 {
     const size_t n = pc->cloud.points.n, columns = pc->fields * (size_t)r->dim;
-    answer->memory = malloc((columns * n + 1) * sizeof(double));
+    answer->memory = malloc(columns * n * sizeof(double));
     answer->point = calloc(n, sizeof *answer->point);
     if (!answer->memory || !answer->point)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for gradients of %zu points", n);

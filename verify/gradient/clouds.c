@@ -101,7 +101,7 @@ enum status clouds_sum_volumes(const struct clouds_settings *settings, const str
                                struct clouds_cloud *cloud, struct error *error)
 {
     const size_t n = cloud->cloud.points.n;
-    double *rho = malloc((n + 1) * sizeof *rho);
+    double *rho = malloc(n * sizeof *rho);
     if (!rho) return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu densities", n);
     /* the exact volume as mass: density 1 up to the kernel sum's error, and edges */
     const struct summation sum = {cloud->cloud.points, kernel, cloud->volume,

@@ -65,8 +65,8 @@ enum status gradient_study_errors(const struct gradient_subject *subject,
     const size_t n = cloud->cloud.points.n;
     const int dim = settings->dim;
     *errors = (struct gradient_errors){0};
-    double *memory = calloc(8 * n + 1, sizeof *memory), largest = 0;
-    struct operator_point *point = malloc((n + 1) * sizeof *point);
+    double *memory = calloc(8 * n, sizeof *memory), largest = 0;
+    struct operator_point *point = malloc(n * sizeof *point);
     if (!memory || !point) {
         free(memory), free(point);
         return error_set(error, STATUS_ENVIRONMENT, "no memory for a cloud of %zu points", n);

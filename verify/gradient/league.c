@@ -77,7 +77,7 @@ static enum status cost_of(const struct operator_form *form, const struct kernel
     settings.side = plan[settings.dim].timed;
     enum status status = clouds_make(&settings, &cloud, error);
     const size_t n = cloud.cloud.points.n;
-    double *g = calloc(3 * n + 1, sizeof *g), best = HUGE_VAL;
+    double *g = calloc(3 * n, sizeof *g), best = HUGE_VAL;
     double *const gradient[3] = {g, g + n, g + 2 * n};
     const double *const fields[] = {cloud.x[0]};
     const struct operator_settings how = {form, kernel, false, 1};

@@ -416,7 +416,7 @@ static enum status measure_wrong(struct judged *judged, struct error *error)
             judged->wrong = JUDGE_FOREIGN * wrong_functional(telling(&judged->result));
         return STATUS_OK;
     }
-    double *errors = malloc((judged->result.snapshot.n + 1) * sizeof *errors);
+    double *errors = malloc(judged->result.snapshot.n * sizeof *errors);
     if (!errors) return error_set(error, STATUS_ENVIRONMENT, "no memory for errors");
     for (int f = 0; f < FIELDS; f++) {
         double range = INFINITY;

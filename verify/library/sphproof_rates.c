@@ -19,7 +19,7 @@ enum sphproof_status sphproof_rates_evaluate(const struct sphproof_setup *theirs
     struct setup setup;
     struct error ours;
     struct rate_table table = {0};
-    double *rest = calloc(theirs->n + 1, sizeof *rest);
+    double *rest = calloc(theirs->n, sizeof *rest);
     if (!rest)
         return library_fail(error, STATUS_ENVIRONMENT, "no memory for %zu particles", theirs->n);
     enum sphproof_status status = library_setup(theirs, true, rest, &setup, error);

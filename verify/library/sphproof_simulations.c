@@ -95,7 +95,7 @@ enum sphproof_status sphproof_simulations_create(const struct sphproof_setup *th
 {
     struct setup setup;
     struct error ours;
-    double *rest = calloc(theirs->n + 1, sizeof *rest);
+    double *rest = calloc(theirs->n, sizeof *rest);
     struct sphproof_simulation *made = calloc(1, sizeof *made);
     enum sphproof_status status = SPHPROOF_OK;
     *simulation = NULL;

@@ -237,7 +237,7 @@ enum status diff_documents(const json_t *old, const json_t *new, double threshol
         return error->status;
     }
     const struct metrics *a = &diff->old, *b = &diff->new;
-    diff->list = calloc(a->count + b->count + 1, sizeof *diff->list);
+    diff->list = calloc(a->count + b->count, sizeof *diff->list);
     if (!diff->list) {
         diff_free(diff);
         return error_set(error, STATUS_ENVIRONMENT, "no memory for the differences");

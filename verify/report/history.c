@@ -166,7 +166,7 @@ static int worst_first(const void *a, const void *b)
 static json_t *sorted(json_t *list, int compare(const void *, const void *))
 {
     const size_t n = json_array_size(list);
-    json_t **items = malloc((n + 1) * sizeof(json_t *));
+    json_t **items = malloc(n * sizeof(json_t *));
     if (!items) return list;
     json_t *result = json_array();
     for (size_t i = 0; i < n; i++) items[i] = json_array_get(list, i);

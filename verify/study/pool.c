@@ -202,7 +202,7 @@ static int heavy_first_by_key(const void *a, const void *b)
 
 enum status pool_divide(const struct pool *pool, int of, int *shares, struct error *error)
 {
-    size_t *order = calloc(pool->count + 1, sizeof *order);
+    size_t *order = calloc(pool->count, sizeof *order);
     double *load = calloc((size_t)of, sizeof *load);
     for (size_t i = 0; order && i < pool->count; i++) order[i] = i;
     sorted_jobs = pool->jobs;
@@ -225,7 +225,7 @@ enum status pool_divide(const struct pool *pool, int of, int *shares, struct err
 static enum status take_share(struct pool *pool, const struct pool_share *mine, struct error *error)
 {
     if (!mine->of) return STATUS_OK;
-    int *shares = calloc(pool->count + 1, sizeof *shares);
+    int *shares = calloc(pool->count, sizeof *shares);
     if (!shares) return error_set(error, STATUS_ENVIRONMENT, "no memory for %d shares", mine->of);
     const enum status status = pool_divide(pool, mine->of, shares, error);
     for (size_t i = 0; i < pool->count && !status; i++)
@@ -302,7 +302,7 @@ static enum status run_workers(struct pool *pool, const struct pool_settings *se
 
 enum status pool_run(struct pool *pool, const struct pool_settings *settings, struct error *error)
 {
-    struct course course = {.order = calloc(pool->count + 1, sizeof *course.order)};
+    struct course course = {.order = calloc(pool->count, sizeof *course.order)};
     struct worker *workers = calloc((size_t)settings->jobs, sizeof *workers);
     struct pollfd *polls = calloc((size_t)settings->jobs, sizeof *polls);
     enum status status = STATUS_OK;

@@ -118,7 +118,7 @@ static json_t *missed(const struct mutant_outcome *outcome)
 
 json_t *headline_list(const struct suite *suite)
 {
-    struct cause *causes = calloc(suite->failed + 1, sizeof *causes);
+    struct cause *causes = calloc(suite->failed, sizeof *causes);
     size_t count = 0;
     if (!causes) return NULL;
     for (size_t i = 0; i < suite->figure_count; i++)

@@ -185,7 +185,7 @@ bool suite_chosen(const struct check *check, const struct suite_choice *choice)
 /* The checks in the given order or, with by_rank, by increasing rank: the least names the cause. */
 static const struct check **in_order(const struct check *const *checks, size_t count, bool by_rank)
 {
-    const struct check **ordered = malloc((count + 1) * sizeof *ordered);
+    const struct check **ordered = malloc(count * sizeof *ordered);
     for (size_t i = 0; ordered && i < count; i++) {
         size_t k = i;
         for (; by_rank && k > 0 && ordered[k - 1]->rank > checks[i]->rank; k--)
@@ -220,7 +220,7 @@ enum status suite_run(struct suite *suite, const struct check *const *checks, si
 const char **suite_groups(const struct check *const *checks, size_t count, size_t *total)
 {
     size_t n = 0;
-    const char **names = malloc((count + 1) * sizeof *names);
+    const char **names = malloc(count * sizeof *names);
     for (size_t i = 0; names && i < count; i++) {
         bool known = false;
         for (size_t j = 0; j < n; j++) known = known || strcmp(names[j], checks[i]->group) == 0;

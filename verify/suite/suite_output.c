@@ -254,7 +254,7 @@ static bool plot_failure(const struct suite *suite, const struct tally *t, const
 {
     const size_t n = t->end - t->begin;
     struct plot_series data[SERIES_SHOWN], figures[SERIES_SHOWN];
-    double *values = calloc(3 * n + 1, sizeof *values);
+    double *values = calloc(3 * n, sizeof *values);
     if (!values) return false;
     const size_t curves = curves_of(suite, t->check, data);
     const struct plot_mark bound = {.at = 1, .horizontal = true, .label = "bound"};

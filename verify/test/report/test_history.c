@@ -516,8 +516,8 @@ TEST(worst_figure_of_a_check)
             assert_int_equal(history_append(results, path, &error), STATUS_OK);
             json_decref(results);
             json_t *line = json_load_file(path, 0, NULL);
-            const double kept = value_member(json_object_get(line, "figures"),
-                                             "verify[g, c].value_over_bound");
+            const double kept =
+                value_member(json_object_get(line, "figures"), "verify[g, c].value_over_bound");
             if (which & 2)
                 assert_true(isnan(kept));
             else
