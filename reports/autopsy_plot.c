@@ -93,7 +93,7 @@ static double half_width(const struct drawing *d)
 static void lay_out(struct drawing *d)
 {
     size_t used = 0;
-    double base[LEVELS] = {0}, largest = 0, least = INFINITY;
+    double base[LEVELS] = {0}, largest = (double)NAN, least = INFINITY;
     for (size_t l = 0; l < d->n; l++) largest = fmax(largest, d->whole[l]);
     for (size_t p = 0; p < PARTS; p++) {
         bool there = false;

@@ -371,10 +371,10 @@ static int most_specific_first(const void *a, const void *b)
     return (int)x->number - (int)y->number;
 }
 
+/* True if a is a figure of the check of which b is one. */
 static bool same_check(const struct finding *a, const struct finding *b)
 {
-    return a->rank < AREA_DETECTION && b->rank < AREA_DETECTION && !strcmp(a->group, b->group) &&
-           !strcmp(a->what, b->what);
+    return a->rank < AREA_DETECTION && !strcmp(a->group, b->group) && !strcmp(a->what, b->what);
 }
 
 static size_t collect(const struct findings *findings, struct failure *failures)
@@ -383,17 +383,19 @@ static size_t collect(const struct findings *findings, struct failure *failures)
     for (size_t i = 0; i < findings->count; i++) {
         const struct finding *finding = &findings->list[i];
         const bool check = finding->rank < AREA_DETECTION;
+        struct failure failure = {.finding = finding, .number = i};
         size_t k = 0;
         double beyond;
         if (finding->status != FINDING_FAIL) continue;
-        const double excess = check ? finding_excess(finding, &beyond) : 0;
-        while (k < count && !same_check(failures[k].finding, finding)) k++;
+        if (check) failure.excess = finding_excess(finding, &beyond);
+        while (k < count && !(check && same_check(failures[k].finding, finding))) k++;
         if (k == count) {
-            failures[count++] = (struct failure){finding, excess, i, 0};
+            failures[count++] = failure;
             continue;
         }
         failures[k].more++;
-        if (excess > failures[k].excess) failures[k].finding = finding, failures[k].excess = excess;
+        if (failure.excess > failures[k].excess)
+            failures[k].finding = finding, failures[k].excess = failure.excess;
     }
     return count;
 }

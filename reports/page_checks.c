@@ -22,10 +22,9 @@ static double used(const json_t *figure)
 static struct span next_check(const json_t *figures, size_t first)
 {
     struct span span = {.first = first, .end = first, .worst = first};
-    const json_t *leader = json_array_get(figures, first);
+    const json_t *leader = json_array_get(figures, first), *figure;
     double most = -1;
-    for (size_t n = json_array_size(figures); span.end < n; span.end++) {
-        const json_t *figure = json_array_get(figures, span.end);
+    for (; (figure = json_array_get(figures, span.end)); span.end++) {
         if (strcmp(value_text(figure, "group"), value_text(leader, "group")) ||
             strcmp(value_text(figure, "name"), value_text(leader, "name")))
             break;
@@ -120,18 +119,17 @@ void page_checks(struct page_writer *writer, const json_t *results)
     struct buffer *to = &writer->to;
     const json_t *verify = json_object_get(results, "verify");
     const json_t *figures = json_object_get(verify, "checks");
-    size_t n = json_array_size(figures);
-    if (!n) return;
+    if (!json_array_size(figures)) return;
     buffer_add(to, "<section id=\"checks\"><h2>Checks</h2>\n<p>One line a check: how many figures "
                    "hold, and of these the one nearest to its bound. The floor is the noise below "
                    "which the figure means nothing.</p>\n");
-    for (size_t i = 0; i < n;) {
-        const json_t *leader = json_array_get(figures, i);
+    const json_t *leader;
+    for (size_t i = 0; (leader = json_array_get(figures, i));) {
         const char *group = value_text(leader, "group");
         html_format(to, "<h3>%-s</h3>\n", group);
         html_table(to, "checks", "check|#hold|nearest to its bound|#value|#bound|#floor|#of bound");
-        while (i < n && !strcmp(value_text(json_array_get(figures, i), "group"),
-                                value_text(leader, "group"))) {
+        for (; leader && !strcmp(value_text(leader, "group"), group);
+             leader = json_array_get(figures, i)) {
             const struct span span = next_check(figures, i);
             check_row(to, figures, &span);
             if (span.failed > 1) failing_figures(to, figures, &span);

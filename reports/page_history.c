@@ -294,7 +294,7 @@ static void read_marks(struct curves *curves, const json_t *changes, const char 
         const char *path = value_text(change, "path");
         const double night = value_member(change, "night") + 1;
         bool known = curves->mark_count == MARKS;
-        for (size_t m = 0; m < curves->mark_count; m++)
+        for (size_t m = 0; m < MARKS; m++) /* one that is free stands at 0, before the first night */
             known = known || curves->marks[m].at == night;
         if (known || strncmp(path, "studies[", 8) || strncmp(path + 8, case_name, length) ||
             path[8 + length] != ',')

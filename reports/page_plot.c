@@ -11,8 +11,8 @@
 
 void *page_allocate(struct buffer *to, size_t n, size_t size)
 {
-    void *table = calloc(n + 1, size);
-    to->failed |= !table;
+    void *table = calloc(n, size);
+    to->failed |= n && !table;
     return table;
 }
 

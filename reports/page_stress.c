@@ -140,7 +140,7 @@ static void plot_map(struct page_writer *writer, const json_t *map)
     const size_t nx = value_reals(json_object_get(map, "eta"), eta, POINTS);
     const size_t ny = value_reals(json_object_get(map, "kappa"), kappa, POINTS);
     const size_t n = value_reals(json_object_get(map, "growth"), growth, MAP_MAX);
-    for (size_t k = 0; k < n; k++)
+    for (size_t k = 0; k < MAP_MAX; k++)
         if (!(growth[k] > 1e-4)) growth[k] = (double)NAN;
     const struct plot_heat heat = {
         .nx = nx, .ny = ny, .x = eta, .y = kappa, .z = growth, .label = "growth [c/dx]"};

@@ -25,7 +25,7 @@ static void flat_cell(struct buffer *to, const json_t *value)
 static void degree_cell(struct buffer *to, double degree)
 {
     static const char *const names[] = {"nothing", "constants", "linear", "quadratic", "cubic"};
-    html_cell(to, isfinite(degree) ? names[(int)fmin(fmax(degree + 1, 0), 4)] : "—");
+    html_cell(to, isfinite(degree) ? names[degree < 0 ? 0 : (int)fmin(degree + 1, 4)] : "—");
 }
 
 /* True for "exact_degree_lattice" and the like; the dimension is in the heading. */

@@ -49,7 +49,7 @@ static bool read_line(struct line *line, const json_t *of, const char *name)
     line->n = value_reals(json_object_get(of, "time"), line->time, POINTS);
     const size_t n = value_reals(json_object_get(of, name), line->value, POINTS);
     if (n < line->n) line->n = n;
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < POINTS; i++)
         if (line->value[i] < bottom) line->value[i] = bottom;
     return line->n > 0;
 }

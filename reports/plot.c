@@ -31,7 +31,7 @@ static const char next_plot[] = "if (GPVAL_ERRNO) exit status 1\nset output\nres
 void plot_pen_free(struct plot_pen *pen)
 {
     process_end(&pen->gnuplot);
-    if (pen->begun && pen->script >= 0) close(pen->script);
+    if (pen->begun) close(pen->script);
     *pen = (struct plot_pen){0};
 }
 

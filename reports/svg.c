@@ -36,6 +36,14 @@ static const char *skip_space(const char *c)
     return c;
 }
 
+/* The value of a tag's attribute; empty: there is none. */
+static struct slice value_of(const struct tag *tag, const char *name)
+{
+    for (size_t k = 0; k < ATTRIBUTES; k++)
+        if (is(tag->attributes[k].name, name)) return tag->attributes[k].value;
+    return (struct slice){.at = ""};
+}
+
 /* Parses the tag that starts at c ('<'); returns the text after it, NULL if malformed. */
 static const char *parse(const char *c, struct tag *tag)
 {
@@ -134,12 +142,12 @@ static void put_tag(struct buffer *to, const struct tag *tag, const char *prefix
 static void put_root(struct buffer *to, const struct tag *tag, const char *prefix,
                      const char *title)
 {
+    const struct slice view = value_of(tag, "viewBox");
     buffer_add(to, "<svg class=\"plot\" role=\"img\" xmlns=\"http://www.w3.org/2000/svg\" "
                    "font-family=\"sans-serif\" color=\"");
     buffer_format(to, "%s\" aria-labelledby=\"%s-title\"", style_colors[STYLE_plot_ink].light,
                   prefix);
-    for (size_t k = 0; k < tag->count; k++)
-        if (is(tag->attributes[k].name, "viewBox")) put(to, "viewBox", tag->attributes[k].value);
+    if (view.n) put(to, "viewBox", view);
     buffer_format(to, ">\n<title id=\"%s-title\">", prefix);
     buffer_escape(to, title);
     buffer_add(to, "</title>\n");
@@ -156,16 +164,11 @@ struct dots {
 
 static bool is_dot(const struct tag *tag, double *x, double *y, struct dots *dots)
 {
-    bool circle = false, placed = false;
-    dots->style = STYLE_COUNT;
-    for (size_t k = 0; k < tag->count; k++) {
-        struct slice name = tag->attributes[k].name, value = tag->attributes[k].value;
-        if (is(name, "xlink:href")) circle = is(value, "#gpPt6");
-        if (is(name, "color")) dots->style = style_of(value);
-        if (is(name, "transform"))
-            placed = sscanf(value.at, "translate(%lf,%lf) scale(%lf)", x, y, &dots->scale) == 3;
-    }
-    return is(tag->name, "use") && circle && placed && dots->style < STYLE_COUNT;
+    const char *place = value_of(tag, "transform").at;
+    dots->style = style_of(value_of(tag, "color"));
+    return is(tag->name, "use") && is(value_of(tag, "xlink:href"), "#gpPt6") &&
+           dots->style < STYLE_COUNT &&
+           sscanf(place, "translate(%lf,%lf) scale(%lf)", x, y, &dots->scale) == 3;
 }
 
 static void end_dots(struct buffer *to, struct dots *dots)
@@ -204,10 +207,7 @@ struct groups {
 
 static bool is_white_use(const struct tag *tag)
 {
-    for (size_t k = 0; k < tag->count; k++)
-        if (is(tag->attributes[k].name, "color") && is(tag->attributes[k].value, "white"))
-            return is(tag->name, "use");
-    return false;
+    return is(tag->name, "use") && is(value_of(tag, "color"), "white");
 }
 
 static bool drop_element(const struct tag *tag)

@@ -106,11 +106,12 @@ static void judge(struct diff *diff, const struct metric *old, const struct metr
                   double threshold)
 {
     struct difference *d = &diff->list[diff->count++];
-    bool fault;
+    bool fault = false;
     *d = (struct difference){.old = old, .new = new, .any = new ? new : old};
-    d->verdict = metric_judge(old, new, &d->amount, &fault);
     if (diff->problem[0] && old && new)
-        d->verdict = VERDICT_INCOMPARABLE, d->amount = 0, fault = false;
+        d->verdict = VERDICT_INCOMPARABLE;
+    else
+        d->verdict = metric_judge(old, new, &d->amount, &fault);
     const bool order = new &&new->kind == METRIC_ORDER; /* an order has its interval as threshold */
     d->regression = d->verdict == VERDICT_WORSE && fault && (order || d->amount > threshold);
 }

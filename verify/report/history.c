@@ -25,8 +25,9 @@ enum { PATH_LENGTH = 1024 };
  * of each check, or one that is not a number. */
 static void add_checks(const json_t *checks, json_t *figures)
 {
-    for (size_t i = 0; i < json_array_size(checks); i++) {
-        const json_t *check = json_array_get(checks, i);
+    const json_t *check;
+    size_t i;
+    json_array_foreach(checks, i, check) {
         const double value = value_member(check, "value"), bound = value_member(check, "bound"),
                      ratio = value / bound;
         char path[PATH_LENGTH];

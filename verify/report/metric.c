@@ -83,13 +83,13 @@ static void refine(struct metric *metric, const json_t *parent, const char *name
     }
 }
 
-/* Noise from replicates: two standard deviations of the mean; NaN without a spread. */
+/* Noise from replicates: two standard deviations of the mean; NaN: none. */
 static double level_noise(const json_t *level, const char *field, const char *norm)
 {
     const double spread =
         value_member(json_object_get(json_object_get(level, "spread"), field), norm);
     const double replicates = value_member(level, "replicates");
-    return replicates > 1 ? 2 * spread / sqrt(replicates) : 0;
+    return replicates > 1 ? 2 * spread / sqrt(replicates) : (double)NAN;
 }
 
 static void note_trouble(struct metrics *metrics, const char *path, const char *why)
@@ -256,8 +256,9 @@ static void walk(struct metrics *metrics, const struct place *at, const json_t *
 static void walk_list(struct metrics *metrics, const struct place *at, const char *key,
                       const json_t *list)
 {
-    for (size_t i = 0; i < json_array_size(list); i++) {
-        const json_t *entry = json_array_get(list, i);
+    const json_t *entry;
+    size_t i;
+    json_array_foreach(list, i, entry) {
         char name[NAME_MAX_LENGTH];
         struct place inside = *at;
         if (!json_is_object(entry)) continue; /* raw data */

@@ -480,7 +480,7 @@ static enum status judge_studies(struct report *report, struct error *error)
 {
     enum status status = STATUS_OK;
     for (size_t c = 0; c < report->case_count; c++)
-        for (int s = 0; s < report->cases[c].studied && !status; s++)
+        for (int s = 0; s < ENTRIES && !status; s++) /* empty ones have nothing to judge */
             status = study_judge(&report->cases[c].studies[s], &report->pool, error);
     return status;
 }

@@ -222,20 +222,20 @@ enum status report_piece_add(struct pool *pool, struct report_piece *piece, stru
 /* Counts each mutant once; it is detected if every entry that has it detected it. */
 static void count_mutants(const json_t *list, json_t *summary)
 {
-    int mutants = 0, detected = 0;
-    for (size_t i = 0; i < json_array_size(list); i++) {
-        const char *name = value_text(json_array_get(list, i), "mutant");
-        bool first = true, everywhere = true;
-        for (size_t j = 0; j < json_array_size(list); j++) {
-            const json_t *other = json_array_get(list, j);
-            if (strcmp(value_text(other, "mutant"), name) != 0) continue;
-            first = first && j >= i;
-            everywhere = everywhere && json_is_true(json_object_get(other, "detected"));
-        }
-        mutants += first;
-        detected += first && everywhere;
+    json_t *all = json_object(); /* whether each was detected, by name */
+    const json_t *entry, *detected;
+    const char *name;
+    size_t i;
+    int count = 0;
+    json_array_foreach(list, i, entry) {
+        name = value_text(entry, "mutant");
+        detected = json_object_get(entry, "detected");
+        if (!json_is_false(json_object_get(all, name)))
+            json_object_set_new(all, name, json_boolean(json_is_true(detected)));
     }
-    result_add(summary, "mutants=%d detected=%d", mutants, detected);
+    json_object_foreach(all, name, detected) count += json_is_true(detected);
+    result_add(summary, "mutants=%zu detected=%d", json_object_size(all), count);
+    json_decref(all);
 }
 
 void report_piece_join(json_t *verify, json_t *part)
