@@ -16,13 +16,15 @@
 enum { NIGHTS_MOST = 500, KEPT = 120 };
 
 static const char error_path[] = "studies[sod, ia].levels[n 400].errors.density.l1",
-                  order_path[] = "studies[sod, ia].orders[density, l1].order";
+                  order_path[] = "studies[sod, ia].orders[density, l1].order",
+                  steps_path[] = "studies[sod, ia].levels[n 400].cost.steps";
 
-/* The results of a night; a field that is NULL or NaN is missing in its line. */
+/* The results of a night; a field that is NULL or NaN is missing in its line, as are 0 steps. */
 struct night {
     const char *mode;
     char git[16], date[16];
     double error, order, half; /* of the order's interval */
+    int steps;
 };
 
 static json_t *results_of(const struct night *night)
@@ -40,6 +42,9 @@ static json_t *results_of(const struct night *night)
                   "density", "l1", night->error, "l2", 2 * night->error, "orders", "field",
                   "density", "norm", "l1", "order", night->order, "low", night->order - night->half,
                   "high", night->order + night->half, "measured", "mode_amplitude", "density"));
+    json_t *level = json_array_get(
+        json_object_get(json_array_get(json_object_get(results, "studies"), 0), "levels"), 0);
+    if (night->steps) json_object_set_new(level, "cost", json_pack("{s:i}", "steps", night->steps));
     return results;
 }
 
@@ -48,6 +53,7 @@ static void write_night(FILE *file, const struct night *night)
     json_t *figures = json_object();
     if (!isnan(night->error)) json_object_set_new(figures, error_path, json_real(night->error));
     if (!isnan(night->order)) json_object_set_new(figures, order_path, json_real(night->order));
+    if (night->steps) json_object_set_new(figures, steps_path, json_integer(night->steps));
     json_t *line = json_pack("{s:s, s:s, s:o}", "schema", "sphproof-history/1", "mode", night->mode,
                              "figures", figures);
     if (night->git[0]) json_object_set_new(line, "git", json_string(night->git));
@@ -388,12 +394,13 @@ TEST(verdicts_since_last_night)
         struct night last = usual_night(0), now = usual_night(1);
         FILE *file = fopen(path_of("history"), "w");
         last.error = rows[r].error, last.order = rows[r].order;
+        last.steps = 1000, now.steps = 100; /* a change larger than those of most errors */
         write_night(file, &last);
         fclose(file);
         json_t *history = reported(&now);
         const json_t *since = json_object_get(history, "since"),
                      *figures = json_object_get(since, "figures"), *figure;
-        const char *of_error = "same", *of_order = "same";
+        const char *of_error = "same", *of_order = "same", *of_steps = "same";
         bool fault_ended = false;
         size_t i;
         json_array_foreach(figures, i, figure) {
@@ -410,6 +417,7 @@ TEST(verdicts_since_last_night)
                     near_relative(value_member(figure, "ratio"), now.error / last.error, 1e-12);
             }
             if (strcmp(path, order_path) == 0) of_order = value_text(figure, "verdict");
+            if (strcmp(path, steps_path) == 0) of_steps = value_text(figure, "verdict");
             assert_string_not_equal(value_text(figure, "verdict"), "same");
             const bool grown = strcmp(path, error_path) || now.error > 1.05 * last.error;
             assert_int_equal(fault, grown && !strcmp(value_text(figure, "verdict"), "worse"));
@@ -417,6 +425,7 @@ TEST(verdicts_since_last_night)
         in_order_of_since(figures);
         assert_string_equal(of_error, rows[r].of_error);
         assert_string_equal(of_order, rows[r].of_order);
+        assert_string_equal(of_steps, "better");
         for (size_t w = 1; w < sizeof words / sizeof *words; w++) {
             size_t count = 0;
             if (w < 3) /* "new" also counts statuses, which the earlier line lacks */
