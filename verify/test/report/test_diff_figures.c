@@ -290,6 +290,25 @@ TEST(names)
     }
 }
 
+/* Snapshots of one run have the same number of particles: they are told apart by their times, in
+ * any order. */
+TEST(snapshots_of_one_run)
+{
+    json_t *old = json_pack("{s:s, s:[{s:i, s:f, s:f}, {s:i, s:f, s:f}]}", "command", "judge",
+                            "snapshots", "n", 400, "time", 0.5, "error", 2., "n", 400, "time", 0.25,
+                            "error", 1.),
+           *new = json_pack("{s:s, s:[{s:i, s:f, s:f}, {s:i, s:f, s:f}]}", "command", "judge",
+                            "snapshots", "n", 400, "time", 0.25, "error", 1.5, "n", 400, "time",
+                            0.5, "error", 2.);
+    struct diff diff;
+    assert_int_equal(differ(old, new, &diff), STATUS_CHECK_FAILED);
+    assert_int_equal(diff.count, 2);
+    assert_int_equal(find(&diff, "snapshots[n 400, time 0.25].error")->verdict, VERDICT_WORSE);
+    assert_int_equal(find(&diff, "snapshots[n 400, time 0.5].error")->verdict, VERDICT_SAME);
+    diff_free(&diff);
+    json_decref(old), json_decref(new);
+}
+
 /* Settings are part of a name, if they are words, at most 64. */
 TEST(settings_in_names)
 {
