@@ -330,7 +330,7 @@ void findings_of_report(struct findings *to, const json_t *results)
     add_faults(to, json_object_get(results, "faults"));
     for (size_t i = 0; i < to->count; i++) {
         const struct finding *f = &to->list[i];
-        if (f->status == FINDING_FAIL || f->rank == AREA_RUN ||
+        if (f->status == FINDING_FAIL ||
             (f->status == FINDING_PASS && f->rank != AREA_DETECTION && f->rank != AREA_FAULT))
             return;
     }
