@@ -111,6 +111,17 @@ def main():
         result = judged("ic.csv", case)
         for field in ("velocity", "pressure") if case == "hydrostatic" else ("velocity",):
             check(result["errors"][field]["l1"] < 1e-15, case, "starts otherwise:", field, result["errors"][field])
+    # a column at rest, of a code that stores no pressure, or pressures below 0
+    for change in "| cut -d, -f1-6", r"| sed '/^[0-9]/s/[^,]*,\([^,]*\)$/-1,\1/'":
+        with open("code.ini", "w") as file:
+            file.write("[code]\nshell = yes\nsnapshot = @OUT@.csv\ncommand = sed 's/^# time = 0/# time = @T_END@/' @IC@ %s "
+                       ">@OUT@.csv\n[case hydrostatic]\n" % change)
+        code, out, err = said("run", "hydrostatic", "n=400", "--code", "code.ini", "--json", "-")
+        check(code == 0 and out, change, code, err)
+        errors = json.loads(out or "{}").get("errors", {})
+        check(errors.get("density", {}).get("l1", 1) < 1e-3, change, errors)
+        pressure = errors.get("pressure", {}).get("l1", 0)
+        check(pressure == "nan" if "cut" in change else pressure > 1, change, errors)
     for words, reported in ((("nu=0",), "nu=0"), (("gravity=0 -1",), "along x"), (("speed=0",), "stays at rest")):
         code, _, err = said("ic", "couette", *words, "--format", "csv", "--out", "no.csv")
         check(code == 2 and reported in err and not os.path.exists("no.csv"), words, code, err)
