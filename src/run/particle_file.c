@@ -163,7 +163,7 @@ static void guess_densities(const struct particle_file *file, const struct prepa
         struct problem_state state;
         double x[3] = {0};
         for (int d = 0; d < p->domain.dim; d++) x[d] = initial->x[d][i];
-        problem_sample(p, x, 0, &state);
+        problem_sample_start(p, x, &state);
         initial->rho[i] = state.rho > 0 ? state.rho
                           : file->rho   ? file->rho[i]
                                         : mass / domain_volume(&p->domain);

@@ -46,6 +46,11 @@ void problem_sample(const struct prepared *p, const double x[3], double t,
         if (p->boost[d] != 0) state->v[d] += p->boost[d];
 }
 
+void problem_sample_start(const struct prepared *p, const double x[3], struct problem_state *state)
+{
+    problem_sample(p, x, 0, state);
+}
+
 void problem_sample_particle(const struct prepared *p, const struct snapshot *s, size_t i,
                              struct problem_state *state)
 {

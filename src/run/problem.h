@@ -163,6 +163,9 @@ struct problem {
 void problem_sample(const struct prepared *p, const double x[3], double t,
                     struct problem_state *state);
 
+/* The same at t = 0. */
+void problem_sample_start(const struct prepared *p, const double x[3], struct problem_state *state);
+
 /* The same at the position of particle i and the time of its snapshot. */
 void problem_sample_particle(const struct prepared *p, const struct snapshot *s, size_t i,
                              struct problem_state *state);

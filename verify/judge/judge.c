@@ -284,7 +284,7 @@ static bool counts(const struct judged *judged, size_t i, struct problem_state *
     problem_position(p, s, i, position);
     for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i];
     problem_sample(p, x, judged->result.time, now);
-    problem_sample(p, x, 0, before);
+    problem_sample_start(p, x, before);
     return window_contains(&p->window, position);
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Finds the case's position in the file's box, its time and its gamma; notes all of it. */
+#include <gsl/gsl_math.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -30,7 +31,7 @@ static double stored_gamma(const struct snapshot_file *file, double *scatter)
 {
     const double *P = file->column[SNAPSHOT_P], *u = file->column[SNAPSHOT_U],
                  *rho = file->column[SNAPSHOT_RHO];
-    double sum = 0, count = 0, least = INFINITY, most = 0;
+    double sum = 0, count = 0, least = INFINITY, most = -INFINITY;
     if (!P || !u) return (double)NAN;
     for (size_t i = 0; i < file->gas; i++) {
         const double gamma = 1 + P[i] / (rho[i] * u[i]);
@@ -374,15 +375,13 @@ static void cut_words(char *words, int directions)
 static void take_slab(struct judged *judged)
 {
     struct snapshot_file *file = &judged->file;
+    double *const *v = &file->column[SNAPSHOT_VX];
     double volume = 0, area = 1, along = 0, most = 0;
     char value[48];
     for (size_t i = 0; i < file->gas; i++) {
-        double squares = 0;
-        for (int d = 0; d < 3; d++)
-            squares += file->column[SNAPSHOT_VX + d][i] * file->column[SNAPSHOT_VX + d][i];
         volume += file->column[SNAPSHOT_M][i] / file->column[SNAPSHOT_RHO][i];
-        along = fmax(along, fabs(file->column[SNAPSHOT_VX + 2][i]));
-        most = fmax(most, sqrt(squares));
+        along = fmax(along, fabs(v[2][i]));
+        most = fmax(most, gsl_hypot3(v[0][i], v[1][i], v[2][i]));
     }
     for (int d = 0; d < 2; d++) {
         double lo, hi;

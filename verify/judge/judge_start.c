@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "judge_start.h"
 
+#include <gsl/gsl_math.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,11 +35,10 @@ static bool fills_space(const struct start_gas *gas, size_t i)
 static void state_beside(const struct start_gas *gas, size_t i, int direction, double by,
                          struct problem_state *state)
 {
-    double *x = gas->x[i];
-    const double from = x[direction];
-    x[direction] += by;
-    problem_sample(gas->problem, x, 0, state);
-    x[direction] = from;
+    const double from = gas->x[i][direction];
+    gas->x[i][direction] += by;
+    problem_sample_start(gas->problem, gas->x[i], state);
+    gas->x[i][direction] = from;
 }
 
 /* The smallest difference from the exact states near the particle: beside a jump, particles that
@@ -156,12 +156,10 @@ static bool pressures_follow(const struct start_gas *gas)
 
 static void measure_gas(struct start_gas *gas)
 {
-    double sound = 0;
+    double sound = -INFINITY;
     for (size_t i = 0; i < gas->snapshot->n; i++) {
         const struct problem_state *exact = &gas->exact[i];
-        double squares = 0;
-        for (int d = 0; d < gas->problem->domain.dim; d++) squares += exact->v[d] * exact->v[d];
-        gas->speed = fmax(gas->speed, sqrt(squares));
+        gas->speed = fmax(gas->speed, gsl_hypot3(exact->v[0], exact->v[1], exact->v[2]));
         sound = fmax(sound, sqrt(gas->problem->gamma * exact->P / exact->rho));
     }
     if (!(gas->speed > 1e-12 * sound)) gas->speed = sound;
@@ -225,11 +223,10 @@ static bool are_moved(const struct start_gas *gas)
         if (gas->wrong[i] & telling) return false;
         for (int k = 0; k < 2 * dim; k++) {
             struct problem_state beside;
-            double squares = 0;
+            const double *v = beside.v, *here = gas->exact[i].v;
             state_beside(gas, i, k / 2, (k % 2 ? -1 : 1) * gas->spacing, &beside);
-            for (int d = 0; d < dim; d++)
-                squares += (beside.v[d] - gas->exact[i].v[d]) * (beside.v[d] - gas->exact[i].v[d]);
-            most[START_VELOCITY] = fmax(most[START_VELOCITY], sqrt(squares) / gas->speed);
+            const double off = gsl_hypot3(v[0] - here[0], v[1] - here[1], v[2] - here[2]);
+            most[START_VELOCITY] = fmax(most[START_VELOCITY], off / gas->speed);
             most[START_ENERGY] =
                 fmax(most[START_ENERGY], start_relative(beside.u, gas->exact[i].u));
             most[START_MASS] =
@@ -307,7 +304,7 @@ enum status judge_start_look(const struct run_result *result, double precision, 
     const bool sound = gas.exact && gas.x && gas.wrong && work;
     for (size_t i = 0; sound && i < s->n; i++) {
         for (int d = 0; d < result->problem.domain.dim; d++) gas.x[i][d] = s->x[d][i];
-        problem_sample(gas.problem, gas.x[i], 0, &gas.exact[i]);
+        problem_sample_start(gas.problem, gas.x[i], &gas.exact[i]);
     }
     if (sound) look(&gas, precision, mass_ratio, work, start);
     free(gas.exact), free(gas.x), free(gas.wrong), free(work);

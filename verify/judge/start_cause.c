@@ -91,7 +91,7 @@ static bool name_stride(const struct start_gas *gas, unsigned fields, char *text
 }
 
 /* Coordinates by which particles can be sorted. */
-enum way { WAY_X, WAY_Y, WAY_Z, WAY_RADIUS, WAY_ROW, WAYS };
+enum way { WAY_X, WAY_Y, WAY_Z, WAY_RADIUS, WAY_ROW };
 
 static bool has_way(const struct problem *problem, int dim, enum way way)
 {
@@ -107,14 +107,14 @@ static double along(const struct start_gas *gas, enum way way, size_t i)
 
 void start_where(const struct start_gas *gas, unsigned fields, char *text, size_t size)
 {
-    static const char *const names[WAYS] = {"x", "y", "z", "r", "row"};
+    static const char *const names[] = {"x", "y", "z", "r", "row"};
     const size_t n = gas->snapshot->n;
     struct rank *rank = malloc(n * sizeof *rank);
     size_t wrong = 0;
     bool named = !rank; /* without memory nothing is said */
     *text = '\0';
     for (size_t i = 0; i < n; i++) wrong += (gas->wrong[i] & fields) != 0;
-    for (enum way way = 0; !named && way < WAYS; way++) {
+    for (enum way way = 0; !named && way <= WAY_ROW; way++) {
         if (!has_way(gas->problem->problem, gas->problem->domain.dim, way)) continue;
         for (size_t i = 0; i < n; i++)
             rank[i] = (struct rank){along(gas, way, i), (gas->wrong[i] & fields) != 0};
@@ -224,7 +224,7 @@ static void scalar_cause(const struct start_gas *gas, enum start_field field, ch
             text_add(text, size, "%s%s", *text ? ", or " : "it is ", usual[k].words);
     if (!*text && fits(gas, field, value, exact, factor))
         snprintf(text, size, "it is %.6g times %s", factor, should);
-    double more = 0; /* at the first wrong particle; an offset if it is constant */
+    double more = (double)NAN; /* at the first wrong particle; an offset if it is constant */
     size_t all = 0, near = 0;
     for (size_t i = 0; i < s->n; i++) {
         if (!(gas->wrong[i] & 1u << field)) continue;
@@ -347,7 +347,7 @@ static double miss(const struct trial *trial, const double by[3], size_t *near)
             const double length = domain_length(&gas->problem->domain, d);
             x[d] -= length * floor((x[d] - gas->problem->domain.lo[d]) / length);
         }
-        problem_sample(gas->problem, x, 0, &there);
+        problem_sample_start(gas->problem, x, &there);
         double off = start_off(gas, START_VELOCITY, i, &there);
         if (!gas->problem->problem->mean_energy)
             off = fmax(off, start_off(gas, START_ENERGY, i, &there));
@@ -419,7 +419,7 @@ static bool turned(const struct start_gas *gas, int mirror)
             x[0] = gas->x[i][1], x[1] = gas->x[i][0];
         else
             x[mirror] = box->lo[mirror] + box->hi[mirror] - x[mirror];
-        problem_sample(gas->problem, x, 0, &there);
+        problem_sample_start(gas->problem, x, &there);
         wrong++;
         near += start_off(gas, START_VELOCITY, i, &there) <= START_WRONG &&
                 start_off(gas, START_ENERGY, i, &there) <= START_WRONG;

@@ -321,6 +321,14 @@ TEST(cases_without_a_solution)
         assert_int_equal(strncmp(judged.verdict, begin, strlen(begin)), 0);
         judge_free(&judged);
     }
+    /* how a mode grows is known for one gamma */
+    const struct judge_request request = {
+        .case_name = "kelvin_helmholtz", .time = {true, 1}, .gamma = {true, 1.4}, .kernel = -1};
+    plant(2, 0, "# box = 1\n");
+    for (int i = 0; i < N; i++) gas.x[0][i] /= 2;
+    struct judged judged = judges(&request);
+    assert_true(judged.wrong == 0);
+    judge_free(&judged);
 }
 
 /* In 1D a radius gives a window of twice that length about the middle of the box, wherever the

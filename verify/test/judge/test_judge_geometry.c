@@ -338,7 +338,8 @@ TEST(slabs)
     } rows[] = {{NULL, 0, 2, 0.5},
                 {"2 1", 0, 0, 0},
                 {"0:2 0:1 0:1.25", 1.25, 0.5, 1},
-                {"0:2 0:1 0:1e-20", 1e-20, 0, 0}};
+                {"0:2 0:1 0:1e-20", 1e-20, 0, 0},
+                {NULL, 0, 1e-9, 5e-10}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct judge_request request = {
             .case_name = "shear", .time = {true, 0}, .kernel = -1, .box = rows[k].box};

@@ -255,6 +255,7 @@ TEST(widths_of_an_autopsy)
         const struct run run = keyed_run(flows[k].name, "");
         struct run used;
         struct error error = {0};
+        char nine_digits[40];
         double eta = 0;
         const struct domain *box = &run.problem.domain;
         plant(flows[k].dim, 0, "# time = 0\n");
@@ -276,7 +277,8 @@ TEST(widths_of_an_autopsy)
         assert_true(judged.conventions.known);
         judged.conventions.candidate[1].kernel.member.name = "wendland_c2"; /* fits less well */
         if (judge_autopsy(&judged, &level, &used, &error)) fail_msg("%s", error.message);
-        near_relative(settings_real(&used.settings, SETTING_eta), eta, 1e-8);
+        snprintf(nine_digits, sizeof nine_digits, "%.9g", eta);
+        assert_true(settings_real(&used.settings, SETTING_eta) == atof(nine_digits));
         assert_string_equal(
             kernel_family.members[settings_choice(&used.settings, SETTING_kernel)]->name,
             judged.conventions.candidate[0].kernel.member.name);

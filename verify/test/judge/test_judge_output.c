@@ -204,6 +204,7 @@ TEST(documents)
     json_decref(document);
     document = judge_json(judged, 1, NULL, false);
     assert_true(json_is_null(at(document, "kernel", "residual")));
+    assert_int_equal(json_array_size(at(document, "kernel", "candidates")), 0);
     json_decref(document);
     for (int k = 0; k < 2; k++) judge_free(&judged[k]);
 }

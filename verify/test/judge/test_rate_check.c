@@ -7,7 +7,7 @@
 #include "rate_check.h"
 #include "settings.h"
 
-enum { MOST = 64, KEYS = 16 };
+enum { MOST = 65, KEYS = 16 };
 
 /* Distinct particles in no particular order. */
 struct gas {
@@ -295,8 +295,9 @@ TEST(rows_of_other_particles)
             for (size_t i = 0; i < gas.setup.n; i++) x[dim - 1][i] += 2 * rows[k].shift;
             for (int a = 0; a < dim && rows[k].swapped; a++)
                 x[a][3] = gas.x[a][7], x[a][7] = gas.x[a][3];
-            struct csv theirs = {.rows = gas.setup.n, .columns = (size_t)dim};
+            struct csv theirs = {.rows = gas.setup.n + 1, .columns = (size_t)dim};
             for (int a = 0; a < dim; a++) theirs.names[a] = letters[a], theirs.values[a] = x[a];
+            for (int a = 0; a < dim; a++) x[a][gas.setup.n] = 0.7; /* of no particle */
             assert_int_equal(rate_check_positions("theirs.csv", &theirs, &gas.setup, &error),
                              rows[k].good ? STATUS_OK : STATUS_BAD_INPUT);
             if (rows[k].swapped)

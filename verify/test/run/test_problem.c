@@ -95,7 +95,7 @@ static bool particles_are_samples(struct walk *walk)
         for (int d = 0; d < initial->dim; d++)
             if (!(x[d] >= p->domain.lo[d] && x[d] < p->domain.hi[d]))
                 return fault(walk, "particle %zu is outside the domain", i);
-        problem_sample(p, x, 0, &s);
+        problem_sample_start(p, x, &s);
         const double c = sqrt(p->gamma * s.P / s.rho);
         if (!(initial->m[i] > 0 && s.rho > 0 && s.u > 0))
             return fault(walk, "particle %zu is not positive", i);
@@ -140,7 +140,7 @@ static void integrate(const struct prepared *p, double sums[SUMS])
         for (int d = 0; d < dim; d++, rest /= side)
             x[d] = p->domain.lo[d] +
                    ((double)(rest % side) + 0.5) * (domain_length(&p->domain, d) / (double)side);
-        problem_sample(p, x, 0, &s);
+        problem_sample_start(p, x, &s);
         add_sums(sums, s.rho * volume, s.v, s.u);
     }
 }
@@ -220,7 +220,7 @@ static bool is_steady_as_said(struct walk *walk)
         double x[3];
         struct problem_state start, end;
         place(walk, i, x);
-        problem_sample(&walk->p, x, 0, &start);
+        problem_sample_start(&walk->p, x, &start);
         problem_sample(&walk->p, x, t_end, &end);
         for (int d = 0; d < walk->initial.dim; d++)
             if (differ(start.rho, end.rho, 0) || differ(start.v[d], end.v[d], 1))
