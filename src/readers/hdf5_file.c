@@ -152,7 +152,7 @@ int hdf5_numbers(const struct snapshot_source *source, const char *group, const 
     double all[HEADER_NUMBERS_MAX];
     if (is_number(e.type) && read_entry(&e, h5.T_NATIVE_DOUBLE_g, all)) {
         count = (int)e.count;
-        for (int i = 0; i < count && i < max; i++) values[i] = all[i];
+        memcpy(values, all, (size_t)(count < max ? count : max) * sizeof *values);
     }
     close_entry(&e);
     return count;

@@ -101,15 +101,14 @@ static enum status take_masses(const struct snapshot_source *source, struct snap
 
 static void take_box(const struct snapshot_source *source, struct snapshot_file *file)
 {
-    double *box = file->box;
     /* our own initial states have Sides, and BoxSize is the largest */
-    int count = hdf5_numbers(source, "Header", "Sides", box, 3);
-    if (count != 3) count = hdf5_numbers(source, "Header", "BoxSize", box, 3);
+    int count = hdf5_numbers(source, "Header", "Sides", file->box, 3);
+    if (count != 3) count = hdf5_numbers(source, "Header", "BoxSize", file->box, 3);
     for (int d = 0; d < 3; d++) {
-        if (count == 1) box[d] = box[0];
-        if (!count || !(box[d] > 0 && isfinite(box[d]))) box[d] = 0;
+        if (count == 1) file->box[d] = file->box[0];
+        if (!count || !(file->box[d] > 0 && isfinite(file->box[d]))) file->box[d] = 0;
     }
-    file->boxed = box[0] > 0;
+    file->boxed = file->box[0] > 0;
 }
 
 /* Notes units other than 1, to which no column is converted. */

@@ -23,7 +23,7 @@ static enum status check_header(const char *path, const struct phantom_header *h
 }
 
 /* Orders the rows: live gas first, then the other live particles. */
-static void sort_rows(struct snapshot_file *file, const double *type, size_t *row)
+static void sort_rows(struct snapshot_file *file, const double *type, size_t *row, double *sorted)
 {
     const double *h = file->column[SNAPSHOT_H];
     size_t n = 0;
@@ -35,7 +35,6 @@ static void sort_rows(struct snapshot_file *file, const double *type, size_t *ro
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++) {
         double *column = file->column[c];
         if (!column) continue;
-        double *sorted = column + file->n; /* second half of the memory */
         for (size_t k = 0; k < n; k++) sorted[k] = column[row[k]];
         memcpy(column, sorted, n * sizeof *column);
     }
@@ -67,14 +66,9 @@ enum status phantom_gas(const char *path, const struct phantom_header *header, c
     const bool lacks = !file->column[SNAPSHOT_RHO];
     if (check_header(path, header, error)) return error->status;
     size_t *row = malloc(file->n * sizeof *row);
-    bool there = row && !snapshot_file_make(file, SNAPSHOT_M, path, error) &&
-                 !(lacks && snapshot_file_make(file, SNAPSHOT_RHO, path, error));
-    for (int c = 0; c < SNAPSHOT_COLUMNS && there; c++) {
-        if (!file->column[c]) continue;
-        double *longer = realloc(file->column[c], 2 * file->n * sizeof *longer);
-        if (longer) file->column[c] = longer;
-        there = longer;
-    }
+    double *sorted = malloc(file->n * sizeof *sorted);
+    const bool there = row && sorted && !snapshot_file_make(file, SNAPSHOT_M, path, error) &&
+                       !(lacks && snapshot_file_make(file, SNAPSHOT_RHO, path, error));
     for (size_t i = 0; i < file->n && there; i++) {
         const double t = type ? fabs(type[i]) : GAS;
         const double m = t >= 1 && t <= header->types ? header->masses[(int)t - 1] : 0;
@@ -84,8 +78,9 @@ enum status phantom_gas(const char *path, const struct phantom_header *header, c
                 file->column[SNAPSHOT_M][i] *
                 pow(header->hfact.value / file->column[SNAPSHOT_H][i], 3);
     }
-    if (there) sort_rows(file, type, row);
+    if (there) sort_rows(file, type, row, sorted);
     free(row);
+    free(sorted);
     if (!there) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
     if (lacks)
         snapshot_note(&file->notes, "density", "m (hfact/h)^3", "the file stores none; hfact = %g",

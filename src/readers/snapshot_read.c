@@ -335,14 +335,14 @@ static enum status find_dimension(const char *path, struct snapshot_file *file, 
 {
     int dim = 0;
     char value[16];
-    double extent[3] = {0}, most = 0;
+    double extent[3] = {0};
     for (int d = 0; d < 3 && file->column[d]; d++) {
         const double *x = file->column[d];
         double lo = x[0], hi = x[0];
         for (size_t i = 0; i < file->n; i++) lo = fmin(lo, x[i]), hi = fmax(hi, x[i]);
         extent[d] = hi - lo;
-        most = fmax(most, extent[d]);
     }
+    const double most = fmax(extent[0], fmax(extent[1], extent[2]));
     for (int d = 0; d < 3; d++) {
         if (!(extent[d] > SNAPSHOT_ROUNDING * most)) continue;
         if (d != dim)

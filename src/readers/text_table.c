@@ -99,8 +99,9 @@ static bool number_of(const char *word, size_t length, double *value)
 {
     char plain[WORD];
     if (length >= sizeof plain) return false;
-    for (size_t k = 0; k < length; k++) plain[k] = word[k] == 'D' || word[k] == 'd' ? 'e' : word[k];
+    memcpy(plain, word, length);
     plain[length] = '\0';
+    for (char *at = plain; (at = strpbrk(at, "Dd"));) *at = 'e';
     return text_real(plain, value);
 }
 

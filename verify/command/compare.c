@@ -325,7 +325,7 @@ static void conclude(struct comparison *c)
     double ratio[STUDY_REPLICATES_MAX];
     char *text = c->verdict;
     const size_t size = sizeof c->verdict, count = c->sides[0].count;
-    for (size_t k = 0; k < count; k++)
+    for (size_t k = 0; k < FIGURES_MAX; k++) /* of figures that there are not: no draws */
         c->of[k] = paired_compare(c->draws, c->sides[0].error[k], c->sides[1].error[k], single,
                                   LEVEL / (double)count);
     bool timed = true; /* a coarse clock may measure 0 */
@@ -339,7 +339,7 @@ static void conclude(struct comparison *c)
     c->cpu_high = timed ? ratio[c->draws - 1] : (double)NAN;
     for (size_t v = 0; v < PAIRED_VERDICTS; v++) {
         size_t said = 0;
-        for (size_t k = 0; k < count; k++) {
+        for (size_t k = 0; k < FIGURES_MAX; k++) {
             if (!c->of[k].n || c->of[k].verdict != order[v]) continue;
             say(text, size, "%s", said ? ", " : *text ? "; " : "");
             say(text, size, "%s%s", said++ ? "" : open[order[v]], c->sides[0].figures[k]);
@@ -393,7 +393,7 @@ static void print_all(const struct comparison *c, const struct options *options)
                c->sides[s].n[0]);
     printf("\n%s%-18s %12s %12s %32s  %s%s\n", style.bold, "error", "a", "b", "b/a - 1", "b is",
            style.end);
-    for (size_t k = 0; k < c->sides[0].count; k++) {
+    for (size_t k = 0; k < FIGURES_MAX; k++) {
         const struct paired *of = &c->of[k];
         char change[64] = "";
         if (!of->n) continue;

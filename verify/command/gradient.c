@@ -154,7 +154,7 @@ static enum status take_check(const struct request *r, const struct point_cloud 
 
 static bool is_given(const struct judgements *all, int dim, const double *column)
 {
-    for (size_t c = 0; c < all->count; c++)
+    for (size_t c = 0; c < CHECKS_MAX; c++)
         for (int a = 0; a < dim; a++)
             if (all->of[c].given[a] == column) return true;
     return false;
@@ -167,7 +167,7 @@ static enum status leave_out_given(const struct request *r, struct point_cloud *
     size_t kept = 0;
     for (size_t l = 0; l < pc->fields; l++) {
         const bool given = is_given(all, r->dim, pc->field[l]);
-        for (size_t c = 0; c < all->count; c++) {
+        for (size_t c = 0; c < CHECKS_MAX; c++) {
             if (all->of[c].column != pc->field[l]) continue;
             if (given)
                 return error_set(error, STATUS_BAD_INPUT,

@@ -47,7 +47,7 @@ static enum status take_numbers(const char *key, const char *text, int dim, doub
                      dim);
 }
 
-static enum status take_boundaries(const char *text, int dim, enum boundary boundary[3],
+static enum status take_boundaries(const char *text, int dim, struct setup *setup,
                                    struct error *error)
 {
     char words[64];
@@ -58,21 +58,20 @@ static enum status take_boundaries(const char *text, int dim, enum boundary boun
         if (member < 0)
             return error_set(error, STATUS_BAD_INPUT,
                              "rates: boundary=%.40s: allowed: periodic open reflecting", word);
+        if (member == BOUNDARY_FIXED)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "boundary=fixed: a file does not say which particles are kept: "
+                             "allowed: periodic open reflecting");
         if (count == dim) { /* too many */
             count = 0;
             break;
         }
-        boundary[count] = (enum boundary)member;
+        setup->boundary[count] = (enum boundary)member;
     }
-    for (int a = 1; count == 1 && a < dim; a++) boundary[a] = boundary[0];
+    for (int a = 1; count == 1 && a < 3; a++) setup->boundary[a] = setup->boundary[0];
     if (cut || (count != 1 && count != dim))
         return error_set(error, STATUS_BAD_INPUT, "boundary=%.60s: allowed: one word or %d", text,
                          dim);
-    for (int a = 0; a < dim; a++)
-        if (boundary[a] == BOUNDARY_FIXED)
-            return error_set(error, STATUS_BAD_INPUT,
-                             "boundary=fixed: a file does not say which particles are kept: "
-                             "allowed: periodic open reflecting");
     return STATUS_OK;
 }
 
@@ -81,9 +80,9 @@ static enum status take_said(struct request *r, bool boxed, bool bounded, struct
 {
     const struct snapshot_file *said = &r->snapshot;
     if (!bounded && *said->boundary &&
-        take_boundaries(said->boundary, r->file.dim, r->setup.boundary, error))
+        take_boundaries(said->boundary, r->file.dim, &r->setup, error))
         return error->status;
-    for (int a = 0; a < r->file.dim && said->boxed && !boxed; a++) {
+    for (int a = 0; a < 3 && said->boxed && !boxed; a++) {
         r->setup.lo[a] = said->corner[a];
         r->setup.hi[a] = said->corner[a] + said->box[a];
     }
@@ -113,7 +112,7 @@ static enum status take_box(struct request *r, int n, char **arguments, char **r
         else if (is_key(arguments[k], length, "gravity"))
             status = take_numbers("gravity", text, dim, r->setup.gravity, error);
         else if (is_key(arguments[k], length, "boundary"))
-            status = take_boundaries(text, dim, r->setup.boundary, error), boundary = true;
+            status = take_boundaries(text, dim, &r->setup, error), boundary = true;
         else
             rest[(*left)++] = arguments[k];
         if (status) return status;

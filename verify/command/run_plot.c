@@ -146,7 +146,7 @@ static void map_values(const struct run_result *result, int panel, enum field fi
         const bool error = panel == MAPS - 1;
         for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i], v[d] = s->v[d][i];
         if (error) problem_sample(p, x, result->time, &state);
-        for (int d = 0; d < p->domain.dim; d++) square += (v[d] - state.v[d]) * (v[d] - state.v[d]);
+        for (int d = 0; d < 3; d++) square += (v[d] - state.v[d]) * (v[d] - state.v[d]);
         if (panel == 0)
             values[i] = s->rho[i];
         else if (panel == 1 || field == FIELD_VELOCITY)

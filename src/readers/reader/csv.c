@@ -220,7 +220,6 @@ static enum status take_names(struct text_table *table, const char *line, size_t
             continue;
         }
         while (at + n < length && !strchr(stops, line[at + n])) n++;
-        const size_t next = at + n + (at + n < length);
         size_t size = n;
         while (size && strchr(" \t\r", line[at + size - 1])) size--;
         double number;
@@ -238,7 +237,7 @@ static enum status take_names(struct text_table *table, const char *line, size_t
                              "%.200s: '%.40s' is a number; the first line, or the last comment "
                              "before the numbers, must hold the names of the columns",
                              table->source->path, name);
-        at = next;
+        at += n + 1;
     }
     return STATUS_OK;
 }

@@ -27,7 +27,7 @@ struct binary {
     bool swapped; /* opposite to native byte order */
     bool tagged;
     size_t count;
-    struct record record[RECORDS_MAX];
+    struct record record[RECORDS_MAX + 4]; /* behind the last, empty ones */
     size_t particles[TYPES], all, massive; /* massive: rows of the mass block */
     double mass[TYPES], time, redshift, box;
     int parts;
@@ -181,7 +181,7 @@ static bool plausible(const struct binary *b, const struct layout *layout, doubl
 static void extent(const struct binary *b, const struct record *positions, int *dim, double *volume)
 {
     const size_t width = width_of(positions, 3 * b->all);
-    double length[3], most = 0;
+    double length[3];
     *volume = 1;
     *dim = 0;
     for (size_t d = 0; d < 3; d++) {
@@ -191,8 +191,8 @@ static void extent(const struct binary *b, const struct record *positions, int *
             lo = fmin(lo, x), hi = fmax(hi, x);
         }
         length[d] = hi - lo;
-        most = fmax(most, length[d]);
     }
+    const double most = fmax(length[0], fmax(length[1], length[2]));
     for (size_t d = 0; d < 3; d++) {
         if (!(length[d] > SNAPSHOT_ROUNDING * most)) continue;
         ++*dim;
@@ -206,12 +206,10 @@ static bool try_layout(const struct binary *b, size_t first, struct layout *layo
     size_t at = first;
     const size_t n = b->particles[0];
     if (b->massive) layout->block[MASSES] = &b->record[at++];
-    for (int k = ENERGIES; k <= WIDTHS; k++)
-        layout->block[k] = at < b->count ? &b->record[at++] : NULL;
+    for (int k = ENERGIES; k <= WIDTHS; k++) layout->block[k] = &b->record[at++];
     if (b->massive && !width_of(layout->block[MASSES], b->massive)) return false;
-    if (layout->block[WIDTHS] && !width_of(layout->block[WIDTHS], n)) layout->block[WIDTHS] = NULL;
-    return layout->block[ENERGIES] && width_of(layout->block[ENERGIES], n) &&
-           layout->block[DENSITIES] && width_of(layout->block[DENSITIES], n);
+    if (!width_of(layout->block[WIDTHS], n)) layout->block[WIDTHS] = NULL;
+    return width_of(layout->block[ENERGIES], n) && width_of(layout->block[DENSITIES], n);
 }
 
 static enum status infer(const struct binary *b, struct layout *layout,

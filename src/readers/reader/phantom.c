@@ -197,7 +197,7 @@ static enum status read_arrays(struct dump *dump, struct snapshot_file *file, do
             return error_set(error, STATUS_BAD_INPUT,
                              "%.200s: damaged: %g arrays of one kind; allowed: 0 to %d",
                              dump->source->path, arrays, ARRAYS_MAX);
-        for (double k = 0; k < arrays; k++)
+        for (size_t k = 0; k < (size_t)arrays; k++)
             if (take_array(dump, kind, file, types, error)) return error->status;
     }
     return STATUS_OK;

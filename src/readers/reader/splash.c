@@ -22,7 +22,7 @@ static enum status take_names(struct text_table *table, const char *line, size_t
                               struct error *error)
 {
     size_t at = 1;
-    while (at < length) {
+    for (;;) {
         at += strspn(line + at, " \r");
         size_t n = 0;
         while (at + n < length && line[at + n] != '\r' &&

@@ -119,7 +119,8 @@ static bool take_points(struct vtk *vtk, const struct array *array, int column,
  * the file. */
 static void skip_metadata(struct vtk *vtk)
 {
-    while (vtk->at < vtk->end && strncmp(vtk->at, "\n\n", 2) != 0) vtk->at++;
+    const char *empty = strstr(vtk->at, "\n\n");
+    vtk->at = empty ? empty : vtk->end;
 }
 
 /* Reads FIELD name count, then arrays of the part of the file. */

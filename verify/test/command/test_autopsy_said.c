@@ -108,15 +108,19 @@ TEST(powers_of_terms)
 {
     static struct autopsy_level level;
     char text[2048], line[256];
-    for (size_t k = 0; k < AUTOPSY_TERMS; k++)
-        level.power[k] = (struct autopsy_power){(double)k, -0.5, k == 1 ? 0 : 2. * (double)(k + 1)};
-    const struct printed printed = printed_begin();
-    print_power(&level, &none);
-    printed_end(&printed, text, sizeof text);
-    for (size_t k = 0; k < AUTOPSY_TERMS; k++) {
-        snprintf(line, sizeof line, "\n  %-44s %10.2e %10.2e %10.1e\n",
-                 autopsy_term_family.members[k]->label, (double)k, -0.5,
-                 ((double)k - 0.5) / (2. * AUTOPSY_TERMS));
-        assert_int_equal(strstr(text, line) != NULL, k != 1);
+    for (int small = 0; small < 2; small++) { /* the unit of powers */
+        const double unit = small ? 1e-30 : 1;
+        for (size_t k = 0; k < AUTOPSY_TERMS; k++)
+            level.power[k] = (struct autopsy_power){(double)k * unit, -0.5 * unit,
+                                                    k == 1 ? 0 : 2. * (double)(k + 1) * unit};
+        const struct printed printed = printed_begin();
+        print_power(&level, &none);
+        printed_end(&printed, text, sizeof text);
+        for (size_t k = 0; k < AUTOPSY_TERMS; k++) {
+            snprintf(line, sizeof line, "\n  %-44s %10.2e %10.2e %10.1e\n",
+                     autopsy_term_family.members[k]->label, (double)k * unit, -0.5 * unit,
+                     ((double)k - 0.5) / (2. * AUTOPSY_TERMS));
+            assert_int_equal(strstr(text, line) != NULL, k != 1);
+        }
     }
 }

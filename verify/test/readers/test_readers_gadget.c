@@ -209,14 +209,18 @@ TEST(inferred_blocks)
                 {HSML, 0.149, false}, {HSML, -1, false},  {U, 1e31, false},    {U, 1e-31, false},
                 {U, 1e29, true},      {U, 1e-29, true}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
-        for (int dim = 1; dim <= 3; dim++) {
+        for (int which = 0; which < 6; which++) {
+            const int dim = 1 + which % 3;
+            const double unit = which < 3 ? 1 : 0x1p-30; /* of lengths */
             struct binary b = made(dim);
             b.tagged = b.there[ACCE] = false;
             b.table[0] = 0, b.there[MASS] = true;
+            b.box *= unit;
+            for (size_t i = 0; i < 3 * b.rows[POS]; i++) b.value[POS][i] *= unit;
             b.rows[MASS] = 0;
             for (int t = 0; t < TYPES; t++) b.rows[MASS] += b.table[t] > 0 ? 0 : b.count[t];
             for (size_t i = 0; i < MOST; i++) { /* widths of twice the spacing */
-                b.value[RHO][i] = 1, b.value[MASS][i] = pow(SIDE, dim) / b.count[0];
+                b.value[RHO][i] = 1, b.value[MASS][i] = pow(unit * SIDE, dim) / b.count[0];
                 const double spacing = pow(b.value[MASS][i], 1. / dim);
                 b.value[HSML][i] = 2 * spacing;
             }
