@@ -346,9 +346,18 @@ TEST(dimensions)
     dimensions_with_noise(2.01e-6);
 }
 
-/* The header states more dimensions than positions have columns. */
+/* The header states as many dimensions as positions have columns, or more. */
 TEST(stated_dimensions)
 {
+    for (int said = 1; said <= 3; said++) {
+        struct item items[ITEMS_MAX];
+        const size_t n = items_of(&layouts[0], items);
+        item_called(items, "Header/Dimension")->values[0] = said;
+        item_called(items, "PartType0/Coordinates")->shape[1] = (hsize_t)said;
+        struct snapshot_file file = file_of(items, n, "dimensions");
+        assert_int_equal(file.dim, said);
+        snapshot_file_free(&file);
+    }
     for (int said = 2; said <= 3; said++) {
         struct item items[ITEMS_MAX];
         char says[80];
