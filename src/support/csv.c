@@ -136,7 +136,7 @@ static enum status read_names(struct reader *reader, struct csv *csv)
 static bool grow(struct csv *csv)
 {
     if (csv->rows < csv->capacity) return true;
-    const size_t capacity = csv->capacity ? 2 * csv->capacity : 256;
+    const size_t capacity = csv->capacity ? 2 * csv->capacity : 4;
     size_t *line = realloc(csv->line, capacity * sizeof *line);
     if (!line) return false;
     csv->line = line;
