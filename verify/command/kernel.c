@@ -99,11 +99,12 @@ static void print_derived(const struct user_kernel *user, FILE *stream)
         {user->found_knots, "knots", "by bisection"},
         {user->found_class, "class", "by measurement"},
     };
-    for (size_t i = 0; user->library && i < sizeof list / sizeof *list; i++)
+    if (!user->library) return;
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++)
         fprintf(stream, "  %-28s %s%s\n", list[i].what,
                 list[i].found ? "not supplied: found " : "supplied",
                 list[i].found ? list[i].how : " and checked");
-    if (user->library) fprintf(stream, "\n");
+    fprintf(stream, "\n");
 }
 
 static void print_values(const struct kernel *kernel, const struct request *request, FILE *stream)

@@ -181,7 +181,7 @@ static bool plausible(const struct binary *b, const struct layout *layout, doubl
 static void extent(const struct binary *b, const struct record *positions, int *dim, double *volume)
 {
     const size_t width = width_of(positions, 3 * b->all);
-    double length[3];
+    double length[3], most = 0;
     *volume = 1;
     *dim = 0;
     for (size_t d = 0; d < 3; d++) {
@@ -191,8 +191,8 @@ static void extent(const struct binary *b, const struct record *positions, int *
             lo = fmin(lo, x), hi = fmax(hi, x);
         }
         length[d] = hi - lo;
+        most = fmax(most, length[d]);
     }
-    const double most = fmax(length[0], fmax(length[1], length[2]));
     for (size_t d = 0; d < 3; d++) {
         if (!(length[d] > SNAPSHOT_ROUNDING * most)) continue;
         ++*dim;

@@ -211,7 +211,7 @@ TEST(inferred_blocks)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         for (int which = 0; which < 6; which++) {
             const int dim = 1 + which % 3;
-            const double unit = which < 3 ? 1 : 0x1p-30; /* of lengths */
+            const double unit = which < 3 ? 1 : dim < 3 ? 0x1p-50 : 0x1p-30; /* of lengths */
             struct binary b = made(dim);
             b.tagged = b.there[ACCE] = false;
             b.table[0] = 0, b.there[MASS] = true;

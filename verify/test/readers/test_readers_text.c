@@ -61,22 +61,20 @@ TEST(spellings)
 /* Units beside names are not part of them; a note says that they are not converted. */
 TEST(units)
 {
-    static const char *const said[] = {
-        "such as (km/s):", "such as (pc):", "such as ():", "such as [g]:", NULL};
+    static const char *const said[] = {"such as (km/s):", "such as (pc):", "such as ():"};
     static const char *const heads[] = {"# x [kpc] rho [g cm^-3]  v (km/s) m P\n",
-                                        "# x (pc),rho [g],v [km/s],m,P\n", "x [] rho v () m P\n",
-                                        "x,rho [g],v,m,P\n", "x,rho,v,m,P,mine [g]\n"};
-    for (size_t k = 0; k < sizeof heads / sizeof *heads; k++) {
-        char text[400], mark = strchr(heads[k], ',') ? ',' : ' ';
+                                        "# x (pc),rho [g],v [km/s],m,P\n", "x [] rho v () m P\n"};
+    for (size_t k = 0; k < 3; k++) {
+        char text[400], mark = k == 1 ? ',' : ' ';
         int n = snprintf(text, sizeof text, "%s", heads[k]);
         for (int i = 0; i < 5; i++)
-            n += snprintf(text + n, sizeof text - (size_t)n, "%d%c2%c3%c4%c5%s\n", i, mark, mark,
-                          mark, mark, said[k] ? "" : ",6");
+            n += snprintf(text + n, sizeof text - (size_t)n, "%d%c2%c3%c4%c5\n", i, mark, mark,
+                          mark, mark);
         struct snapshot_file file = file_of(text, (size_t)n, NULL);
         assert_true(file.n == 5 && file.column[SNAPSHOT_X][4] == 4 &&
                     file.column[SNAPSHOT_RHO][4] == 2 && file.column[SNAPSHOT_VX][4] == 3 &&
                     file.column[SNAPSHOT_M][4] == 4 && file.column[SNAPSHOT_P][4] == 5);
-        noted(&file, "units", said[k] ? "not converted" : NULL, said[k]);
+        noted(&file, "units", "not converted", said[k]);
         snapshot_file_free(&file);
     }
 }
