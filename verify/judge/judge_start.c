@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "judge_start.h"
 
-#include <gsl/gsl_math.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -156,10 +155,11 @@ static bool pressures_follow(const struct start_gas *gas)
 
 static void measure_gas(struct start_gas *gas)
 {
+    static const double rest[3];
     double sound = -INFINITY;
     for (size_t i = 0; i < gas->snapshot->n; i++) {
         const struct problem_state *exact = &gas->exact[i];
-        gas->speed = fmax(gas->speed, gsl_hypot3(exact->v[0], exact->v[1], exact->v[2]));
+        gas->speed = fmax(gas->speed, start_apart(exact->v, rest));
         sound = fmax(sound, sqrt(gas->problem->gamma * exact->P / exact->rho));
     }
     if (!(gas->speed > 1e-12 * sound)) gas->speed = sound;
@@ -223,10 +223,9 @@ static bool are_moved(const struct start_gas *gas)
         if (gas->wrong[i] & telling) return false;
         for (int k = 0; k < 2 * dim; k++) {
             struct problem_state beside;
-            const double *v = beside.v, *here = gas->exact[i].v;
             state_beside(gas, i, k / 2, (k % 2 ? -1 : 1) * gas->spacing, &beside);
-            const double off = gsl_hypot3(v[0] - here[0], v[1] - here[1], v[2] - here[2]);
-            most[START_VELOCITY] = fmax(most[START_VELOCITY], off / gas->speed);
+            most[START_VELOCITY] = fmax(most[START_VELOCITY],
+                                        start_apart(beside.v, gas->exact[i].v) / gas->speed);
             most[START_ENERGY] =
                 fmax(most[START_ENERGY], start_relative(beside.u, gas->exact[i].u));
             most[START_MASS] =

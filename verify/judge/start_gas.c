@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "start_gas.h"
 
+#include <gsl/gsl_math.h>
 #include <math.h>
 
 /* Densities that differ by less are those of one gas. */
@@ -16,6 +17,11 @@ size_t start_gas_of(const struct start_gas *gas, double rho)
 double start_relative(double value, double exact)
 {
     return exact > 0 ? fabs(value / exact - 1) : value > 0 ? 1 : 0;
+}
+
+double start_apart(const double v[3], const double other[3])
+{
+    return gsl_hypot3(v[0] - other[0], v[1] - other[1], v[2] - other[2]);
 }
 
 double start_mass(const struct start_gas *gas, double rho)

@@ -31,6 +31,9 @@ size_t start_gas_of(const struct start_gas *gas, double rho);
 /* The difference relative to the exact value; where the exact value is 0, 1 for any other value. */
 double start_relative(double value, double exact);
 
+/* Magnitude of the difference of two velocities. */
+double start_apart(const double v[3], const double other[3]);
+
 /* The mass that a particle of gas with density rho should have. */
 double start_mass(const struct start_gas *gas, double rho);
 

@@ -352,6 +352,7 @@ TEST(masses)
 
 TEST(differences)
 {
+    near_relative(start_apart((double[]){1, 6, 11}, (double[]){3, 9, 5}), 7, 1e-15);
     for (int dim = 1; dim <= 3; dim++) {
         plant(dim, 2);
         for (int d = 0; d < 3; d++) v[d][4] += d == 0 ? 2 : d == 1 ? 3 : 6;
