@@ -317,6 +317,7 @@ TEST(boxes_of_liquids)
             near_absolute(judged.file.box[d], rows[k].hi[d] - rows[k].lo[d], 1e-14);
         }
         assert_true(judged.boxed && judged.start.mass == 0);
+        assert_true(judged.file.box[2] == 0); /* a flow in a plane */
         for (int i = 0; i < N; i++)
             if (gas.has_u)
                 assert_true(isnan(judged.file.column[SNAPSHOT_P][i]));
