@@ -350,6 +350,21 @@ TEST(figures_of_a_breakdown)
     json_decref(old), json_decref(new);
 }
 
+/* Each breakdown counts, whatever became of the figures that were left out. */
+TEST(two_breakdowns)
+{
+    json_t *old = json_pack("{s:s, s:{s:s, s:f}, s:{s:s, s:f}}", "command", "run", "a", "outcome",
+                            "ok", "error", 1., "b", "outcome", "ok", "error", 1.),
+           *new = json_pack("{s:s, s:{s:s, s:f}, s:{s:s, s:f}}", "command", "run", "a", "outcome",
+                            "broke_down", "error", 2., "b", "outcome", "broke_down", "error", 2.);
+    struct diff diff;
+    assert_int_equal(differ(old, new, &diff), STATUS_CHECK_FAILED);
+    assert_int_equal(diff.left_out, 2);
+    assert_int_equal(diff.regressions, 2);
+    diff_free(&diff);
+    json_decref(old), json_decref(new);
+}
+
 /* ---- totals and parts ---- */
 
 /* A total that fails because its part fails is not a regression of its own, be it the first figure
