@@ -6,12 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Doubles the capacity whenever count is a power of two, so that no capacity has to be stored. */
+/* From SMALL items on, the capacity doubles whenever count is a power of two, so that no
+ * capacity has to be stored. Shorter lists have no spare item: its memory would hide a step beyond
+ * the end from the sanitizers. */
+enum { SMALL = 64 };
+
 bool list_grow(void *list, size_t count, size_t size)
 {
     void *old, *grown;
-    const size_t capacity = count ? 2 * count : 1;
-    if (count & (count - 1)) return true;
+    const size_t capacity = count < SMALL ? count + 1 : 2 * count;
+    if (count > SMALL && count & (count - 1)) return true;
     if (capacity < count || capacity > SIZE_MAX / size) return false;
     memcpy(&old, list, sizeof old); /* memcpy, as the type of the caller's pointer is unknown */
     grown = realloc(old, capacity * size);
