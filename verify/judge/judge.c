@@ -199,15 +199,16 @@ void judge_sum(const struct prepared *problem, const struct snapshot *s, const d
 {
     double x[3] = {0}, v[3] = {0};
     for (size_t i = 0; i < s->n; i++) {
-        double square = problem->gamma * s->P[i] / s->rho[i];
+        double u = s->u[i], square = problem->gamma * s->P[i] / s->rho[i];
         for (int d = 0; d < problem->domain.dim; d++)
             x[d] = s->x[d][i] + shift[d], v[d] = s->v[d][i];
         if (problem->problem->liquid) { /* its P follows the case's own equation of state */
             struct problem_state state;
             problem_sample(problem, x, s->time, &state);
-            square = problem->gamma * (problem->gamma - 1) * state.u;
+            u = state.u;
+            square = problem->gamma * (problem->gamma - 1) * u;
         }
-        add_to_sums(problem, x, v, s->m[i], s->u[i], sqrt(square), sums);
+        add_to_sums(problem, x, v, s->m[i], u, sqrt(square), sums);
     }
 }
 

@@ -118,8 +118,10 @@ def main():
                        ">@OUT@.csv\n[case hydrostatic]\n" % change)
         code, out, err = said("run", "hydrostatic", "n=400", "--code", "code.ini", "--json", "-")
         check(code == 0 and out, change, code, err)
-        errors = json.loads(out or "{}").get("errors", {})
+        result = json.loads(out or "{}")
+        errors, kept = result.get("errors", {}), result.get("conservation", {})
         check(errors.get("density", {}).get("l1", 1) < 1e-3, change, errors)
+        check(kept.get("energy", 1) < 1e-12, change, kept)  # whatever u says, or if there is none
         pressure = errors.get("pressure", {}).get("l1", 0)
         check(pressure == "nan" if "cut" in change else pressure > 1, change, errors)
     for words, reported in ((("nu=0",), "nu=0"), (("gravity=0 -1",), "along x"), (("speed=0",), "stays at rest")):

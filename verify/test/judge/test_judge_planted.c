@@ -174,7 +174,7 @@ TEST(sums)
         }
 }
 
-/* The sound speed of a liquid, whose u has no meaning, is the case's. */
+/* The sound speed and the internal energy of a liquid, whose u has no meaning, are the case's. */
 TEST(sums_of_a_liquid)
 {
     double x[2][1] = {{0.25}, {0.375}}, v[2][1] = {{0.5}, {0}}, m[] = {3}, rho[] = {1}, P[] = {1e9};
@@ -188,6 +188,7 @@ TEST(sums_of_a_liquid)
     problem_sample(&run.problem, (double[3]){0.25, 0.375}, 0, &there);
     judge_sum(&run.problem, &s, nowhere, &got);
     near_relative(got.sound_scale, 3 * sqrt(gamma * (gamma - 1) * there.u), 1e-13);
+    near_relative(got.energy, 3 * (there.u + 0.5 * 0.25), 1e-13);
 }
 
 /* ---- starts ---- */
