@@ -152,14 +152,14 @@ static void measure(const struct calibrate *calibrate, const struct calibrate_ca
 }
 
 /* Sets the bounds from the floor and the smallest change by a fault that is well above it. */
-static void find_bounds(const struct calibrate *calibrate, const struct calibrate_case *one,
-                        enum kind kind, struct calibrate_gate *gate)
+static void find_bounds(const struct calibrate *calibrate, enum kind kind,
+                        struct calibrate_gate *gate)
 {
     double smallest = (double)INFINITY, width = free_width * gate->floor;
     bool any = false;
     gate->sight = calibrate->code->fault_count ? CALIBRATE_BLIND : CALIBRATE_FREE;
     for (size_t f = 0; f < calibrate->code->fault_count; f++) {
-        if (one->breaks[f] || !(gate->change[f] >= apart * gate->floor)) continue;
+        if (!(gate->change[f] >= apart * gate->floor)) continue; /* 0: of a fault that breaks */
         any = true;
         smallest = fmin(smallest, gate->change[f]);
     }
@@ -222,7 +222,7 @@ static void add_gate(const struct calibrate *calibrate, struct calibrate_case *o
     measure(calibrate, one, kind, i, gate);
     if (!isfinite(gate->value) || !isfinite(gate->floor)) return;
     if (kind != OF_KEPT && !(gate->value > 0)) return; /* an exact value has no scale */
-    find_bounds(calibrate, one, kind, gate);
+    find_bounds(calibrate, kind, gate);
     keep_order(calibrate, one, kind, i, gate);
     look(calibrate, one, kind, i, gate);
     one->gate_count++;
