@@ -141,6 +141,8 @@ static const struct {
 
 static void write_out(struct document *d)
 {
+    static const char *const times[] = {"TimeValue", "TIME", "time"};
+    const char *time = times[drawn(3)];
     add(d, "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" byte_order=\"%s\"%s>\n",
         d->big ? "BigEndian" : "LittleEndian", d->wide ? " header_type=\"UInt64\"" : "");
     add(d, "<UnstructuredGrid><FieldData>\n");
@@ -148,7 +150,8 @@ static void write_out(struct document *d)
         add(d,
             "<DataArray type=\"Float64\" Name=\"%s\" NumberOf%s=\"%d\" "
             "format=\"ascii\">%s</DataArray>\n",
-            fields[k].name, fields[k].count == 9 ? "Components" : "Tuples",
+            strcmp(fields[k].name, "TimeValue") ? fields[k].name : time,
+            fields[k].count == 9 ? "Components" : "Tuples",
             strcmp(fields[k].name, "box") ? fields[k].count : d->ends, fields[k].numbers);
     add(d,
         "<DataArray type=\"String\" Name=\"case\" format=\"ascii\">9</DataArray>\n"); /* no number
