@@ -91,7 +91,9 @@ static enum status take_time(const struct judge_request *request, struct judged 
     file->time = time;
     snprintf(value, sizeof value, "%.9g", time.value);
     snapshot_note(&file->notes, "time", value, "%s",
-                  request->time.known ? "--time" : "the file says so");
+                  !request->time.known ? "the file says so"
+                  : request->asked     ? "the end of the run"
+                                       : "--time");
     return set_real(judged, settings, SETTING_t_end, time.value, error);
 }
 
