@@ -216,7 +216,7 @@ static enum status parse(struct line *line, int argc, char **argv, struct error 
 }
 
 /* The help of an option, broken between words into lines that end before this column. */
-enum { OPTION_COLUMN = 29, LINE_END = 100 };
+enum { OPTION_INDENT = 28, LINE_END = 100 };
 
 static void print_options(const struct command_option *list)
 {
@@ -227,10 +227,11 @@ static void print_options(const struct command_option *list)
         int column = printf("  %-26s", left);
         for (const char *word = list->help; *word; word += strspn(word, " ")) {
             const int length = (int)strcspn(word, " ");
-            const bool breaks = column + 1 + length > LINE_END;
-            if (breaks) column = OPTION_COLUMN - 1;
-            printf("%s%*s%.*s", breaks ? "\n" : "", breaks ? OPTION_COLUMN : 1, "", length, word);
-            column += 1 + length;
+            if (column + 1 + length > LINE_END) {
+                printf("\n");
+                column = printf("%*s", OPTION_INDENT, "");
+            }
+            column += printf(" %.*s", length, word);
             word += length;
         }
         printf("\n");

@@ -235,7 +235,7 @@ static enum status add_code(struct codes *codes, const char *path, const struct 
             return error->status;
         settings[c].threads = options->threads;
     }
-    snprintf(codes->option[k], PATH_LENGTH, " --code %.*s", PATH_LENGTH - 16, path);
+    snprintf(codes->option[k], PATH_LENGTH, " --code %s", path);
     codes->of[k] = (struct report_code){code->way.value[CODE_title], codes->option[k],
                                         code->case_count, settings};
     for (size_t i = 0; i < k; i++)

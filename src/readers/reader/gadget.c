@@ -217,7 +217,6 @@ static enum status infer(const struct binary *b, struct layout *layout,
 {
     int dim, fits = 0;
     double volume;
-    size_t where = 0;
     struct layout found = {0};
     extent(b, &b->record[1], &dim, &volume);
     for (size_t first = 3; first < b->count; first++) {
@@ -225,7 +224,7 @@ static enum status infer(const struct binary *b, struct layout *layout,
         if (!try_layout(b, first, &tried) || !plausible(b, &tried, volume, dim)) continue;
         if (tried.block[WIDTHS] && !found.block[WIDTHS]) fits = 0; /* stronger evidence */
         if (!tried.block[WIDTHS] && found.block[WIDTHS]) continue;
-        if (!fits++) found = tried, where = first;
+        if (!fits++) found = tried;
     }
     if (fits != 1)
         return error_set(error, STATUS_BAD_INPUT,
@@ -235,15 +234,16 @@ static enum status infer(const struct binary *b, struct layout *layout,
                          b->source->path, b->count,
                          fits ? "more than one choice fits" : "none fit");
     *layout = found;
+    const struct record *begin = found.block[b->massive ? MASSES : ENERGIES];
     char value[64];
-    snprintf(value, sizeof value, "%s from record %zu on", b->massive ? "masses" : "energies",
-             where + 1);
+    snprintf(value, sizeof value, "%s from record %td on", b->massive ? "masses" : "energies",
+             begin - b->record + 1);
     snapshot_note(notes, "blocks", value,
                   "format 1 names none: of %zu records only these give positive masses, energies "
                   "and densities, sum m/rho within a factor of 2 of the volume %.4g, and widths "
                   "of 0.3 to 30 spacings%s",
                   b->count, volume,
-                  where > 4 ? "; the records before them are the code's own" : "");
+                  begin > b->record + 4 ? "; the records before them are the code's own" : "");
     return STATUS_OK;
 }
 

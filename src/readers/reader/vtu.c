@@ -94,7 +94,7 @@ static const char *value_of(const struct tag *tag, const char *key, char value[W
             snprintf(value, WORD, "%.*s", (int)(stop - equals - 2), equals + 2);
             return value;
         }
-        at = stop + 1;
+        at = stop;
     }
     return value;
 }
@@ -167,7 +167,7 @@ static bool unpack(const struct vtk *vtk, struct array array, size_t blocks, uns
         well = packed[k] <= left - all;
         all += packed[k];
     }
-    unsigned char *bytes = well ? allocate(vtk, all + 1) : NULL;
+    unsigned char *bytes = well ? allocate(vtk, all) : NULL;
     well = bytes && fetch(&array, all, bytes, NULL);
     for (size_t k = 0, taken = 0; well && k < blocks; taken += packed[k++]) {
         const uint64_t full = k + 1 < blocks || !last ? block : last;

@@ -40,9 +40,16 @@ static const struct check good = {.group = "a",
                                  .property = "n < 2",
                                  .subjects = subject_large,
                                  .measure = measure,
-                                 .mutants = mutants};
-const struct check *const planted_checks[] = {&good, &bad};
-const size_t planted_count = 2;
+                                 .mutants = mutants},
+                          unnamed = {.group = "\xff",
+                                     .name = "slow",
+                                     .property = "n < 2",
+                                     .slow = true,
+                                     .subjects = subject_small,
+                                     .measure = measure,
+                                     .mutants = mutants};
+const struct check *const planted_checks[] = {&good, &bad, &unnamed};
+const size_t planted_count = 3;
 
 static const char *values[sizeof verify_options / sizeof *verify_options];
 static struct options options = {
@@ -95,6 +102,18 @@ TEST(checks_that_fail)
                  "sphproof: verify: cannot make the folder '%s': Not a directory\n", file);
         verify(said);
     }
+}
+
+/* A check whose name is not UTF-8 is part of no pool, as if there were no memory for it. */
+TEST(check_without_a_place)
+{
+    const struct suite_choice choice = {.slow = true};
+    struct pool pool = {0};
+    struct part parts[4] = {0};
+    struct error error = {0};
+    assert_int_equal(plan(&pool, parts, &choice, &error), STATUS_ENVIRONMENT);
+    assert_string_equal(error.message, "verify: no memory for a check");
+    pool_free(&pool);
 }
 
 /* Files of failures are beside the program unless --failures says otherwise. */
