@@ -41,8 +41,8 @@ void findings_add(struct findings *to, struct finding finding)
 
 void findings_free(struct findings *findings)
 {
-    for (size_t i = 0; i < findings->count; i++) {
-        const struct finding *f = &findings->list[i];
+    while (findings->count) {
+        const struct finding *f = &findings->list[--findings->count];
         free((char *)f->group), free((char *)f->what), free((char *)f->subject);
         free((char *)f->reason), free((char *)f->command), free((char *)f->plot);
     }
@@ -367,7 +367,7 @@ static int most_specific_first(const void *a, const void *b)
 {
     const struct failure *x = a, *y = b;
     if (x->finding->rank != y->finding->rank) return x->finding->rank < y->finding->rank ? -1 : 1;
-    if (x->excess != y->excess) return x->excess > y->excess ? -1 : 1;
+    if (x->excess != y->excess) return (x->excess < y->excess) - (x->excess > y->excess);
     return (int)x->number - (int)y->number;
 }
 

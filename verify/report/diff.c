@@ -93,7 +93,7 @@ static int worst_first(const void *a, const void *b)
     if (i != j) return i - j;
     /* a failed check names the cause; a broken run, which has no rank, is its consequence */
     const double a_rank = x->any->rank, b_rank = y->any->rank;
-    if (i == 0 && a_rank != b_rank) return a_rank < b_rank ? -1 : 1;
+    if (i == 0 && a_rank != b_rank) return (a_rank > b_rank) - (a_rank < b_rank);
     const bool a_time = is_timing(x), b_time = is_timing(y);
     if (a_time != b_time) return a_time ? 1 : -1;
     const bool a_head = x->new && x->new->headline, b_head = y->new && y->new->headline;
