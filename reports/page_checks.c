@@ -23,7 +23,7 @@ static struct span next_check(const json_t *figures, size_t first)
 {
     struct span span = {.first = first, .end = first, .worst = first};
     const json_t *leader = json_array_get(figures, first), *figure;
-    double most = -1;
+    double most = -(double)INFINITY;
     for (; (figure = json_array_get(figures, span.end)); span.end++) {
         if (strcmp(value_text(figure, "group"), value_text(leader, "group")) ||
             strcmp(value_text(figure, "name"), value_text(leader, "name")))

@@ -147,7 +147,7 @@ static void bitmap(struct buffer *to, const double *z, size_t nx, size_t ny)
 {
     enum { HEAD = 54, PALETTE = 4 * COLORS };
     const size_t row = (nx + 3) / 4 * 4, size = HEAD + PALETTE + row * ny;
-    unsigned char *bytes = page_allocate(to, size, 1);
+    unsigned char *bytes = page_allocate(to, size, sizeof *bytes);
     double low = (double)INFINITY, high = -(double)INFINITY;
     if (!bytes) return;
     list_range(z, nx * ny, &low, &high);

@@ -80,10 +80,11 @@ static enum plot_status draw(struct plot_pen *pen, const struct plot *plot,
         return PLOT_FAILED;
     }
     char words[400] = "";
-    struct process alone = {0};
-    enum process_status status = process_ask(
-        pen ? &pen->gnuplot : &alone, arguments, pen ? pen->script : -1, bytes, strlen(bytes),
-        pen ? end_of_plot : NULL, PATIENCE, picture, words, sizeof words);
+    const enum process_status status =
+        pen ? process_ask(&pen->gnuplot, arguments, pen->script, bytes, strlen(bytes), end_of_plot,
+                          PATIENCE, picture, words, sizeof words)
+            : process_filter(arguments, bytes, strlen(bytes), PATIENCE, picture, words,
+                             sizeof words);
     free(bytes);
     if (status == PROCESS_NOT_FOUND || status == PROCESS_TOO_SLOW) {
         snprintf(message, n, "no plot: %s%s", words,

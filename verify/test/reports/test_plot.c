@@ -284,6 +284,9 @@ TEST(processes)
         assert_int_equal(none.pid, 0);
     }
     buffer_free(&output);
+    struct buffer full = {.failed = true};
+    assert_int_equal(shell("echo a", "", 0, 60, &full, message, sizeof message), PROCESS_FAILED);
+    assert_string_equal(message, "no memory for what sh wrote");
     /* with descriptors for some of its pipes only */
     enum process_status status = PROCESS_FAILED;
     for (int spare = 0; status; spare++) {
