@@ -228,11 +228,10 @@ void page_cloud_plots(struct page_writer *writer, const char *case_name, const j
             read_map(&writer->to, &maps[r], runs[r]);
             read_curves(&writer->to, &curves[r], runs[r]);
         }
-        const int first = all_maps ? 0 : maps[0].z[MAPS - 1] ? MAPS - 1 : 0;
-        const int last = all_maps ? MAPS - 1 : first;
+        const int chosen = maps[0].z[MAPS - 1] ? MAPS - 1 : 0;
         if (maps[0].cells && !all_maps) plot_first(writer, case_name, runs[0], &maps[0]);
-        for (int k = first; maps[0].cells && k <= last; k++)
-            plot_each(writer, case_name, runs, maps, count, k);
+        for (int k = 0; maps[0].cells && k < MAPS; k++)
+            if (all_maps || k == chosen) plot_each(writer, case_name, runs, maps, count, k);
         buffer_add(&writer->to, "<div class=\"figures\">\n");
         if (curves[0].quantities) plot_profiles(writer, case_name, runs, curves, count);
     }
