@@ -10,18 +10,25 @@
 #include "style.h"
 #include "verdict.h"
 
-/* The whole page of these results, which it takes over. */
-static char *page_of(json_t *results)
+/* The page of these results, which it takes over, made without gnuplot. */
+static struct page made_of(json_t *results)
 {
     struct page made;
-    size_t sealed;
-    char fault[256];
+    setenv("PATH", "/nowhere", 1);
     json_object_set_new(results, "verdict", verdict_make(results));
     assert_true(page_make(&made, results));
+    json_decref(results);
+    return made;
+}
+
+static char *page_of(json_t *results)
+{
+    struct page made = made_of(results);
+    size_t sealed;
+    char fault[256];
     char *whole = markup_unsealed(made.html, &sealed);
     if (!markup_well_formed(whole, fault, sizeof fault)) fail_msg("%s", fault);
     page_free(&made);
-    json_decref(results);
     return whole;
 }
 
@@ -136,5 +143,47 @@ TEST(changes_of_one_subject)
             assert_int_equal(strstr(whole, row) != NULL, k == most);
         }
         free(whole);
+    }
+}
+
+/* The largest error of pressure counts within 4 h of the contact, which is halfway between two
+ * points of the exact solution. */
+TEST(pressure_at_the_contact)
+{
+    char text[] = "{'runs': [{'case': 'sod', 'label': 'a', 'status': 'ok', 'h': 0.1, 'profile': "
+                  "{'x': [0.05, 0.12, 0.98], 'density': [2, 2, 1], 'velocity': [0, 0, 0], "
+                  "'pressure': [1.5, 1.1, 2], 'exact_density': [2, 2, 1], "
+                  "'exact_velocity': [0, 0, 0], 'exact_pressure': [1, 1, 1], "
+                  "'exact': {'x': [0, 0.4, 0.6, 1], 'density': [2, 2, 1, 1], "
+                  "'velocity': [0, 0, 0, 0], 'pressure': [1, 1, 1, 1]}}}]}";
+    for (char *c = text; *c; c++)
+        if (*c == '\'') *c = '"';
+    char *whole = page_of(json_loads(text, 0, NULL));
+    assert_non_null(strstr(whole, "<td class=\"n\">10 %</td></tr>"));
+    free(whole);
+}
+
+/* The cost of errors is drawn with all errors of other codes in the same case and field. */
+TEST(errors_of_other_codes)
+{
+    static const struct {
+        const char *case_name, *error_of;
+        size_t drawn;
+    } rows[] = {{"gresho", "azimuthal", 4},
+                {"yee", "azimuthal", 3},
+                {"sedov_2d", "pressure", 3},
+                {"kelvin_helmholtz", "mode_amplitude", 4},
+                {"yee", "density", 0}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct page made = made_of(
+            json_pack("{s:[{s:s, s:s, s:[{s:s}], s:[{s:s, s:f, s:f}, {s:s, s:f, s:f}]}]}", "bench",
+                      "case", rows[k].case_name, "error_of", rows[k].error_of, "schemes", "scheme",
+                      "a", "points", "scheme", "a", "cpu_s", 1., "error", 1., "scheme", "a",
+                      "cpu_s", 2., "error", 1e-5));
+        const char *script = made.plots.files[0].bytes;
+        size_t drawn = 0;
+        for (; (script = strstr(script, "^2' at graph")); script++) drawn++;
+        assert_int_equal(drawn, rows[k].drawn);
+        page_free(&made);
     }
 }
