@@ -350,13 +350,14 @@ TEST(figures_of_a_breakdown)
     json_decref(old), json_decref(new);
 }
 
-/* Each breakdown counts, whatever became of the figures that were left out. */
+/* Each breakdown counts, whatever became of the figures that were left out, be it the first figure
+ * or the last. */
 TEST(two_breakdowns)
 {
     json_t *old = json_pack("{s:s, s:{s:s, s:f}, s:{s:s, s:f}}", "command", "run", "a", "outcome",
-                            "ok", "error", 1., "b", "outcome", "ok", "error", 1.),
+                            "ok", "steps", 1., "b", "outcome", "ok", "error", 1.),
            *new = json_pack("{s:s, s:{s:s, s:f}, s:{s:s, s:f}}", "command", "run", "a", "outcome",
-                            "broke_down", "error", 2., "b", "outcome", "broke_down", "error", 2.);
+                            "broke_down", "steps", 2., "b", "outcome", "broke_down", "error", 2.);
     struct diff diff;
     assert_int_equal(differ(old, new, &diff), STATUS_CHECK_FAILED);
     assert_int_equal(diff.left_out, 2);
