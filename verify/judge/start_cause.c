@@ -357,7 +357,7 @@ static double miss(const struct trial *trial, const double by[3], size_t *near)
     return sum / (double)trial->n;
 }
 
-/* Pattern search for the least misfit from the best grid point. */
+/* Pattern search for the least misfit from the best grid point; step: over the box's lengths. */
 static size_t settle(const struct trial *trial, double by[3], double step)
 {
     const int dim = trial->gas->problem->domain.dim;
@@ -366,9 +366,10 @@ static size_t settle(const struct trial *trial, double by[3], double step)
     for (int rounds = 0; rounds < 80; rounds++) {
         bool moved = false;
         for (int k = 0; k < 2 * dim; k++) {
+            const int d = k / 2;
             double to[3];
             memcpy(to, by, sizeof to);
-            to[k / 2] += k % 2 ? step : -step;
+            to[d] += (k % 2 ? step : -step) * domain_length(&trial->gas->problem->domain, d);
             size_t now;
             const double other = miss(trial, to, &now);
             if (other >= best) continue;
@@ -401,7 +402,7 @@ static bool find_shift(const struct trial *trial, double by[3])
         best = now;
         memcpy(by, to, sizeof to);
     }
-    return nearly_all(settle(trial, by, 0.5 * domain_length(box, 0) / side), trial->n);
+    return nearly_all(settle(trial, by, 0.5 / side), trial->n);
 }
 
 /* True if nearly all wrong particles have the exact state of the position with x and y exchanged,
