@@ -100,10 +100,12 @@ static int by_position(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The periodic image in the box, also where rounding would leave it a digit below the box. */
-static double wrapped(double x, double lo, double period)
+/* A particle's periodic image in the box, also where rounding would leave it a digit below the
+ * box. */
+static double wrapped(const struct judged *judged, const double period[3], int d, size_t i)
 {
-    return period > 0 ? fmax(lo, x - period * floor((x - lo) / period)) : x;
+    const double x = judged->file.column[d][i], lo = judged->run.problem.domain.lo[d];
+    return period[d] > 0 ? fmax(lo, x - period[d] * floor((x - lo) / period[d])) : x;
 }
 
 static double width_of_volume(const struct judged *judged, size_t i)
@@ -117,7 +119,6 @@ static enum status gas_make(struct gas *gas, const struct judged *judged, const 
                             double reach, struct error *error)
 {
     const struct snapshot_file *file = &judged->file;
-    const struct domain *domain = &judged->run.problem.domain;
     const size_t n = file->gas;
     struct snapshot *s = &gas->snapshot;
     double *column[ARRAYS];
@@ -129,14 +130,14 @@ static enum status gas_make(struct gas *gas, const struct judged *judged, const 
     size_t *order = gas->id + n;
     for (size_t i = 0; i < n; i++) {
         gas->id[i] = order[i] = i;
-        column[11][i] = wrapped(file->column[0][i], domain->lo[0], period[0]);
+        column[11][i] = wrapped(judged, period, 0, i);
     }
     sort_by = column[11];
     if (file->dim == 1) qsort(order, n, sizeof *order, by_position);
     for (size_t k = 0; k < n; k++) {
         const size_t i = order[k];
         for (int d = 0; d < file->dim; d++) {
-            column[d][k] = wrapped(file->column[d][i], domain->lo[d], period[d]);
+            column[d][k] = wrapped(judged, period, d, i);
             column[3 + d][k] = file->column[SNAPSHOT_VX + d][i];
         }
         column[6][k] = file->column[SNAPSHOT_M][i] / (judged->slab > 0 ? judged->slab : 1);

@@ -100,6 +100,9 @@ TEST(boundaries)
             assert_int_equal(judged.run.problem.boundary[d], rows[k].want[d]);
         judge_free(&judged);
     }
+    const struct judge_request request = {.kernel = -1}; /* one word is for all directions */
+    plant(2, 0, "# case = rayleigh_taylor_mode\n# boundary = periodic\n# time = 0\n# box = 2 1\n");
+    refuses(&request, "boundary=periodic along y");
 }
 
 TEST(refused_requests)

@@ -255,6 +255,7 @@ TEST(lines_as_long_as_the_box)
         near_absolute(domain->hi[0] - domain->lo[0] - (corner < 9 ? box : rows[k].length), 0,
                       1e-12);
         assert_true(judged.file.boxed == (corner < 9));
+        assert_true(judged.file.box[0] == (corner < 9 ? box : 0));
         assert_true(!strstr(note(&judged, "box")->evidence, "as long as the case's") ==
                     !(corner < 9));
         judge_free(&judged);
@@ -338,8 +339,8 @@ TEST(slabs)
         double thick, speed, along; /* thick: 0: as the volumes say */
     } rows[] = {{NULL, 0, 2, 0.5},
                 {"2 1", 0, 0, 0},
-                {"0:2 0:1 0:1.25", 1.25, 0.5, 1},
-                {"0:2 0:1 0:1e-20", 1e-20, 0, 0},
+                {"-0.5:1.5 0:1 0:1.25", 1.25, 0.5, 1},
+                {"-0.5:1.5 0:1 0:1e-20", 1e-20, 0, 0},
                 {NULL, 0, 1e-9, 5e-10}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct judge_request request = {
@@ -348,6 +349,7 @@ TEST(slabs)
         double volume = 0;
         plant(3, 0, "");
         for (int i = 0; i < N; i++) {
+            gas.x[0][i] -= 0.5;
             gas.rho[i] = draw(1, 2);
             volume += gas.m[i] / gas.rho[i];
             gas.v[0][i] = rows[k].speed * (i == 7 ? -0.6 : 0.3);
@@ -406,6 +408,12 @@ TEST(ends_of_volumes)
             strstr(note(&judged, "box")->evidence, fills ? "volumes of particles" : "as far as p"));
         judge_free(&judged);
     }
+    const struct judge_request request = uniform_gas();
+    plant(2, 0.3, "");
+    for (int i = 0; i < N; i++) gas.m[i] = 2. / N; /* areas, which add up to the extent along x */
+    struct judged judged = judges(&request);
+    assert_non_null(strstr(note(&judged, "box")->evidence, "as far as particles reach"));
+    judge_free(&judged);
 }
 
 TEST(completed)
