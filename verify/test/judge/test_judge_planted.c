@@ -269,6 +269,30 @@ TEST(particles_beside_a_jump)
     }
 }
 
+/* Particles beside a jump with energies between those of the two sides were moved. */
+TEST(energies_across_a_jump)
+{
+    for (int side = -1; side <= 1; side += 2) {
+        const struct judge_request request = {
+            .case_name = "sod", .time = {true, 0}, .kernel = -1, .boundary = "periodic"};
+        plant(1, 0, "# box = 0:2\n");
+        for (int i = 0; i < N; i++) {
+            gas.x[0][i] = 2 * (i + 0.5) / N;
+            const bool left = gas.x[0][i] < 1;
+            gas.rho[i] = left ? 1 : 0.125, gas.u[i] = left ? 2.5 : 2;
+            gas.m[i] = gas.rho[i] * 2 / N;
+        }
+        for (int k = 0; k < 3; k++) {
+            const int i = side < 0 ? N / 2 - 1 - k : N / 2 + k;
+            gas.x[0][i] = 1 + side * (0.1 + 0.4 * k) * 2 / N, gas.u[i] = 2.1 + 0.15 * k;
+        }
+        struct judged judged = judges(&request);
+        if (judged.of_start.wrong || !strstr(judged.of_start.message, "the case's state to a s"))
+            fail_msg("%d: %zu: %s", side, judged.of_start.wrong, judged.of_start.message);
+        judge_free(&judged);
+    }
+}
+
 /* In flows with jumps, particles that were moved by less than a spacing after they had got their
  * state are not wrong, unless one in 50 is wrong otherwise, or a pressure is. */
 TEST(moved_particles)
@@ -319,8 +343,8 @@ TEST(moved_particles)
 /* In 1D a mass that fills the space between the neighbours is right, where spacings are graded. */
 TEST(masses_of_graded_spacings)
 {
-    static const int at[] = {0, 200, N - 1};
-    for (size_t a = 0; a < 3; a++)
+    static const int at[] = {0, 200, N - 2, N - 1};
+    for (size_t a = 0; a < 4; a++)
         for (int k = 0; k < 4; k++) {
             struct judge_request request = uniform_gas();
             double gap[N + 1], x = 0;
@@ -366,6 +390,24 @@ TEST(most_masses_are_wrong)
         assert_non_null(strstr(judged.of_start.message, "it is 1.5 times the case's"));
         judge_free(&judged);
     }
+}
+
+/* So is the volume that gives the case's total, in gas of two densities with equal volumes. */
+TEST(most_volumes_are_wrong)
+{
+    const struct judge_request request = {
+        .case_name = "sod", .time = {true, 0}, .kernel = -1, .boundary = "periodic"};
+    plant(1, 0, "# box = 0:2\n");
+    for (int i = 0; i < N; i++) {
+        gas.x[0][i] = 2 * (i + 0.5) / N;
+        const bool left = gas.x[0][i] < 1;
+        gas.rho[i] = left ? 1 : 0.125, gas.u[i] = left ? 2.5 : 2;
+        gas.m[i] = gas.rho[i] * (i % 5 < 3 ? 3. : 2.) / N;
+    }
+    struct judged judged = judges(&request);
+    assert_int_equal(judged.of_start.wrong, N * 3 / 5);
+    assert_non_null(strstr(judged.of_start.message, "it is 1.5 times the case's"));
+    judge_free(&judged);
 }
 
 /* In gas of two densities each has a particle mass of its own; if the two differ by more than 15 %,

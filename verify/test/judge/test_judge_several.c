@@ -194,6 +194,12 @@ TEST(orders)
             assert_true(judge_one_ladder(judged, (size_t)count, why));
             problem.fieldless = false;
             assert_false(judge_one_ladder(judged, (size_t)count, why));
+            static struct problem bare = {.fieldless = true}; /* of the fewest particles alone */
+            judged[0].result.problem.problem = &bare;
+            assert_true(judge_one_ladder(judged, (size_t)count, why));
+            found = judge_orders(judged, (size_t)count);
+            assert_int_equal(json_array_size(found), 0);
+            json_decref(found);
         }
 }
 
