@@ -130,7 +130,7 @@ static enum status measure(struct request *request, struct code *code, struct er
         sweep_parse(&sweep, options_value(request->options, "vary"), error) ||
         options_ladder(request->options, &settings, 1, ladder, &count, error) ||
         (plot && picture_probe(plot, error)) ||
-        sharing_take(&sharing, request->options, 1, NULL, error))
+        sharing_take(&sharing, request->options, 0, NULL, error))
         return error->status;
     if (sharing.list || sharing.pool.cache)
         return in_shares(request, &settings, &sweep, ladder, count, &sharing, error);

@@ -132,7 +132,7 @@ static enum status calibrate_code(const struct options *options, const struct co
     size_t runs = 0;
     bool whole = false;
     if (take_runs(options, &runs, error) || take_out(options, code, out, error) ||
-        sharing_take(&sharing, options, 1, NULL, error))
+        sharing_take(&sharing, options, 0, NULL, error))
         return error->status;
     enum status status = calibrate_plan(&calibrate, code, runs, (size_t)n, names, &pool, error);
     if (!status) status = sharing_run(&sharing, &pool, options, &whole, error);

@@ -273,7 +273,7 @@ static enum status converge(const struct options *options, int n, char **argumen
         sweep_parse(&study.sweep, options_value(options, "vary"), error) ||
         options_ladder(options, &study.settings, ORDER_LEVELS_MIN, study.ladder, &study.level_count,
                        error) ||
-        take_replicates(&study, options, error) || sharing_take(&sharing, options, 1, NULL, error))
+        take_replicates(&study, options, error) || sharing_take(&sharing, options, 0, NULL, error))
         return error->status;
     json_t *document = result_new("converge");
     result_add(document, "case=%s status=%s", study.settings.file.name, "ok");

@@ -39,8 +39,8 @@ struct sharing {
     struct progress progress;
 };
 
-/* Reads the options. jobs: default of --jobs; folder: of the cache, NULL: that of --cache. Without
- * --engine slurm and --shard, --force computes again what the cache has.
+/* Reads the options. jobs: default of --jobs, 0: one; folder: of the cache, NULL: that of --cache.
+ * Without --engine slurm and --shard, --force computes again what the cache has.
  * STATUS_BAD_INPUT: an option is wrong, or --shard is used without a cache. sharing must not move
  * in memory afterwards. */
 enum status sharing_take(struct sharing *sharing, const struct options *options, int jobs,

@@ -225,7 +225,7 @@ static enum status run_shares(struct suite *suite, const struct suite_choice *ch
             return error_set(error, STATUS_BAD_INPUT,
                              "verify: --%s and checks side by side or in shares exclude each other",
                              others[i]);
-    if (sharing_take(&sharing, options, 1, NULL, error)) return error->status;
+    if (sharing_take(&sharing, options, 0, NULL, error)) return error->status;
     struct part *parts = calloc(check_registry_count, sizeof *parts);
     enum status status = parts ? plan(&pool, parts, choice, error)
                                : error_set(error, STATUS_ENVIRONMENT, "verify: no memory");

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Tests options that several commands share: kernels by name, and names that are refused. */
+ * Tests options that several commands share: kernels by name, names that are refused, and what a
+ * command gets that is given none. */
 #include "test.h"
 
 #include "command.h"
@@ -7,6 +8,19 @@
 
 static const struct command_option list[] = {
     {"eta", "ETA", ""}, {"kernel", "NAME", ""}, {NULL, NULL, NULL}};
+
+static struct options got;
+
+static enum status keep(const struct options *options, int n, char **arguments, struct error *error)
+{
+    (void)n, (void)arguments, (void)error;
+    got = *options;
+    return STATUS_OK;
+}
+
+/* in place of the program's */
+extern const struct command command_cache;
+const struct command command_cache = {.name = "cache", .run = keep, .options = list};
 static const struct command command = {.name = "judge", .synopsis = "FILE", .options = list};
 
 TEST(values_by_name)
@@ -41,4 +55,13 @@ TEST(kernels_by_name)
         assert_int_equal(options_kernel(&options, &index, &error), STATUS_BAD_INPUT);
         assert_non_null(strstr(error.message, wrong[k]));
     }
+}
+
+TEST(no_options)
+{
+    char *words[] = {"sphproof", "cache", NULL};
+    assert_int_equal(command_main(2, words), STATUS_OK);
+    assert_true(got.command == &command_cache && got.speak && !got.quiet && !got.json);
+    assert_int_equal(got.threads, 1);
+    assert_int_equal(got.count, 0);
 }
