@@ -194,8 +194,9 @@ static char *ranges(const struct array *array, const bool *chosen)
     size_t size;
     FILE *line = open_memstream(&text, &size);
     if (!line) return NULL;
-    for (int s = 1, end; s <= array->count; s = end + 1) {
-        for (end = s; end <= array->count && chosen[end]; end++) continue;
+    for (int end = 0; end++ < array->count;) {
+        const int s = end;
+        while (end <= array->count && chosen[end]) end++;
         if (end == s) continue;
         fprintf(line, "%s%d", ftell(line) > 0 ? "," : "", s);
         if (end - 1 > s) fprintf(line, "-%d", end - 1);
