@@ -224,8 +224,8 @@ static bool are_moved(const struct start_gas *gas)
         for (int k = 0; k < 2 * dim; k++) {
             struct problem_state beside;
             state_beside(gas, i, k / 2, (k % 2 ? -1 : 1) * gas->spacing, &beside);
-            most[START_VELOCITY] = fmax(most[START_VELOCITY],
-                                        start_apart(beside.v, gas->exact[i].v) / gas->speed);
+            most[START_VELOCITY] =
+                fmax(most[START_VELOCITY], start_apart(beside.v, gas->exact[i].v) / gas->speed);
             most[START_ENERGY] =
                 fmax(most[START_ENERGY], start_relative(beside.u, gas->exact[i].u));
             most[START_MASS] =
