@@ -60,7 +60,8 @@ static enum status read_all(struct snapshot_source *source, gzFile from, struct 
         return error_set(error, STATUS_BAD_INPUT, "%.200s: the file is empty", source->path);
     /* gives back the room of the last chunk, so that the sanitizers see a step beyond the end */
     unsigned char *bytes = realloc(source->bytes, source->size + 1);
-    if (bytes) source->bytes = bytes;
+    if (!bytes) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
+    source->bytes = bytes;
     return STATUS_OK;
 }
 
