@@ -269,19 +269,25 @@ TEST(particles_beside_a_jump)
     }
 }
 
+/* The states of a tube with a jump at its middle, on a lattice in a periodic box. */
+static void plant_jump(void)
+{
+    plant(1, 0, "# box = 0:2\n");
+    for (int i = 0; i < N; i++) {
+        gas.x[0][i] = 2 * (i + 0.5) / N;
+        const bool left = gas.x[0][i] < 1;
+        gas.rho[i] = left ? 1 : 0.125, gas.u[i] = left ? 2.5 : 2;
+        gas.m[i] = gas.rho[i] * 2 / N;
+    }
+}
+
 /* Particles beside a jump with energies between those of the two sides were moved. */
 TEST(energies_across_a_jump)
 {
     for (int side = -1; side <= 1; side += 2) {
         const struct judge_request request = {
             .case_name = "sod", .time = {true, 0}, .kernel = -1, .boundary = "periodic"};
-        plant(1, 0, "# box = 0:2\n");
-        for (int i = 0; i < N; i++) {
-            gas.x[0][i] = 2 * (i + 0.5) / N;
-            const bool left = gas.x[0][i] < 1;
-            gas.rho[i] = left ? 1 : 0.125, gas.u[i] = left ? 2.5 : 2;
-            gas.m[i] = gas.rho[i] * 2 / N;
-        }
+        plant_jump();
         for (int k = 0; k < 3; k++) {
             const int i = side < 0 ? N / 2 - 1 - k : N / 2 + k;
             gas.x[0][i] = 1 + side * (0.1 + 0.4 * k) * 2 / N, gas.u[i] = 2.1 + 0.15 * k;
@@ -397,13 +403,9 @@ TEST(most_volumes_are_wrong)
 {
     const struct judge_request request = {
         .case_name = "sod", .time = {true, 0}, .kernel = -1, .boundary = "periodic"};
-    plant(1, 0, "# box = 0:2\n");
-    for (int i = 0; i < N; i++) {
-        gas.x[0][i] = 2 * (i + 0.5) / N;
-        const bool left = gas.x[0][i] < 1;
-        gas.rho[i] = left ? 1 : 0.125, gas.u[i] = left ? 2.5 : 2;
-        gas.m[i] = gas.rho[i] * (i % 5 < 3 ? 3. : 2.) / N;
-    }
+    plant_jump();
+    for (int i = 0; i < N; i++)
+        if (i % 5 < 3) gas.m[i] *= 1.5;
     struct judged judged = judges(&request);
     assert_int_equal(judged.of_start.wrong, N * 3 / 5);
     assert_non_null(strstr(judged.of_start.message, "it is 1.5 times the case's"));
