@@ -298,13 +298,10 @@ static void walk_object(struct metrics *metrics, const struct place *at, const c
 
 static void walk(struct metrics *metrics, const struct place *at, const json_t *object)
 {
-    static const char *const heads[] = {"schema", "command", "version",     "git",
-                                        "date",   "flags",   "computations"};
     const char *key;
     json_t *value;
     json_object_foreach((json_t *)object, key, value) {
         if (one_of(key, closed, LENGTH(closed)) || is_name(key, value)) continue;
-        if (!*at->path && one_of(key, heads, LENGTH(heads))) continue;
         if (json_is_array(value)) {
             walk_list(metrics, at, key, value);
             take_vector(metrics, at, key, value);
